@@ -189,9 +189,9 @@ impl Reduction {
     /// own number; if false, the largest |x| may share the next lower number.
     ///
     /// # Errors
-    /// Fails if the function is a curve through samples, if the identity is `None`, if the identity does not hold at a few test
-    /// points, if the function has no value at a test point, or if the domain does not suit the identity. Also fails if a number
-    /// would have no bits or more than [`MOST`] bits.
+    /// Fails if the function is a curve through samples, or if the identity is `None`. Fails if the function has no value at one
+    /// of a few test points, if the identity does not hold there, or if the domain does not suit the identity. Also fails if a
+    /// number would have no bits or more than [`MOST`] bits.
     pub(super) fn of(
         identity: Identity,
         function: &TargetFunction,
@@ -302,6 +302,9 @@ impl Whole<'_> {
     }
 
     /// Returns the binary logarithm of the formula's value at `x`. The value itself may be beyond the range of `f64`.
+    ///
+    /// # Errors
+    /// Fails if the formula has no value or no logarithm at `x`.
     fn logarithm_at(&self, x: f64) -> Result<f64, Refusal> {
         let kind = Kind::Unary(Log2, Box::new(self.formula.clone()));
         self.value_of(&Expression::new(kind, self.formula.span.clone()), x)

@@ -59,9 +59,9 @@ const NEAREST: [f64; 14] =
 /// Finds the cheapest approximation of `function` under the choices `wish`, and proves its error bound.
 ///
 /// # Errors
-/// Fails if the operands of the domain differ by 2^46 or more, if there are more than 2^26 operands of samples, if the function
-/// has no value at an operand, if the identity of `wish` does not hold, or if no approximation with the allowed error is found
-/// and proved. The error names a key and a remedy.
+/// Fails if the operands of the domain differ by 2^46 or more, or if there are more than 2^26 operands of samples. Fails if the
+/// function has no value at an operand, or if the identity of `wish` does not hold. Fails if no approximation with the allowed
+/// error is found and proved. The error names a key and a remedy.
 pub(super) fn search(function: &TargetFunction, wish: Wish) -> Result<Piecewise, Refusal> {
     let span = function.domain.1.abs_diff(function.domain.0);
     if span >> WIDEST != 0 {

@@ -234,7 +234,7 @@ impl<'s> Table<'s> {
     }
 
     /// Lowers the widths one bit at a time while the table can still be filled with words. `words` are the words for the given
-    /// widths. Returns the widths of which no single width can be one bit smaller, and their words.
+    /// widths. Returns the lowered widths, so that no single width can be one bit smaller, and their words.
     pub(super) fn lowered(&self, mut widths: Widths, mut words: Words) -> (Widths, Words) {
         let mut changed = true;
         while changed {

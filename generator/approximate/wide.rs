@@ -148,8 +148,8 @@ impl Piecewise {
     }
 
     /// Returns a bound on the error over the raw operands from `low` to `high`, which must all read the word `word`. `lag` has
-    /// the limits of the dropped bits. Returns `None` if the formula may jump between these operands, if the formula may have no
-    /// value or no derivative there, if a result may not fit its format, or if the function is a curve through samples.
+    /// the limits of the dropped bits. Returns `None` if the formula may jump between these operands, or may have no value or no
+    /// derivative there. Returns `None` also if a result may not fit its format, or if the function is a curve through samples.
     fn error_between(
         &self,
         function: &TargetFunction,

@@ -488,7 +488,7 @@ impl TomlReader<'_> {
     }
 }
 
-/// Returns a value in the type of its key, or all of its mistakes.
+/// Returns a value in the type of its key. Fails with all mistakes of the value if its type or its range is wrong.
 fn converted(key: &Key, value: &Spanned<DeValue>) -> Result<Value, Vec<Violation>> {
     let wrong_type = || vec![key.wrong_type(&described(value))];
     let too_large = || vec![key.violation(out_of_range(key.name, written(value)))];

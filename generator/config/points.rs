@@ -62,6 +62,9 @@ fn has_decimal_commas(line: &str) -> bool {
 
 /// Reads a file in UTF-8, and converts the line ends of any system to newlines. The path must name a regular file, because a
 /// pipe may never end.
+///
+/// # Errors
+/// Fails if the path names no regular file, or if the file cannot be read or is not UTF-8.
 fn text(path: &Path) -> io::Result<String> {
     let refused = |message: String| Err(io::Error::new(io::ErrorKind::InvalidInput, message));
     if !fs::metadata(path)?.is_file() {

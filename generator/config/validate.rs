@@ -436,6 +436,9 @@ impl<'a> Draft<'a> {
 
     /// Adjusts the defaults of keys that the user left out, and checks the conditions between keys. If a given value is unknown,
     /// no default is adjusted. Returns the configuration, or all problems if there is any.
+    ///
+    /// # Errors
+    /// Fails if `problems` has a problem already, or if a condition between keys fails.
     pub(super) fn finish(
         mut self,
         schema: &Schema,

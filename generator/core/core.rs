@@ -303,6 +303,9 @@ impl Core {
 
     /// Returns the sequential design from which the core was made, if the core is a pipeline and `is_wanted` is true; otherwise
     /// `None`.
+    ///
+    /// # Errors
+    /// Fails if the sequential design cannot be built.
     fn microprogram(&self, is_wanted: bool) -> Result<Option<Design>> {
         let wanted = is_wanted && self.design.pipeline.is_some();
         Ok(wanted.then(|| self.device.sequential(&self.config)).transpose()?)

@@ -43,8 +43,8 @@ pub struct Device {
     pub model: fn(&Config) -> Box<dyn Model>,
     /// Returns the accuracy contract of a configuration.
     pub contract: fn(&Config) -> Box<dyn Contract>,
-    /// Whether the contract's bound is proved for every configuration, by a proof beside the golden model. Otherwise the bound is
-    /// only the statement of the author.
+    /// Whether the contract's bound is proved for every configuration, by a proof next to the golden model. Otherwise the bound
+    /// is only the statement of the author.
     ///
     /// A device that replaces the contract must set this field too: `Device { contract, proved: false, ..own }`.
     pub proved: bool,

@@ -215,8 +215,8 @@ fn statement(keys: &Keys) -> Result<ExpressionStatement, StatementError> {
 /// 2^-13, just below 4 units with 15 fraction bits. The error is at most [`LARGEST_ERROR`].
 ///
 /// # Errors
-/// Fails if `text` is not a number between 0 and 1, if the result may be 0 or near 0, if its smallest value cannot be computed,
-/// or if the error would be below half a unit.
+/// Fails if `text` is not a number between 0 and 1, or if the result may be 0 or near 0. Fails if the smallest absolute value of
+/// the result cannot be computed, or if the error would be below half a unit.
 fn error_of_relative(
     statement: &ExpressionStatement,
     number: usize,
@@ -272,6 +272,9 @@ const PORTS: [&str; 12] = [
 
 /// Checks that every name is an identifier, and neither one of [`PORTS`] nor a constant of formulas, such as `pi`. Checks also
 /// that no two entries have the same name.
+///
+/// # Errors
+/// Fails at the first name that breaks one of these rules. The error names the entry.
 fn check_names(keys: &Keys) -> Result<(), StatementError> {
     let mut known: Vec<(&str, &str)> = Vec::new();
     let tables = [("operands", &keys.operands), ("let", &keys.parts), ("results", &keys.results)];

@@ -167,8 +167,8 @@ impl End {
     /// 10` is 1, and `log2(16)` is 4. `key` is the configuration key for errors.
     ///
     /// # Errors
-    /// Fails if the text is not a formula, if the formula has an operand, if it has no value (`1 / 0`), or if its value cannot be
-    /// told from an operand with 1024 bits.
+    /// Fails if the text is not a formula, or if the formula has an operand or no value, such as `1 / 0`. Fails also if 1024 bits
+    /// do not decide whether the value is an operand.
     pub(super) fn read(key: &'static str, text: &str, fraction: u32) -> Result<Self, Refusal> {
         let formula = parse(text).map_err(|fault| misread(key, fault))?;
         let (ceiling, is_operand) = formula.ceiling(fraction).map_err(|fault| {

@@ -115,6 +115,10 @@ impl<'a> Lockstep<'a> {
 
     /// Runs streams in one simulator; the first of them has number `first` in the run. The function stops early if an earlier
     /// stream differs, and then returns the streams as far as they ran.
+    ///
+    /// # Errors
+    /// Fails if the design cannot be simulated, or if its signals do not settle in a clock. A difference between model and
+    /// hardware is no error.
     fn group<const L: usize>(
         &self,
         courses: impl IntoIterator<Item = Course>,
@@ -199,6 +203,9 @@ impl<'a> Lockstep<'a> {
     }
 
     /// Runs a stream to its end, and adds its clocks to the vectors.
+    ///
+    /// # Errors
+    /// Fails if golden model and simulation differ, or if the simulation fails.
     fn add(&self, vectors: &mut Vectors, alone: &mut Runner<'_, 1>) -> Result<()> {
         let valid = self.binding.ports.valid;
         while !alone.ended() {
@@ -276,6 +283,9 @@ impl<'a> Lockstep<'a> {
     }
 
     /// Makes a runner for one stream with `points` results, under the seed of the run.
+    ///
+    /// # Errors
+    /// Fails if the design cannot be simulated.
     fn alone(&self, points: u64) -> Result<Runner<'_, 1>> {
         Runner::new(&self.binding, [self.course(points, 1, 0)])
     }

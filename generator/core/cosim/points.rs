@@ -8,7 +8,7 @@
 //! 2. [`PointSource`] moves the operands along a straight line toward the operands with the largest `f`, until the formula has
 //!    about the target value.
 //! 3. For one in eight of these points, [`PointSource`] continues to the two neighbouring operand values between which the
-//!    formula crosses the target, or leaves 0, and takes one of the two values.
+//!    formula crosses the target, or leaves 0. One of the two values becomes the operand.
 //!
 //! The other points are corners of the domain, points that are drawn evenly, or arbitrary bit patterns.
 //!

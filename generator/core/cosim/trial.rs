@@ -358,6 +358,11 @@ pub fn record_points(
 type Watch<'a> = &'a mut dyn FnMut(&mut Simulator) -> Result<()>;
 
 /// Runs one computation with the given raw operands from reset to its end. For a pipeline, the end is the clock of the result.
+/// `watch` sees the simulator before each rising edge.
+///
+/// # Errors
+/// Fails if the design cannot be simulated, if the computation takes [`LIMIT`] clocks or more, if it ends without `valid`, or if
+/// `watch` fails.
 fn run(
     design: &Design,
     contract: &dyn Contract,

@@ -84,6 +84,9 @@ pub(super) struct Script<'a> {
 impl Script<'_> {
     /// Adds the files of a formal proof: the Verilog `wrapper`, the script for Yosys, and the task for SymbiYosys. `depth` is the
     /// depth of the induction in clocks.
+    ///
+    /// # Errors
+    /// Fails if a template fails.
     pub(super) fn files(
         &self,
         wrapper: String,

@@ -59,6 +59,9 @@ fn component<'a>(top: &'a Top, of_core: &[String]) -> VhdlComponent<'a> {
 }
 
 /// Returns the VHDL file: components of all modules, and an entity around the core whose ports have fixed-point types.
+///
+/// # Errors
+/// Fails if the template fails.
 fn vhdl(job: &EmitJob, tops: &[Top]) -> Result<String> {
     let (name, design, naming) = (job.name(), job.design, job.naming);
     let (mut generics, mut passed) = (Vec::new(), Vec::new());

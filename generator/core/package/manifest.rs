@@ -256,6 +256,9 @@ fn positions(ordered: &[(usize, &str)]) -> Vec<usize> {
 
 /// Returns a computation as JSON on a single line. `operands` and `results` give the order of the raw values: the indices into
 /// the values of `computation`.
+///
+/// # Errors
+/// Fails if the computation cannot be written as JSON.
 fn line(computation: &Computation, operands: &[usize], results: &[usize]) -> Result<Box<RawValue>> {
     let (mut valid, mut outputs) = (Vec::new(), Vec::new());
     for result in &computation.results {

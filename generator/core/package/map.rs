@@ -194,6 +194,9 @@ impl Map {
     }
 
     /// Checks that no two registers have the same name, because software refers to registers by their names.
+    ///
+    /// # Errors
+    /// Fails if two registers have the same name. The error is a [`KeyError`] of the key `interface.registers`.
     fn check(&self, core: &str) -> Result<()> {
         let mut names = BTreeSet::new();
         for register in &self.registers {
@@ -218,8 +221,8 @@ fn last_place(ports: &[PortPlacement]) -> u32 {
     parts.map(|part| part.place).max().unwrap_or_default()
 }
 
-/// Places a port in as many registers as it needs, which no other port uses, from the word address `place` on. Then `place`
-/// is the word address behind them. `strobe` is the name of the port that writes an operand; empty for a result.
+/// Places a port in as many registers as it needs, which no other port uses, from the word address `place` on. Afterwards `place`
+/// is the word address behind these registers. `strobe` is the name of the port that writes an operand; empty for a result.
 fn placed(design: &Design, port: &Port, strobe: String, place: &mut u32) -> PortPlacement {
     let net = design.net(port.net);
     let width = net.format.width();
@@ -233,9 +236,9 @@ fn placed(design: &Design, port: &Port, strobe: String, place: &mut u32) -> Port
     PortPlacement { name: net.name.clone(), format: net.format, strobe, parts }
 }
 
-/// Returns the placements of the results, from the word address `place` on. Then `place` is the word address behind them. If
-/// all results fit into one register, each in whole bytes, they share it; otherwise each result has its own registers. For
-/// example, three colours of 8 bits share a register, from bits 0, 8 and 16 on.
+/// Returns the placements of the results, from the word address `place` on. Afterwards `place` is the word address behind their
+/// registers. If all results fit into one register, each in whole bytes, they share it; otherwise each result has its own
+/// registers. For example, three colours of 8 bits share a register, from bits 0, 8 and 16 on.
 fn results(design: &Design, place: &mut u32) -> Vec<PortPlacement> {
     let ports: Vec<&Port> = design.outputs().filter(|port| port.role == Role::Result).collect();
     let padded = |port: &Port| design.width(port.net).next_multiple_of(8);
@@ -267,6 +270,9 @@ struct CommonRegisters {
 
 /// Returns the registers that every core has. Their constants are the version of Glint, the digest of the configuration, and
 /// the numbers of operands and results of this core. The last operand and the last register are given as word addresses.
+///
+/// # Errors
+/// Fails if `registers.toml`, which is part of the program, is not valid.
 fn fixed(
     inputs: &EmitInputs,
     (operands, results): (usize, usize),

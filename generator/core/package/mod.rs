@@ -98,6 +98,9 @@ pub fn emit_core(design: &Design, inputs: &EmitInputs) -> Result<OutputFiles> {
 }
 
 /// Returns the Verilog of a design and the contents of its ROMs. Names of modules are not checked yet.
+///
+/// # Errors
+/// Fails if a net is named `clk`, if [`Design::verify_structure`] finds mistakes, or if a template fails.
 fn core_files(job: &EmitJob) -> Result<OutputFiles> {
     let EmitJob { design, inputs, naming, .. } = *job;
     ensure!(design.find("clk").is_none(), "`clk` is the clock; no other net can have that name");

@@ -119,6 +119,9 @@ pub fn carried(design: &Design) -> Option<Diagnostic> {
 }
 
 /// Unrolls the microprogram of a design, and checks that no result depends on a value of an earlier computation.
+///
+/// # Errors
+/// Fails as [`unroll`] does.
 fn run(design: &Design, iterations: Iterations) -> Result<Unrolled, Diagnostic> {
     let (mut executor, results) = executed(design, iterations)?;
     executor.determined(&results, "cannot be a pipeline")?;
@@ -128,6 +131,9 @@ fn run(design: &Design, iterations: Iterations) -> Result<Unrolled, Diagnostic> 
 
 /// Executes the microprogram of a design up to the clock with the results. Returns the execution, and the net of each result or
 /// status port with the node of its value.
+///
+/// # Errors
+/// Fails if the microprogram cannot be executed, as [`unroll`] describes, or if no microinstruction sets `valid`.
 fn executed(
     design: &Design,
     iterations: Iterations,
@@ -184,6 +190,10 @@ impl<'a> Executor<'a> {
 
     /// Executes microinstructions from `at` on, up to the clock with the results, or until the microinstruction with the address
     /// `stop` comes next. Returns the state at `stop`, or `None` if the results came first. `self.shown` then has the results.
+    ///
+    /// # Errors
+    /// Fails if the microprogram ends or waits for `start` before `valid`, or if `valid` depends on a signal or is set under a
+    /// condition. Fails if a loop has no bound, or if the computation takes more than 4096 clocks.
     fn follow(&mut self, mut at: At, stop: Option<usize>) -> Result<Option<State>, Diagnostic> {
         let design = self.design;
         loop {
@@ -242,6 +252,9 @@ impl<'a> Executor<'a> {
     /// Registers on which the loop's condition depends go from iteration to iteration as if every iteration took place. This
     /// simplification saves muxes for a counter, and does no harm, because an iteration counts only if all iterations before it
     /// took place.
+    ///
+    /// # Errors
+    /// Fails if the condition depends on more than 16 bits, if an iteration sets `valid`, or as [`Executor::follow`] does.
     fn iterations(
         &mut self,
         mut state: State,
@@ -365,6 +378,9 @@ impl<'a> Executor<'a> {
 
     /// Executes the microinstruction at `at`. Returns the state after it and, for a loop or a jump, the node of its condition. If
     /// the microinstruction sets `valid`, `self.shown` gets the results, and the state stays as it was.
+    ///
+    /// # Errors
+    /// Fails if `valid` depends on a signal, or if the computation takes more than 4096 clocks.
     fn execute(&mut self, at: &At) -> Result<(State, Option<NodeId>), Diagnostic> {
         let design = self.design;
         if self.unrolled.steps.len() == MOST_CLOCKS {
@@ -439,6 +455,9 @@ impl<'a> Executor<'a> {
 
     /// Checks that no result depends on a value that an earlier computation has left. `what` is the predicate of the message,
     /// such as "cannot be a pipeline".
+    ///
+    /// # Errors
+    /// Fails if a result depends on such a value. The error names the result and the register.
     fn determined(&self, results: &[(NetId, NodeId)], what: &str) -> Result<(), Diagnostic> {
         let graph = &self.unrolled.graph;
         for &(port, value) in results {

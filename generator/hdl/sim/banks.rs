@@ -130,10 +130,13 @@ impl BankSplitter<'_> {
     }
 
     /// Returns the slot that has the value of the compiler's slot `slot`, in the wide bank if `wide`, otherwise in the narrow
-    /// one.
+    /// bank.
     ///
-    /// Constants, registers and ROMs get their slots at the first call. If a conversion to the wide bank is necessary, it becomes
-    /// a step with these `sources`, and later calls use its result too.
+    /// Constants, registers and ROMs get their slots at the first call. If a conversion to the wide bank is necessary, the
+    /// conversion becomes a step with these `sources`, and later calls use its result too.
+    ///
+    /// # Panics
+    /// Panics if a wide value is requested in the narrow bank.
     fn operand(&mut self, slot: Slot, wide: bool, sources: Sources) -> Slot {
         let of = if wide { &self.wide_of } else { &self.narrow_of };
         if let Some(there) = of[slot as usize] {

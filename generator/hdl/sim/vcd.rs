@@ -65,6 +65,9 @@ impl<W: Write> VcdWriter<W> {
     }
 
     /// Writes the buffered text to the file, and empties the buffer.
+    ///
+    /// # Errors
+    /// Fails if the file cannot be written.
     fn write_out(&mut self) -> Result<()> {
         self.file.write_all(&self.page.take()).context(CANNOT_WRITE)
     }

@@ -75,6 +75,10 @@ struct LaneTask {
 impl Team {
     /// Returns the raw outputs of the points in `range`, in the order of the points. Every instance takes the next point as
     /// soon as it can: a core when it is free, and a pipeline when it is ready.
+    ///
+    /// # Errors
+    /// Fails if the simulation fails, if a computation gives more or fewer results than `points` states, or if it takes [`LIMIT`]
+    /// clocks or more. Fails if a result of a pipeline does not come after the latency.
     fn compute(&mut self, points: &Points, range: Range<usize>) -> Result<Vec<i64>> {
         let Self { instances, latency, in_ready } = self;
         let width = instances.ports.results.len();

@@ -121,6 +121,9 @@ struct WordSearch<'a> {
 impl WordSearch<'_> {
     /// Chooses computations that detect the bits in the mask `left` of a word. `readers` has the candidates that read the word.
     /// A fault in a bit is detected if the outputs change.
+    ///
+    /// # Errors
+    /// Fails if the simulation fails.
     fn word(&mut self, word: u32, mut left: u64, readers: &[usize]) -> Result<()> {
         let candidates = self.candidates;
         for at in readers {
@@ -162,6 +165,9 @@ impl WordSearch<'_> {
     /// `nearest`, which detect the bit `probe`, and goes on to computations near them in which a fault of this bit changes the
     /// results more and more. Within the domain, some words are read only far from any highlight. The last rounds therefore take
     /// operands from their whole formats, where the golden model still predicts the device.
+    ///
+    /// # Errors
+    /// Fails if the simulation fails.
     fn climb(
         &mut self,
         word: u32,
@@ -199,6 +205,9 @@ impl WordSearch<'_> {
 
     /// Returns the outputs of computations with the bits in the mask `bits` of a word inverted. A mask of 0 gives the outputs
     /// without a fault.
+    ///
+    /// # Errors
+    /// Fails if the simulation fails.
     fn run(&mut self, computations: &[&[i64]], word: u32, bits: u64) -> Result<Vec<OutputTrace>> {
         let faults: Vec<u64> = vec![bits; computations.len()];
         self.device.run_with(computations, word, &faults)
@@ -206,6 +215,9 @@ impl WordSearch<'_> {
 
     /// Returns the bits in the mask `bits` of a word that a computation detects, when one bit is inverted at a time. `right`
     /// must be the output of the computation without a fault.
+    ///
+    /// # Errors
+    /// Fails if the simulation fails.
     fn noticed(
         &mut self,
         word: u32,
@@ -252,8 +264,8 @@ impl WordSearch<'_> {
 }
 
 /// Returns a value near `raw` for an operand. A control operand moves by a random magnitude in half of the cases, and otherwise
-/// keeps its value. A control operand without fraction bits may also be drawn anew. The value stays within its domain, or within
-/// its format if `beyond` is true. A colour is at most an eighth of its domain below its largest value.
+/// keeps its value. A control operand without fraction bits may also get a new random value. The value stays within its domain,
+/// or within its format if `beyond` is true. A colour is at most an eighth of its domain below its largest value.
 fn moved(random: &mut Random, operand: &Operand, raw: i64, beyond: bool) -> i64 {
     let (low, high) = if beyond && !operand.colour {
         (operand.format.min_raw() as i64, operand.format.max_raw() as i64)

@@ -160,8 +160,11 @@ impl<'a> Clocks<'a> {
         found.transpose()
     }
 
-    /// Returns the first of some consecutive combinations at which a signal differs. Each lane runs 512 of them from
-    /// power-up on.
+    /// Returns the first of some consecutive combinations at which a signal differs, or `None` if no signal differs. Each lane
+    /// runs 512 combinations from power-up on.
+    ///
+    /// # Errors
+    /// Fails as [`Clocks::check`] does.
     fn first(&self, places: Range<u64>) -> Result<Option<u64>> {
         let runs =
             places.clone().step_by(RUN as usize).map(|first| (first, RUN.min(places.end - first)));
@@ -207,6 +210,9 @@ impl<'a> Clocks<'a> {
     }
 
     /// Returns a runner with a simulator of its own, which runs the combinations of the lane up to and including `place`.
+    ///
+    /// # Errors
+    /// Fails if there is no combination `place`, or if the design cannot be simulated.
     fn alone(&self, place: u64) -> Result<Runner<'_, 1>> {
         ensure!(place < self.count(), "there is no combination {place}");
         let first = place - place % RUN;

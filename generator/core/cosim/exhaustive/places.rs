@@ -27,7 +27,7 @@ pub struct Peak {
     pub place: u64,
 }
 
-/// Reads a number, or `null`, which JSON has in place of an infinite number.
+/// Reads a number, or `null`, which JSON has in place of an infinite number and which gives infinity. Fails for any other JSON.
 fn or_infinite<'de, D: Deserializer<'de>>(number: D) -> Result<f64, D::Error> {
     Ok(Option::deserialize(number)?.unwrap_or(f64::INFINITY))
 }

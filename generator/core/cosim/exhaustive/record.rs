@@ -34,7 +34,7 @@ pub struct Record {
     /// The upper bound that the check gives for the error of an output, in output units: the error of `f` for the largest colour
     /// plus the largest rounding error of a product with a colour.
     pub together: f64,
-    /// Whether the contract's bound held for all operands.
+    /// Whether the errors at all recorded operands were within the contract's bound.
     pub holds: bool,
     /// The file that contains the record.
     #[serde(skip)]
@@ -116,8 +116,12 @@ impl Record {
         Sweep { axes, omits: contract.sweep().omits }
     }
 
-    /// Refuses a record that leaves out a part of the contract's sweep. The bound in the record does not matter here:
+    /// Checks that the record leaves out no part of the contract's sweep. The bound in the record does not matter here:
     /// [`Record::proves`] compares the recorded errors with the contract's present bound.
+    ///
+    /// # Errors
+    /// Fails if the record leaves out a part of the sweep. The error names the file of the record, and the command that makes a
+    /// new record.
     fn is_of(&self, contract: &dyn Contract) -> Result<()> {
         let sweep = contract.sweep();
         let same_axes = self.axes.len() == sweep.axes.len()

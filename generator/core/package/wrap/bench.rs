@@ -101,6 +101,9 @@ pub fn files(job: &EmitJob, vectors: &Vectors, files: &mut OutputFiles) -> Resul
 }
 
 /// Adds the bench of a wrapper in Python, if the core has a bench in Python too.
+///
+/// # Errors
+/// Fails if the template fails.
 fn add_python(job: &EmitJob, wrapper: &str, tests: &[&str], files: &mut OutputFiles) -> Result<()> {
     if job.inputs.example.is_some() && job.inputs.accuracy.is_some() {
         let name = job.name();

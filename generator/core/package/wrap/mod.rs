@@ -45,6 +45,9 @@ pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<()> {
 /// nothing if the configuration has no test vectors, and so no bench. `stubs` names the modules that `text` defines in place
 /// of modules that the wrapper instantiates. For example, the proof of `rough_axis` has a simple module `rough` in place of
 /// the core.
+///
+/// # Errors
+/// Fails if the template fails.
 fn add_proof(
     job: &EmitJob,
     wrapper: &str,

@@ -190,6 +190,9 @@ impl LineUnroller<'_> {
 
     /// Checks that the microinstruction `first` comes before all other microinstructions in `writes`, and that it is executed
     /// once.
+    ///
+    /// # Errors
+    /// Fails if another microinstruction in `writes` can come first, or if `first` can be executed again.
     fn in_order(&self, first: usize, writes: &[usize]) -> Result<(), Diagnostic> {
         let design = self.executor.design;
         // The search stops at microinstructions that write points.
