@@ -234,10 +234,10 @@ impl<'a> Lockstep<'a> {
         Ok(())
     }
 
-    /// Runs golden model and simulation from power-up on with recorded inputs, for example the inputs from
-    /// [`Lockstep::record`]. `streams` has the inputs by stream, then by clock, then by input port. Each stream runs for
-    /// `clocks` clocks, and begins again with its first clock after its last one. The run compares the hardware with the golden
-    /// model, and does not compare results with the formula.
+    /// Runs golden model and simulation from power-up on with recorded inputs, for example the inputs from [`Lockstep::record`].
+    /// `streams` has the inputs by stream, then by clock, then by input port. Each stream runs for `clocks` clocks, and begins
+    /// again with its first clock after its last clock. The run compares the hardware with the golden model, and does not compare
+    /// results with the formula.
     ///
     /// # Errors
     /// Fails as [`Lockstep::run`] does. Fails also if a stream has no clock, or if a clock has more or fewer inputs than the

@@ -27,15 +27,16 @@ pub struct Outcome {
     /// The largest error of an output against the formula in f64. `None` if no error was measured, for example because inputs
     /// were recorded.
     pub worst: Option<Worst>,
-    /// The number of results by the value of `f`. Empty for a device that is no highlight.
+    /// The number of results by the value of `f`. For a device that is no highlight, only the results outside the domain are
+    /// counted.
     pub histogram: Histogram,
     /// The first difference between model and hardware, at which the run ended. `None` if they agree.
     pub mismatch: Option<Mismatch>,
 }
 
 impl Outcome {
-    /// Joins the records of streams, up to and including the first that differs. `registers` and `outputs` are the numbers of
-    /// compared signals.
+    /// Joins the records of streams, up to and including the first stream that differs. `registers` and `outputs` are the numbers
+    /// of compared signals.
     pub(super) fn of(
         registers: usize,
         outputs: usize,
@@ -59,8 +60,8 @@ impl Outcome {
         outcome
     }
 
-    /// Returns a sentence for each failure of the run: a difference between model and hardware, or an error above `bound`.
-    /// Returns an empty list if the run passed.
+    /// Returns a sentence for each failure of the run: a difference between model and hardware, or an error above `bound` by more
+    /// than 10^−6 units, the rounding of the measurement. Returns an empty list if the run passed.
     pub fn failures(&self, bound: &Bound) -> Vec<String> {
         let mut failures = Vec::new();
         if let Some(mismatch) = &self.mismatch {
@@ -96,7 +97,7 @@ pub struct Worst {
     /// The error in output units; infinite if the formula has no value at the operands.
     pub units: f64,
     /// The error in units, multiplied by the largest bound of any output and divided by the bound of this output. Errors of
-    /// different outputs are compared by it.
+    /// different outputs are compared by this number.
     pub weighted: f64,
     /// The name of the output.
     pub output: String,

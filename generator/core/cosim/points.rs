@@ -22,8 +22,8 @@ use glint_golden::{Contract, Highlight, Operand};
 
 use super::random::Random;
 
-/// The number of kinds of points. Kind 0 has arbitrary bit patterns, kinds 1 and 2 are mostly at the ends of the domain, and
-/// kind 3 is drawn evenly. The other kinds are drawn by the value of the formula.
+/// The number of kinds of points. Kind 0 has many arbitrary bit patterns, kinds 1 and 2 are often at or near the ends of the
+/// domain, and kind 3 is drawn evenly. For a highlight, the other kinds are drawn by the value of the formula.
 const KINDS: i64 = 16;
 
 /// If the device is no highlight, kinds above this take the operands that [`Contract::hint`] suggests.
@@ -74,7 +74,7 @@ pub struct PointSource<'a> {
 }
 
 impl<'a> PointSource<'a> {
-    /// Prepares to draw points for a contract. For a highlight, it searches for the operands with the largest `f`.
+    /// Prepares to draw points for a contract. For a highlight, the function searches for the operands with the largest `f`.
     pub fn new(contract: &'a dyn Contract) -> Self {
         let highlight = contract.highlight();
         let operands = contract.operands().to_vec();
@@ -211,7 +211,7 @@ impl<'a> PointSource<'a> {
         }
     }
 
-    /// Moves control operands to where the formula has a random value. For a line, it moves both ends of the line.
+    /// Moves control operands to where the formula has a random value. For a line, the function moves both ends of the line.
     fn spread(&self, random: &mut Random, control: &mut [i64]) {
         let Some((length, highlight)) = self.length.zip(self.highlight) else {
             self.aim(random, control);
@@ -294,8 +294,9 @@ impl<'a> PointSource<'a> {
         }
     }
 
-    /// Returns the way from the peak to the control operands `far`. If the formula is as large there as at the peak, the way
-    /// ends earlier, at a point where the formula is smaller. Returns `None` without such a point.
+    /// Returns the way from the peak to the control operands `far`. If the formula is as large there as at the peak, the way ends
+    /// earlier, at a point where the formula is smaller. Returns `None` if there is no such point, or if the device is no
+    /// highlight.
     fn way(&self, far: &[i64]) -> Option<Way> {
         let highlight = self.highlight?;
         let peak = self.peak(highlight, far);
@@ -395,8 +396,9 @@ impl Way {
         }
     }
 
-    /// Returns the two scales between which the formula crosses the value `target`: just above it, and just below it. If
-    /// `exact` is true, they lie at neighbouring operands. `at` is overwritten with the operands that are tried.
+    /// Returns the two scales between which the formula crosses the value `target`: one scale at which the formula is not below
+    /// `target`, and one scale at which the formula is below. If `exact` is true, both scales lie at neighbouring operands. `at`
+    /// is overwritten with the operands that are tried.
     fn crossing(
         &self,
         highlight: &Highlight,

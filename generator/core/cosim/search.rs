@@ -13,19 +13,19 @@ use super::random::Random;
 use glint_base::fixed::exp2;
 use glint_golden::{Contract, Highlight, nearer};
 
-/// The number of colours that are tried, counted down from the largest.
+/// The largest distance from the largest colour at which a colour is tried.
 const MOST_COLOURS: i64 = 256;
 
 /// Operands are moved by powers of two below 2 to this power.
 const MOST_BITS: u32 = 24;
 
-/// How many of the points with the largest errors are searched around, and about how many combinations of operands are tried
-/// around each.
+/// The number of points with the largest errors around which the search tries all neighbours, and about the number of
+/// combinations of operands that one round tries around each of these points.
 const HIGHEST: usize = 16;
 const AROUND: u64 = 1 << 18;
 
-/// The number of combinations that are tried around a point of a device without a highlight, for all pairs of operands
-/// together. Each runs the model clock by clock.
+/// The number of combinations that are tried around a point of a device without a highlight, for all pairs of operands together.
+/// For each combination, the model runs clock by clock.
 const MOST_AROUND: u64 = 1 << 16;
 
 /// The number of starts after which only the points with the largest errors are kept, so that memory does not grow with the
@@ -71,7 +71,7 @@ impl Reached {
     }
 }
 
-/// Returns `a` or `b`: the one with the larger error, or `a` if the errors are equal.
+/// Returns `a` or `b`, whichever has the larger error; `a` if the errors are equal.
 fn larger(a: Reached, b: Reached) -> Reached {
     if b.units > a.units { b } else { a }
 }
@@ -189,8 +189,8 @@ impl<'a> Climber<'a> {
     }
 
     /// Tries all nearby values of each pair of operands around the given control operands, moves to the largest error, and
-    /// repeats this there until the error no longer grows. For a device that is no highlight, it stops after about 65536
-    /// combinations. Returns all operands of the largest error.
+    /// repeats this search there until the error no longer grows. For a device that is no highlight, the function stops after
+    /// about 65536 combinations. Returns all operands of the largest error.
     fn look_around(&self, mut operands: Vec<i64>) -> Vec<i64> {
         let highlight = self.contract.highlight();
         let terms = self.contract.bound().terms;
@@ -264,7 +264,7 @@ impl<'a> Climber<'a> {
         }
     }
 
-    /// Returns the largest error of an output for the given control operands, in units, and the colour that has it.
+    /// Returns the largest error of an output for the given control operands, in units, and the colour with this error.
     fn of_output(&self, highlight: &Highlight, control: &[i64]) -> (f64, i64) {
         let point = highlight.point(control, 0);
         let (f, right) = (highlight.f(&point), highlight.references(&point));

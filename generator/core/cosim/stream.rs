@@ -120,8 +120,8 @@ impl Stream {
         }
     }
 
-    /// Computes the inputs of the next clock, and advances the model by this clock. Fails if a golden model does not finish a
-    /// computation.
+    /// Computes the inputs of the next clock, and advances the model by this clock. Fails if the golden model of a pipeline does
+    /// not finish a computation.
     #[inline]
     pub(super) fn clock(&mut self, binding: &Binding) -> Result<()> {
         let (deaf, taken) = match &self.host {
@@ -164,9 +164,9 @@ impl Stream {
         matches!(&self.source, Source::Stimulus(stimulus) if stimulus.is_idle())
     }
 
-    /// Writes the predictions after the latest clock into lane `lane` of `expected`, in the order of the compared signals. For
-    /// a pipeline it also writes into `known`: all ones for a signal that is predicted, and otherwise 0. Every signal of a core
-    /// is predicted.
+    /// Writes the predictions after the latest clock into lane `lane` of `expected`, in the order of the compared signals. For a
+    /// pipeline, the function also writes into `known`: all ones for a signal that is predicted, and otherwise 0. Every signal of
+    /// a core is predicted.
     #[inline]
     pub(super) fn predict<const L: usize>(
         &self,

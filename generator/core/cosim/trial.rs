@@ -90,7 +90,8 @@ pub fn timing(design: &Design, contract: &dyn Contract) -> Result<HandshakeTimin
     })
 }
 
-/// Returns three sets of raw operands: all at their lowest value within `ends`, all at their highest, and all in the middle.
+/// Returns three sets of raw operands: all operands at the lowest value within `ends`, all at the highest value, and all in the
+/// middle.
 fn corners(contract: &dyn Contract, ends: fn(&Operand) -> (i128, i128)) -> [Vec<i64>; 3] {
     let mut corners = [Vec::new(), Vec::new(), Vec::new()];
     for operand in contract.operands() {
@@ -102,8 +103,9 @@ fn corners(contract: &dyn Contract, ends: fn(&Operand) -> (i128, i128)) -> [Vec<
     corners
 }
 
-/// Returns 40 sample computations with their results and clocks: corners of the domain, and random points. Users check the
-/// device with them, without a golden model. The contract computes the same results.
+/// Returns 40 sample computations with their results and clocks. In the first three computations, all operands are at the lowest,
+/// the highest or the middle value of their domains; the others are random points of the domain. A line has a length operand of
+/// at most 9. Users check the device with these computations, without a golden model. The contract computes the same results.
 ///
 /// # Errors
 /// Fails as [`timing`] does, or if the contract's results and the simulated results differ.
@@ -228,10 +230,10 @@ fn quantity(name: &str, format: Format, raw: i64) -> Quantity {
     Quantity { name: name.to_owned(), raw, value: format.to_f64(raw) }
 }
 
-/// Returns typical raw operands of a contract, for a worked example. An operand with a value in `given` keeps this value;
-/// `given` may be shorter than the operands. For a highlight, the function lowers the first control operand with fraction bits
-/// that can change `f`, such as a cosine or an angle, until `f` is between 0.4 and 0.8. For other devices it prefers operands
-/// from [`Contract::hint`].
+/// Returns typical raw operands of a contract, for a worked example. An operand with a value in `given` keeps this value; `given`
+/// may be shorter than the operands. For a highlight, the function lowers a control operand with fraction bits, such as a cosine
+/// or an angle, until `f` is between 0.4 and 0.8. The function takes the first operand with which `f` reaches this range, and
+/// lowers no operand if there is none. For other devices, the function prefers operands from [`Contract::hint`].
 pub fn typical(contract: &dyn Contract, given: &[Option<i64>]) -> Vec<i64> {
     let given = |at: usize| given.get(at).copied().flatten();
     let mut colour = 0;

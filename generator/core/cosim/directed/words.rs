@@ -92,8 +92,8 @@ fn word_stride(candidates: &[PoolComputation], readers: &BTreeMap<u32, Vec<usize
     clocks.div_ceil(MOST_CLOCKS).max(1) as usize
 }
 
-/// Returns, for each word that is read, the indices of the candidates that read it, brightest first. Each list has at most
-/// [`LANES`] of them, and no candidate with more than [`LONGEST`] clocks.
+/// Returns, for each word that is read, the indices of the candidates that read the word, brightest first. Each list has at most
+/// [`LANES`] candidates, and no candidate with more than [`LONGEST`] clocks.
 fn readers(candidates: &[PoolComputation]) -> BTreeMap<u32, Vec<usize>> {
     let mut order: Vec<usize> = (0..candidates.len()).collect();
     order.retain(|&at| candidates[at].shown.clocks <= LONGEST);

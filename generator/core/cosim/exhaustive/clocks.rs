@@ -50,7 +50,7 @@ pub struct Difference {
     pub clock: u64,
     /// The operands of the combination: each name with its bit pattern.
     pub operands: Vec<(String, u64)>,
-    /// The signal that differs, with its value in the model and in the hardware. The clock in it is counted from the
+    /// The signal that differs, with its value in the model and in the hardware. The clock in this field is counted from the
     /// power-up of the simulated instance.
     pub mismatch: Mismatch,
 }
@@ -72,7 +72,7 @@ impl fmt::Display for Difference {
 }
 
 /// The check of a design against its golden model for every combination of operands. A core computes one combination after
-/// another; a pipeline takes one in every clock.
+/// another; a pipeline takes a combination in every clock in which it is ready.
 pub struct Clocks<'a> {
     binding: Binding<'a>,
 }
@@ -204,7 +204,8 @@ impl<'a> Clocks<'a> {
     /// with clock `from`, counted from the power-up of the simulated instance.
     ///
     /// # Errors
-    /// Fails as [`Clocks::difference`] does, or if the file cannot be written.
+    /// Fails if there is no combination `place`, if the design cannot be simulated, or if the file cannot be written. If nothing
+    /// differs, the waveform ends after the combination.
     pub fn trace(&self, place: u64, from: u64, file: impl Write + Send + 'static) -> Result<()> {
         self.alone(place)?.trace(from, file)
     }

@@ -58,8 +58,8 @@ impl Shard {
         self.number - 1 + at * self.of
     }
 
-    /// Returns the next blocks to check, by their number among all blocks. `done` of the shard's `count` blocks are done
-    /// already. Also returns how many are done after these.
+    /// Returns the next blocks to check, by their number among all blocks. `done` of the shard's `count` blocks are done already.
+    /// Also returns how many blocks are done after these blocks.
     fn chunk(self, done: u64, count: u64) -> (u64, Vec<u64>) {
         let end = (done + CHUNK * rayon::current_num_threads() as u64).min(count);
         (end, (done..end).map(|at| self.block(at)).collect())
@@ -153,7 +153,7 @@ impl<'a> Job<'a> {
     }
 
     /// Returns a phrase with the number of evaluations that the check makes, for example "1 000 evaluations of f and 500 colour
-    /// products".
+    /// products", or "1 000 evaluations of the outputs" for a device without colours.
     pub fn words(&self) -> String {
         let places = grouped(self.f.count());
         match self.colours.count() {
@@ -164,8 +164,8 @@ impl<'a> Job<'a> {
         }
     }
 
-    /// Adds the comparison of model and hardware clock by clock, for every combination of operands. If there are too many,
-    /// [`Clocks::count`] is 0, and nothing is compared.
+    /// Adds the comparison of model and hardware clock by clock, for every combination of operands. If there are too many
+    /// combinations, [`Clocks::count`] is 0, and nothing is compared.
     #[must_use]
     pub fn with(mut self, clocks: Clocks<'a>) -> Self {
         self.clocks = Some(clocks);

@@ -150,7 +150,7 @@ impl<'a> Places<'a> {
     }
 
     /// Returns the errors for 4096 to 8191 combinations that are spread evenly over all, or for all combinations if there are
-    /// fewer. Callers use them as a fingerprint of the golden model.
+    /// fewer. Callers use these errors as a fingerprint of the golden model.
     pub fn glimpse(&self) -> Vec<f64> {
         let step = (self.count() / SAMPLE).max(1);
         (0..self.count()).step_by(step as usize).map(|place| self.error(place)).collect()
@@ -192,7 +192,7 @@ impl<'a> Places<'a> {
         begin.elapsed() / count.max(1) as u32
     }
 
-    /// Returns the largest error among consecutive places, with the first place that has it.
+    /// Returns the largest error among consecutive places, with the first place that has this error.
     fn peak(&self, places: Range<u64>) -> Peak {
         let mut peak = Peak::NONE;
         let Some(inner) = self.sweep.axes.last() else {

@@ -62,8 +62,8 @@ struct RecordedAxis {
 }
 
 impl RecordedAxis {
-    /// Returns whether the record visited every value of `axis`. A recorded list may have more values than the axis; a range
-    /// must be the same.
+    /// Returns whether the recorded check visited every value of `axis`. A recorded list may have more values than the axis; a
+    /// range must be the same.
     fn covers(&self, axis: &Axis) -> bool {
         self.name == axis.name
             && match &axis.values {
@@ -167,8 +167,9 @@ impl Record {
 
     /// Computes a part of the recorded check again and compares it with the record. The part is about `places` evenly spread
     /// operand combinations, the combination with the largest error, and all products with colours. `places` must not be 0.
-    /// Returns the number of combinations at which it computed `f`, and a sentence for each difference from the record; no
-    /// sentence means that the record holds. The function calls `progress` with the number of evaluations in each finished block.
+    /// Returns the number of combinations at which the function computed `f`, and a sentence for each difference from the record
+    /// and for each error above the contract's bound. No sentence means that the record is right. The function calls `progress`
+    /// with the number of evaluations in each finished block.
     pub fn recheck(
         &self,
         contract: &dyn Contract,
