@@ -77,7 +77,8 @@ impl FileKind {
         &[CoreVerilog, StreamWrapper, BusWrapper, Memory, Bench, BenchVectors];
 
     /// Returns the folder in the output directory that contains the files of this kind, in a folder for each configuration. For
-    /// example, [`FileKind::Memory`] gives `rtl_out`, and the memories of `rough` are in `rtl_out/rough/`.
+    /// example, [`FileKind::Memory`] gives `rtl_out`, and the memories of `rough` are in `rtl_out/rough/`. Only the driver that
+    /// all configurations share, [`FileKind::CocotbDriver`], is in the folder itself.
     pub fn folder(self) -> &'static str {
         match self {
             CoreVerilog | TargetVerilog | StreamWrapper | BusWrapper | Memory | CorePackage

@@ -41,8 +41,8 @@ struct AgeView {
     one: String,
 }
 
-/// The clocks in which `valid` and `done` are high, counted from the clock of `start`, and the largest age of a computation
-/// (its clocks since `start`), as Verilog literals. Only a core whose clocks do not depend on the data has them.
+/// The clocks in which `valid` and `done` are high, counted from the clock of `start`, and the largest age of a computation (its
+/// clocks since `start`), as Verilog literals. Only a core whose clocks do not depend on the data has such clocks.
 struct EventClocks {
     valid: String,
     done: String,

@@ -146,8 +146,9 @@ fn fixed(format: Format) -> String {
     format!("{kind}({} downto {low})", low + format.width() as i32 - 1)
 }
 
-/// Returns a name for VHDL. A name that VHDL does not accept, or in which upper and lower case matter, becomes an extended
-/// identifier between backslashes. For example, the reserved word `signal` becomes `\signal\`.
+/// Returns a name for VHDL. A name that VHDL does not accept, or that has an upper-case letter, becomes an extended identifier
+/// between backslashes. Generics, whose names are all upper case, are an exception. For example, the reserved word `signal`
+/// becomes `\signal\`.
 fn vhdl_name(name: &str) -> String {
     let reserved = VHDL_2008.split_ascii_whitespace().any(|word| word == name.to_ascii_lowercase());
     let plain = !name.starts_with('_') && !name.ends_with('_') && !name.contains("__");

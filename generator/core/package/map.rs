@@ -237,8 +237,8 @@ fn placed(design: &Design, port: &Port, strobe: String, place: &mut u32) -> Port
 }
 
 /// Returns the placements of the results, from the word address `place` on. Afterwards `place` is the word address behind their
-/// registers. If all results fit into one register, each in whole bytes, they share it; otherwise each result has its own
-/// registers. For example, three colours of 8 bits share a register, from bits 0, 8 and 16 on.
+/// registers. If all results fit into one register, each in whole bytes, they share this register; otherwise each result has its
+/// own registers. For example, three colours of 8 bits share a register, from bits 0, 8 and 16 on.
 fn results(design: &Design, place: &mut u32) -> Vec<PortPlacement> {
     let ports: Vec<&Port> = design.outputs().filter(|port| port.role == Role::Result).collect();
     let padded = |port: &Port| design.width(port.net).next_multiple_of(8);
@@ -268,8 +268,9 @@ struct CommonRegisters {
     register: Vec<BusRegister>,
 }
 
-/// Returns the registers that every core has. Their constants are the version of Glint, the digest of the configuration, and
-/// the numbers of operands and results of this core. The last operand and the last register are given as word addresses.
+/// Returns the registers that every core has. The constant registers have an identification, the version of Glint, the digest of
+/// the configuration, and the numbers of operands and results of this core. The last operand and the last register are given as
+/// word addresses.
 ///
 /// # Errors
 /// Fails if `registers.toml`, which is part of the program, is not valid.
@@ -343,9 +344,9 @@ fn of_results(results: &[PortPlacement], design: &Design) -> Vec<BusRegister> {
     }]
 }
 
-/// Returns the bus registers of a port that shares no register with another port. `access` says how software can access them. A
-/// port of more than 32 bits has several registers, named `<port>_0`, `<port>_1` and so on, with the lowest bits in the first
-/// register.
+/// Returns the bus registers of a port that shares no register with another port. `access` says how software can access these
+/// registers. A port of more than 32 bits has several registers, named `<port>_0`, `<port>_1` and so on, with the lowest bits in
+/// the first register.
 fn own(port: &PortPlacement, access: Access, doc: &str) -> Vec<BusRegister> {
     let mut registers = Vec::new();
     for (number, part) in port.parts.iter().enumerate() {

@@ -18,7 +18,7 @@ struct TransferNumber {
     field: CField,
     port: String,
     first: u32,
-    /// The number of bytes that it occupies.
+    /// The number of bytes that the operand or result occupies.
     size: u32,
 }
 
@@ -27,12 +27,12 @@ impl TransferNumber {
         0..self.size
     }
 
-    /// Returns the C type of its bit pattern.
+    /// Returns the C type of the bit pattern of this operand or result.
     fn unsigned(&self) -> &'static str {
         if self.size <= 4 { "uint32_t" } else { "uint64_t" }
     }
 
-    /// Returns the C expression that joins its bytes in `transfer` to a bit pattern.
+    /// Returns the C expression that joins the bytes of this operand or result in `transfer` to a bit pattern.
     fn joined(&self) -> String {
         let kind = self.unsigned();
         let mut bytes = Vec::new();

@@ -145,7 +145,8 @@ fn escaped(text: &str) -> String {
     ascii(text).replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
-/// Returns `text` for an XML comment. Adjacent hyphens are separated by spaces, because XML forbids them in a comment.
+/// Returns `text` for an XML comment. Adjacent hyphens are separated by spaces, because XML forbids two adjacent hyphens in a
+/// comment.
 fn comment(text: &str) -> String {
     let mut apart = text.to_owned();
     while apart.contains("--") {

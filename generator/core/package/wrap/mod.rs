@@ -18,7 +18,8 @@ use glint_rtl::netlist::{Design, Port, Role};
 use glint_rtl::verilog::rows::separated;
 use glint_rtl::verilog::text::range;
 
-/// Adds the wrappers that the configuration asks for. If there is a bench, it also adds the wrappers' benches and proofs.
+/// Adds the wrappers that the configuration asks for. If there are test vectors, the function also adds the wrappers' benches and
+/// proofs.
 ///
 /// # Errors
 /// Fails if the core cannot have a wrapper that the configuration asks for. For example, a pipeline without stalls cannot
@@ -65,9 +66,9 @@ fn add_proof(
     Ok(())
 }
 
-/// Returns the port connections of the core's instance, the clock first. `to` returns the net for a port, given the port's
-/// role and name. If it returns `None`, an input is connected to `1'b0`, and an output to the wire that [`core_wire`]
-/// declares. For example, `.busy(core_busy)`.
+/// Returns the port connections of the core's instance, the clock first. `to` returns the net for a port, given the port's role
+/// and name. If `to` returns `None`, an input is connected to `1'b0`, and an output to the wire that [`core_wire`] declares. For
+/// example, `.busy(core_busy)`.
 fn connected(
     design: &Design,
     clock: &str,

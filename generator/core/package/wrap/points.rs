@@ -12,7 +12,7 @@ use crate::package::bench::packed;
 use glint_base::fixed::mask;
 use glint_rtl::netlist::{Design, Port, Role};
 
-/// The largest number of results in the list. A computation with which the list would exceed it is left out.
+/// The largest number of results in the list. A computation with which the list would exceed this number is left out.
 const RESULTS: usize = 4096;
 
 /// A finished computation from the vectors of a test bench: the bit patterns of its operands and results, in the order of the
@@ -172,8 +172,8 @@ pub fn sent(points: &[BenchPoint], operands: &Transfer) -> String {
 }
 
 /// Returns the output file of the wrapper's bench: a line for each result, with all outputs padded to whole bytes. A signed
-/// output is padded with copies of its sign bit, any other with zeros. If `is_line` is set, a further digit in front is 1
-/// for the last result of a computation, and 0 for every other result.
+/// output is padded with copies of its sign bit, and any other output with zeros. If `is_line` is set, a further digit in front
+/// is 1 for the last result of a computation, and 0 for every other result.
 pub fn received(points: &[BenchPoint], results: &Transfer, is_line: bool) -> String {
     let mut text = String::new();
     for point in points {

@@ -51,8 +51,8 @@ impl LineStream {
     }
 }
 
-/// Adds the stream wrapper of a core with a microprogram, and its proof. If the core computes several points after one
-/// `start`, it also adds a buffer for the results.
+/// Adds the stream wrapper of a core with a microprogram, and its proof. If the core computes several points after one `start`,
+/// the function also adds a buffer for the results.
 ///
 /// # Errors
 /// Fails if the core lacks the handshake of a microprogram, operands or results.
