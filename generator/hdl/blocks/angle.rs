@@ -45,8 +45,8 @@ pub fn fold<'d>(d: &'d Designer, angle: Signal<'d>, fraction: i32) -> Folded<'d>
 }
 
 /// Returns the address of a [`cosine_power_table`] for the unsigned angle `scaled`, in right angles: its first `bits` fraction
-/// bits. For example, 0.75 gives the address 3 with 2 bits. If the angle is a right angle or more, or `within` is 0, it is the
-/// address of the last word.
+/// bits. For example, 0.75 gives the address 3 with 2 bits. If the angle is a right angle or more, or `within` is 0, the function
+/// returns the address of the last word.
 #[track_caller]
 pub fn address<'d>(
     d: &'d Designer,

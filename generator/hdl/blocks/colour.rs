@@ -37,7 +37,7 @@ struct Channel<'d> {
 
 impl<'d> Colours<'d> {
     /// Adds the operands `red`, `green` and `blue` of `bits` bits, unsigned integers. `blocks` are the numbers of their blocks in
-    /// the block diagram of the document that describes the device; `None` if it does not number them.
+    /// the block diagram of the document that describes the device; `None` if the diagram does not number these blocks.
     #[track_caller]
     pub fn new(designer: &'d Designer, bits: i32, blocks: Option<[ChannelBlocks; 3]>) -> Self {
         let format = Format::unsigned(bits, 0);
@@ -99,8 +99,8 @@ impl<'d> Colours<'d> {
         steps
     }
 
-    /// Adds the outputs `<colour>_out` or `intensity_out`. Each is `f` times its operand, rounded by `rounding` to an integer and
-    /// saturated to the operand's width.
+    /// Adds the outputs `<colour>_out` or `intensity_out`. Each output is `f` times its operand, rounded by `rounding` to an
+    /// integer and saturated to the operand's width.
     #[track_caller]
     pub fn outputs(&self, f: Signal<'d>, rounding: Rounding) {
         self.outputs_of(f, rounding, false);

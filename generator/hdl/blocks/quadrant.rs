@@ -38,8 +38,8 @@ pub fn quadrant<'d>(d: &'d Designer, name: &str, turn: Signal<'d>, ahead: u32) -
     Quadrant { way, negative: number.bit(1) }
 }
 
-/// Returns 2^w − `way` for the w bits of the unsigned integer `way`. If `way` is 0, it returns the largest number 2^w − 1.
-/// For example, with 4 bits 5 gives 11, and 0 gives 15.
+/// Returns 2^w − `way` for the w bits of the unsigned integer `way`. If `way` is 0, the function returns the largest number 2^w −
+/// 1. For example, with 4 bits 5 gives 11, and 0 gives 15.
 #[track_caller]
 pub fn mirrored<'d>(d: &'d Designer, name: &str, way: Signal<'d>) -> Signal<'d> {
     let format = way.format();

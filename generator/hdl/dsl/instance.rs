@@ -52,8 +52,8 @@ impl<'d> Instance<'d> {
 
 impl Designer {
     /// Instantiates the description `describe` as a part called `name`, with a signal for each of its operands. The part's
-    /// operand registers are loaded in the microinstruction before the part's first one. The results of the part are in
-    /// registers. A description with parts calls [`Designer::dataflow`] instead of writing a microprogram.
+    /// operand registers are loaded in the microinstruction before the part's first microinstruction. The results of the part are
+    /// in registers. A description with parts calls [`Designer::dataflow`] instead of writing a microprogram.
     ///
     /// Reports a mistake if the names in `operands` differ from the part's operands, or if a signal does not fit its operand's
     /// format. Reports a mistake if another part has the same name, or if parts are nested more than 8 deep. Reports the mistakes

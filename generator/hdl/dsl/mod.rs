@@ -276,9 +276,9 @@ impl Designer {
 
     /// Adds a read-only memory. Its words are raw values of `format`; `address` selects the word that it reads.
     ///
-    /// The address must be an integer whose range lies within the words. Reports a mistake if it does not, or if a word does not
-    /// fit `format`. A `synchronous` ROM reads on the rising edge, as block RAM does: its output is the word at the address of
-    /// the clock before, and 0 at power-up.
+    /// The address must be an integer whose range lies within the words. Reports a mistake if the address has fraction bits or
+    /// can exceed the words, or if a word does not fit `format`. A `synchronous` ROM reads on the rising edge, as block RAM does:
+    /// its output is the word at the address of the clock before, and 0 at power-up.
     #[track_caller]
     pub fn rom(
         &self,
@@ -420,8 +420,8 @@ impl Designer {
     ///
     /// # Errors
     /// Fails if the description has mistakes. The error lists the mistakes that the functions of the description have reported.
-    /// Only if there are none, the whole design is checked, and the error lists the mistakes of this check. Each mistake has the
-    /// names of the signals and the Rust source line.
+    /// Only if there are no such mistakes, the whole design is checked, and the error lists the mistakes of this check. Each
+    /// mistake has the names of the signals and the Rust source line.
     pub fn finish(self) -> Result<Design, Diagnostics> {
         let program = self.inner.borrow_mut().program.take();
         if let Some(mut program) = program {

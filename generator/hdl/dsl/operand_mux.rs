@@ -27,7 +27,7 @@ described!(OperandMux, out);
 
 impl Designer {
     /// Returns a mux whose inputs may have different formats, controlled by the select lines `select`. Reports a mistake unless
-    /// it has one input for each choice of the select lines.
+    /// the mux has one input for each choice of the select lines.
     #[track_caller]
     pub fn bus<'d>(
         &'d self,

@@ -107,14 +107,15 @@ impl StepSetting {
 }
 
 /// Returns the setting that keeps all selections (values of select lines) of the previous microinstruction, except those which
-/// this microinstruction states itself. In microinstruction 0 it has no effect.
+/// this microinstruction states itself. In microinstruction 0 this setting has no effect.
 #[track_caller]
 pub fn hold() -> StepSetting {
     StepSetting::sequence(SettingKind::Hold)
 }
 
 /// Returns the setting that raises `valid`, which means that the results are on the outputs. A microinstruction that loads a
-/// result register must not raise it; the next one may.
+/// result register must not raise `valid`, unless every path to this microinstruction has loaded the register before; the next
+/// microinstruction may raise `valid`.
 #[track_caller]
 pub fn valid() -> StepSetting {
     StepSetting::sequence(SettingKind::Valid)
@@ -166,8 +167,9 @@ pub struct Step {
     pub(super) location: SourceLocation,
 }
 
-/// Makes a microinstruction with a name and settings. Muxes without a setting pass their first input; registers without a setting
-/// keep their value. For example, `step("load", [y.load()])` loads the register `y`.
+/// Makes a microinstruction with a name and settings. Muxes without a setting pass their first input, or with [`hold`] the input
+/// that the previous microinstruction selected. Registers without a setting keep their value. For example, `step("load",
+/// [y.load()])` loads the register `y`.
 #[track_caller]
 pub fn step(name: &str, settings: impl IntoIterator<Item = StepSetting>) -> Step {
     Step {

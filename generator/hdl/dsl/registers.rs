@@ -144,7 +144,7 @@ impl Designer {
         Select { designer: self, field }
     }
 
-    /// Returns `select`. If it belongs to another designer, reports a mistake and returns new lines with the same choices.
+    /// Returns `select`. If `select` belongs to another designer, reports a mistake and returns new lines with the same choices.
     #[track_caller]
     pub(crate) fn own_select<'d>(&'d self, select: Select<'d>) -> Select<'d> {
         if self.serial == select.designer.serial {
@@ -192,7 +192,7 @@ impl Designer {
         self.change(q, |it| (it.data, it.enable) = (Some(data), enable));
     }
 
-    /// Calls `change` with the register that drives the net `q`. Does nothing if no register drives it.
+    /// Calls `change` with the register that drives the net `q`. Does nothing if no register drives the net.
     pub(crate) fn change(&self, q: NetId, change: impl FnOnce(&mut netlist::NetlistRegister)) {
         self.with(|inner| {
             if let Driver::Register(id) = inner.design.net(q).driver {
@@ -213,7 +213,7 @@ pub struct InputOperand<'d> {
 
 impl<'d> InputOperand<'d> {
     /// Returns the output of the operand register: the value that the user has written, limited if [`Designer::operand_clamped`]
-    /// made the operand. If the operands have buffers, it is the value at the latest accepted `start`.
+    /// made the operand. If the operands have buffers, the output is the value at the latest accepted `start`.
     pub fn q(self) -> Signal<'d> {
         self.q
     }
@@ -269,7 +269,8 @@ impl<'d> Register<'d> {
     }
 
     /// Connects the data input. The format of the register must have the binary point of `data` and represent its range;
-    /// [`Designer::narrow`] converts a signal first. Reports a mistake if it does not, or if the input is already connected.
+    /// [`Designer::narrow`] converts a signal first. Reports a mistake if the format does not fit `data`, or if the input is
+    /// already connected.
     #[track_caller]
     pub fn takes(self, data: Signal<'d>) {
         let d = self.q.designer();

@@ -164,8 +164,8 @@ impl Designer {
         self.signal(net)
     }
 
-    /// Returns `signal`. If it belongs to another designer, reports a mistake and returns a constant with the same format. The
-    /// rest of the description can then be checked too.
+    /// Returns `signal`. If `signal` belongs to another designer, reports a mistake and returns a constant with the same format.
+    /// The rest of the description can then be checked too.
     #[track_caller]
     pub(crate) fn own(&self, signal: Signal<'_>) -> Signal<'_> {
         let other = signal.designer();

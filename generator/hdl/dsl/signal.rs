@@ -355,7 +355,7 @@ impl Designer {
 
     /// Returns the constant `high` whose low bits are replaced by `low`, in `format`. These low bits of `high` must be 0. For
     /// example, `high` = 0b1000 and a `low` of three bits give the addresses 8 to 15, without logic. `low` must not be wider than
-    /// `format`. If it is as wide, the function returns `low` itself.
+    /// `format`. If `low` is as wide, the function returns `low` itself.
     #[track_caller]
     pub fn beside<'d>(&'d self, high: Signal<'d>, low: Signal<'d>, format: Format) -> Signal<'d> {
         let low_bits = low.format().width();
@@ -442,9 +442,9 @@ impl Designer {
         self.signal(self.add_named(name, Format::BIT, Driver::Op(Op::All(self.own(a).id()))))
     }
 
-    /// Returns input 0 if the bit `select` is 0, and input 1 if it is 1. `select` is a signal of the datapath. Reports a mistake
-    /// if `select` has several bits, or if the inputs have different binary points. The format of the result can represent both
-    /// inputs.
+    /// Returns input 0 if the bit `select` is 0, and input 1 if the bit is 1. `select` is a signal of the datapath. Reports a
+    /// mistake if `select` has several bits, or if the inputs have different binary points. The format of the result can
+    /// represent both inputs.
     #[track_caller]
     pub fn choose<'d>(
         &'d self,

@@ -97,7 +97,7 @@ fn early(design: &Design) -> Vec<Diagnostic> {
     found
 }
 
-/// Returns the register that drives a net, or `None` if another kind of driver drives it.
+/// Returns the register that drives a net, or `None` if another kind of driver drives the net.
 fn register(design: &Design, id: NetId) -> Option<RegId> {
     match design.net(id).driver {
         Driver::Register(register) => Some(register),
