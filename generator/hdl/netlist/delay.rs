@@ -56,8 +56,8 @@ impl Design {
     /// A memory returns the same value for each point as the registers would, however often the enable stops the pipeline. After
     /// a reset, which drops all points, a memory begins with its first word again. The side channel stays in registers, because
     /// the proof by induction follows its value from stage to stage. Registers inside a multiplier stay registers too. Among
-    /// values that travel between the same two stages, a value whose registers have another enable than the first one's also
-    /// stays in registers.
+    /// values that travel between the same two stages, a value also stays in registers if its registers have another enable than
+    /// the registers of the first value.
     pub fn delay_lines(&self) -> Vec<DelayLine> {
         let Some(pipeline) = &self.pipeline else { return Vec::new() };
         let Some(memory) = pipeline.delay_memory else { return Vec::new() };

@@ -92,7 +92,7 @@ pub struct Net {
     /// The one thing that drives the net, such as an input port, a register or a cell.
     pub driver: Driver,
     /// The number of the block that drives this net, in the block diagram of the document that describes the device. `None` if
-    /// the diagram does not number it.
+    /// the diagram does not number this block.
     pub block: Option<u16>,
     /// A comment of one line on the net, which the Verilog shows, or an empty text.
     pub doc: String,
@@ -133,10 +133,10 @@ pub struct NetlistRegister {
     pub q: NetId,
     /// The data input; `None` is an error that [`Design::verify`] reports.
     pub data: Option<NetId>,
-    /// The load enable, one bit. If it is `None`, the register loads on every rising edge.
+    /// The load enable, one bit. If this field is `None`, the register loads on every rising edge.
     pub enable: Option<NetId>,
-    /// The bit pattern that the register loads on a rising edge with `rst_n` low. If it is `None`, a reset does not affect the
-    /// register.
+    /// The bit pattern that the register loads on a rising edge with `rst_n` low. If this field is `None`, a reset does not
+    /// affect the register.
     pub reset: Option<u64>,
     /// The purpose of the register.
     pub kind: RegisterKind,
@@ -170,8 +170,8 @@ pub struct NetlistRom {
     pub data: NetId,
     /// Whether the ROM is read at the rising edge (block RAM) rather than without a clock (logic).
     pub synchronous: bool,
-    /// The read enable of a synchronous ROM, one bit. The ROM keeps its output while the enable is 0. If it is `None`, the ROM
-    /// reads at every rising edge.
+    /// The read enable of a synchronous ROM, one bit. The ROM keeps its output while the enable is 0. If this field is `None`,
+    /// the ROM reads at every rising edge.
     pub enable: Option<NetId>,
     /// The first read port of this ROM's memory, if this ROM is the second read port; both ROMs must have the same words.
     /// Otherwise `None`.
@@ -183,7 +183,7 @@ pub struct NetlistRom {
     /// A comment for each word of the ROM, or an empty list.
     pub comments: Vec<String>,
     /// The number of the ROM in the block diagram of the document that describes the device. `None` if the diagram does not
-    /// number it.
+    /// number this block.
     pub block: Option<u16>,
     /// The place in the Rust source where the device's description makes the ROM.
     pub location: SourceLocation,
@@ -203,8 +203,8 @@ pub struct Port {
 pub enum Role {
     /// Input `rst_n`, the reset: active low, synchronous.
     Reset,
-    /// Input `start`, which begins a computation if the device is not busy. If operands have buffers, it also does so in the last
-    /// clock of a computation.
+    /// Input `start`, which begins a computation if the device is not busy. If operands have buffers, `start` also begins a
+    /// computation in the last clock of the computation before.
     Start,
     /// Input for the value of an operand, which the write strobe loads.
     Operand {

@@ -63,8 +63,8 @@ pub struct Unit {
     pub name: String,
     /// The nets of the multiplier: its muxes if it has any, its two operand registers, its product, and the register behind it.
     pub nets: Vec<NetId>,
-    /// For each slot (clock modulo the interval), the name of the product that the multiplier computes in this slot; `None` if it
-    /// computes none.
+    /// For each slot (clock modulo the interval), the name of the product that the multiplier computes in this slot; `None` for a
+    /// slot without a product.
     pub serves: Vec<Option<String>>,
 }
 

@@ -45,10 +45,10 @@ pub enum Cell {
 pub struct Label {
     /// The name of the net or register in the sequential design that has the value. For example, `product`.
     pub name: String,
-    /// A comment of one line, taken from the sequential design.
+    /// A comment of one line, taken from the sequential design, or an empty text.
     pub doc: String,
     /// The number of the block that computes the value, in the block diagram of the document that describes the device. `None` if
-    /// the diagram does not number it.
+    /// the diagram does not number this block.
     pub block: Option<u16>,
     /// Whether the author of the device's description chose the name. Glint generates all other names.
     pub named: bool,

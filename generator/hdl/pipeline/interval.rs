@@ -17,7 +17,7 @@ pub enum IntervalGoal {
     /// larger than the number of clocks that the sequential core takes for a point. For example, 26 million points a second at
     /// 130 MHz allow an interval of 5 clocks.
     Rate(f64),
-    /// The smallest interval that needs at most this number of multipliers.
+    /// The smallest interval that reaches the requested clock with at most this number of multipliers.
     Multipliers(usize),
 }
 
@@ -30,7 +30,7 @@ pub enum IntervalGoal {
 ///
 /// # Errors
 /// Fails if the requested interval exceeds `most`. Fails if the rate exceeds one point a clock, or if the options give a rate
-/// without a clock frequency. Fails if every interval needs more multipliers than the options allow.
+/// without a clock frequency. Fails if every interval that reaches the clock needs more multipliers than the options allow.
 pub fn clocks<'a>(
     sequential: &Design,
     options: &Options,

@@ -1,8 +1,9 @@
 //! Turns a design with a microprogram into a pipeline, which accepts a point (a set of operands) every clock or every few clocks.
 //!
-//! `unroll` turns the design into a graph of values. `passes` rewrite the graph, for example to split products that are too wide
-//! for the multipliers of the FPGA target. `request` finds a schedule (`schedule`), which assigns every value to a stage.
-//! `stages` builds the pipeline, which has no microprogram, and a register wherever a value passes from one stage to the next.
+//! `unroll` turns the design into a graph of values. The passes in `passes` rewrite the graph, for example to split products that
+//! are too wide for the multipliers of the FPGA target. `request` finds a schedule (`schedule`), which assigns every value to a
+//! stage. `stages` builds the pipeline, which has no microprogram, and a register wherever a value passes from one stage to the
+//! next.
 
 mod delay;
 mod error;

@@ -1,9 +1,9 @@
 //! Assigns each node of a computation to a stage of the pipeline, with the fewest register bits.
 //!
-//! The node must be in a later stage than an operand if a block memory lies between them, or if the logic between them is too
-//! slow for the clock. A value takes one register bit for each of its bits and for each boundary between stages up to its last
-//! use. All constraints are on differences of two stages, so a linear program finds an integer solution. (The method is from Cong
-//! and Zhang, "An efficient and versatile scheduling algorithm based on SDC formulation", 2006.) Products that share multipliers
+//! A node must be in a later stage than its operand if a block memory lies between them, or if the logic between them is too slow
+//! for the clock. A value takes one register bit for each of its bits and for each boundary between stages up to its last use.
+//! All constraints are on differences of two stages, so a linear program finds an integer solution. (The method is from Cong and
+//! Zhang, "An efficient and versatile scheduling algorithm based on SDC formulation", 2006.) Products that share multipliers
 //! (`sharing`) get their stages before the linear program runs.
 
 use std::cmp::Reverse;
@@ -94,7 +94,7 @@ pub fn megahertz(period: f64) -> f64 {
 }
 
 /// Returns whether an operation is a carry chain or a product. The look-up tables of any other operation can include a mux in
-/// front of it.
+/// front of the operation.
 fn takes_no_logic(cell: &Cell) -> bool {
     matches!(
         cell,
@@ -133,8 +133,8 @@ pub fn is_extension(graph: &Graph, id: NodeId) -> bool {
     matches!(graph.node(id).cell, Cell::Op(NodeOp::Extend(_) | NodeOp::Relabel(_)))
 }
 
-/// Returns the node that registers store for the readers of `id`. For an extension that is no result, this is the node that it
-/// extends; for any other node, `id` itself.
+/// Returns the node that registers store for the readers of `id`. For an extension that is no result, this is the node below the
+/// extensions; for any other node, `id` itself.
 fn held(graph: &Graph, results: &[NodeId], mut id: NodeId) -> NodeId {
     while is_extension(graph, id) && !results.contains(&id) {
         id = graph.node(id).cell.operands()[0];
@@ -142,8 +142,8 @@ fn held(graph: &Graph, results: &[NodeId], mut id: NodeId) -> NodeId {
     id
 }
 
-/// Returns the delay of a node in nanoseconds, and its timing if a rising edge computes it. `shares` says whether the node is a
-/// product of a multiplier that several products share.
+/// Returns the delay of a node in nanoseconds, and the node's timing at a rising edge. The timing is `None` if no rising edge
+/// computes the node. `shares` says whether the node is a product of a multiplier that several products share.
 fn node_timing(
     graph: &Graph,
     target: &Timing,
@@ -286,7 +286,8 @@ impl<'a> ScheduleProblem<'a> {
     }
 
     /// Returns the schedule that reaches a clock period in nanoseconds. The schedule has as few stages as possible, and among all
-    /// such schedules the fewest register bits.
+    /// such schedules the fewest register bits. If products share multipliers, Glint chooses the stages of these products first,
+    /// so that other stages may allow fewer stages or bits.
     ///
     /// # Errors
     /// Fails if an operation takes longer than the period, or if the solver fails.
@@ -532,8 +533,9 @@ impl<'a> ScheduleProblem<'a> {
         Ok(())
     }
 
-    /// Returns the schedule with the fewest register bits for a period in nanoseconds, with at least `least` stages. Fails if the
-    /// solver finds no solution, or one that violates a constraint.
+    /// Returns the schedule with the fewest register bits for a period in nanoseconds, with at least `least` stages. A mux that
+    /// takes look-up tables, because its register cannot choose by a reset, counts as many additional bits as its width. Fails if
+    /// the solver finds no solution, or a solution that violates a constraint.
     fn solve(&self, period: f64, least: usize) -> Result<Schedule, ScheduleRefusal> {
         let differences = self.differences(period);
         let taken = self.taken(&differences);

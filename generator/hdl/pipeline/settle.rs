@@ -29,7 +29,8 @@ fn limit(graph: &Graph, id: NodeId) -> Option<(NodeId, NodeId, NodeId)> {
 }
 
 /// Rewrites the condition `id` if it is one bit of a mux `over ? most : rest` whose constant `most` has a 1 at this bit. The
-/// returned condition is `over`, or the same bit of `rest`, and does not read the mux. Returns `id` for any other condition.
+/// returned condition is 1 if `over` is 1 or if the same bit of `rest` is 1, and does not read the mux. Returns `id` for any
+/// other condition.
 fn flag(graph: &mut Graph, id: NodeId) -> NodeId {
     let node = graph.node(id).clone();
     let Cell::Op(NodeOp::Slice { of, low }) = node.cell else { return id };

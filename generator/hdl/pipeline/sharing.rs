@@ -29,7 +29,7 @@ pub struct MultiplierUnit {
     /// Whether the multiplier takes signed factors.
     pub signed: bool,
     /// For each slot (clock modulo the interval), the product that the multiplier computes in it, and the two factors in the
-    /// order of the multiplier's operands. `None` if it computes no product.
+    /// order of the multiplier's operands. `None` for a slot without a product.
     pub serves: Vec<Option<(NodeId, [NodeId; 2])>>,
 }
 

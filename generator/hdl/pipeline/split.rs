@@ -76,7 +76,7 @@ fn reaches_a_power_of_two(graph: &Graph, factor: NodeId) -> bool {
 }
 
 /// Returns a product with a factor `wide` whose highest bit is 1 only if all its other bits are 0. If the highest bit is 1, the
-/// product is the factor `narrow`, shifted. Otherwise it is the product of the other bits of `wide` and `narrow`.
+/// product is the factor `narrow`, shifted. Otherwise the product has the factors `narrow` and the other bits of `wide`.
 fn below_the_highest(
     graph: &mut Graph,
     target: &Timing,

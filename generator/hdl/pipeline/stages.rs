@@ -652,8 +652,8 @@ impl StageBuilder<'_> {
         self.schedule.stage[id.index()] - usize::from(product && self.problems.is_clocked(id))
     }
 
-    /// Returns the nets that have the values of architectural registers, each with the executed microinstruction at which the
-    /// register has this value.
+    /// Returns the nets that have the values of operand registers and architectural registers. Each net comes with the first
+    /// executed microinstruction at which the register has this value. Constants and nets with generated names are left out.
     fn checkpoints(&self, unrolled: &Unrolled) -> Vec<Checkpoint> {
         let mut before: HashMap<RegId, NodeId> = HashMap::new();
         let mut checkpoints = Vec::new();

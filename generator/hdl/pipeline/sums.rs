@@ -12,7 +12,8 @@ use glint_base::interval::Interval;
 
 /// Returns the node for the combinational cell `op`, and adds it to the graph unless it exists. In a sum or a difference, low
 /// bits that need no carry bypass the adder, so that its carry chain is short. For example, the lowest two bits of `x + 4` are
-/// the lowest two bits of `x`. Any other cell is added unchanged.
+/// the lowest two bits of `x`. A sum of `a`, `~b` and the carry 1 becomes the difference `a - b`. Any other cell is added
+/// unchanged.
 pub fn shortened(
     graph: &mut Graph,
     op: NodeOp,

@@ -304,13 +304,14 @@ impl<'a> Executor<'a> {
         }
     }
 
-    /// Unrolls a loop whose number of iterations depends on an operand. The loop becomes blocks of 8, 4, 2 and 1 iterations, with
-    /// fewer or more blocks for other numbers. The number of `conditions` that are 1 is the number of further iterations after
-    /// `first`, the state behind the first iteration. One bit of this number enables each block. `counters` marks the registers
-    /// that count iterations; their values in the returned state are wrong.
+    /// Unrolls a loop whose number of iterations depends on an operand. The loop becomes blocks of 8, 4, 2 and 1 iterations, or
+    /// fewer or more blocks if the largest number of iterations is smaller or larger. The number of `conditions` that are 1 is
+    /// the number of further iterations after `first`, the state behind the first iteration. One bit of this number enables each
+    /// block. `counters` marks the registers that count iterations; their values in the returned state are wrong.
     ///
     /// Returns `None` if an iteration depends on these registers or changes a memory's output, or if there are fewer than four
-    /// conditions. Returns `None` if the number depends on several nodes or on more than 6 bits.
+    /// conditions. Returns `None` if the number depends on several nodes or on more than 6 bits, or if an iteration cannot be
+    /// executed.
     fn in_powers(
         &mut self,
         first: &State,

@@ -44,7 +44,8 @@ pub(super) struct Compiler<'a> {
     /// The instructions so far, each with the slot of its result. In the key, the result is slot 0, so that equal instructions
     /// are found.
     known: HashMap<Instruction, Slot>,
-    /// The instruction that writes each slot, unless it is a field of the control word.
+    /// The instruction that writes each slot. Slots of fields of the control word, and slots that no instruction writes, have no
+    /// entry.
     made_by: HashMap<Slot, Instruction>,
     /// The instructions in an order in which each follows the instructions that compute its operands.
     pub(super) steps: Vec<Ordered>,

@@ -42,7 +42,7 @@ pub(super) enum Instruction {
     /// Sum modulo 2^width, with the width given by `drop`.
     Add { to: Slot, a: Slot, b: Slot, drop: u8 },
     /// Sum of bits of `a` and bits of `b`, each from its `low` up with the width that its `drop` gives, modulo 2^width of the
-    /// result. For example, it adds to a value the bit by which rounding increases it.
+    /// result. For example, the instruction adds the rounding bit to a truncated value.
     AddSlices { to: Slot, a: Slot, b: Slot, low_a: u8, drop_a: u8, low_b: u8, drop_b: u8, drop: u8 },
     /// Sum of `a`, `b` and the bit `carry`, modulo 2^width.
     AddCarry { to: Slot, a: Slot, b: Slot, carry: Slot, drop: u8 },

@@ -25,8 +25,8 @@ fn shown(design: &Design) -> Vec<(String, Vec<&Net>)> {
     shown
 }
 
-/// Returns the save file with which GTKWave shows a waveform of the design: `gtkwave FILE.vcd FILE.gtkw`. For example, it lists a
-/// net of the format `u1.20` with 20 fraction bits, as `[fpshift_count] 20`.
+/// Returns the save file with which GTKWave shows a waveform of the design: `gtkwave FILE.vcd FILE.gtkw`. For example, a net of
+/// the format `u1.20` gets the line `[fpshift_count] 20`, which states its 20 fraction bits.
 pub fn gtkwave(design: &Design) -> String {
     // With this zoom, a clock is about twenty pixels wide.
     let mut text = format!("*-17.000000 0\n@{BINARY:x}\n{}.clk\n", design.name);

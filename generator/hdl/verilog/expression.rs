@@ -16,7 +16,7 @@ use glint_base::fixed::mask;
 pub struct Constant {
     /// The name of the localparam in the Verilog.
     pub name: String,
-    /// The name in the description. A number that the description language has added at its end is removed.
+    /// The name in the description. If the description language generated the name, the number at its end is removed.
     base: String,
     /// The value of the constant as a bit pattern.
     pub bits: u64,
@@ -48,7 +48,7 @@ impl<'a> Expressions<'a> {
     }
 
     /// Returns the right-hand side of the assignment that drives a net, such as `a + b`. For a register, a ROM, an input, or a
-    /// mux of more than two inputs, it is the name of the net.
+    /// mux of more than two inputs, the function returns the name of the net.
     pub fn driver(&mut self, id: NetId) -> String {
         match &self.plan.design.net(id).driver {
             Driver::Op(op) => self.cell(id, op),

@@ -255,7 +255,7 @@ impl<'a> Builder<'a> {
     }
 
     /// Returns the labels of a case statement for the select values from 0 up to `count` − 1. The labels are localparams if the
-    /// select is a field of the control word, and otherwise numbers.
+    /// select is a field of the control word, and otherwise numbers. A value beyond the choices of the field is a number too.
     fn case_labels(&mut self, select: NetId, count: usize) -> Vec<String> {
         let design = self.plan.design;
         let width = design.width(select);
