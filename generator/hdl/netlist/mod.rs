@@ -183,7 +183,7 @@ pub struct NetlistRom {
     /// A comment for each word of the ROM, or an empty list.
     pub comments: Vec<String>,
     /// The number of the ROM in the block diagram of the document that describes the device. `None` if the diagram does not
-    /// number this block.
+    /// number the ROM.
     pub block: Option<u16>,
     /// The place in the Rust source where the device's description makes the ROM.
     pub location: SourceLocation,

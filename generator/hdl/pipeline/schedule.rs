@@ -286,8 +286,8 @@ impl<'a> ScheduleProblem<'a> {
     }
 
     /// Returns the schedule that reaches a clock period in nanoseconds. The schedule has as few stages as possible, and among all
-    /// such schedules the fewest register bits. If products share multipliers, Glint chooses the stages of these products first,
-    /// so that other stages may allow fewer stages or bits.
+    /// such schedules the fewest register bits. If products share multipliers, Glint chooses the stages of these products first.
+    /// The schedule may then have more stages or bits than necessary.
     ///
     /// # Errors
     /// Fails if an operation takes longer than the period, or if the solver fails.
