@@ -142,7 +142,8 @@ impl Format {
     }
 
     /// Converts `raw`, which has `from_frac` fraction bits, to a raw value of this format. For example, raw 6 with two fraction
-    /// bits is 1.5; in `u4.0` it becomes 1 if truncated, and 2 if rounded to the nearest.
+    /// bits is 1.5; in `u4.0` it becomes 1 if truncated, and 2 if rounded to the nearest. A result outside the range of the
+    /// format saturates or wraps, as `overflow` states.
     pub fn narrow(self, raw: i128, from_frac: i32, rounding: Rounding, overflow: Overflow) -> i128 {
         let shifted = rounding.shift(raw, from_frac - self.frac);
         match overflow {

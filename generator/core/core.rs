@@ -125,7 +125,8 @@ impl Core {
     }
 
     /// Returns the evidence for the contract's bound. `proofs` is the directory of records; a device whose bound is proved in the
-    /// catalogue needs no record.
+    /// catalogue needs no record. Without a record that proves the bound, the evidence is [`Backing::Author`], the statement of
+    /// the device's author.
     ///
     /// # Errors
     /// Fails if a record cannot be read, or does not fit the contract.

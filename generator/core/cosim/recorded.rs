@@ -31,7 +31,7 @@ impl RecordedInputs {
         Self { recording: Arc::clone(recording), next: 0 }
     }
 
-    /// Returns the inputs of the next clock.
+    /// Returns the inputs of the next clock. After the last recorded clock, the recording begins again.
     #[inline]
     pub(super) fn next(&mut self) -> &[u64] {
         let Recording { words, inputs } = &*self.recording;

@@ -107,8 +107,8 @@ impl Stream {
         }
     }
 
-    /// Continues the stream, from the present state of the device, with the given computations. Each is a list of raw operands
-    /// in the order of the contract.
+    /// Continues the stream, from the present state of the device, with the given computations. Each computation is a list of raw
+    /// operands in the order of the contract.
     pub(super) fn follow(&mut self, binding: &Binding, computations: &[Vec<i64>]) {
         let count = computations.len() as u64;
         self.course = Course::Combinations { first: 0, count };

@@ -24,7 +24,7 @@ const COMPUTATIONS: usize = 40;
 /// The largest length operand of a line among the sample computations.
 const SHORT: i64 = 9;
 
-/// The length of the longest line whose clocks are measured, counted from the shortest line.
+/// The number by which the largest length operand with a measured line exceeds the smallest length operand.
 const LONG: i64 = 1000;
 
 /// The number of points in a recording of a pipeline.

@@ -131,7 +131,8 @@ fn plain(port: &TopPort) -> String {
     format!("{} : {direction} {}", vhdl_name(&port.name), std_logic(port.width, port.vector))
 }
 
-/// Returns the VHDL type of a port. For example, `std_logic_vector(7 downto 0)` for 8 bits.
+/// Returns the VHDL type of a port of `width` bits: a vector such as `std_logic_vector(7 downto 0)` if `vector` is true, and
+/// otherwise `std_logic`.
 fn std_logic(width: u32, vector: bool) -> String {
     match vector {
         false => "std_logic".to_owned(),

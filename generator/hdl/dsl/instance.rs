@@ -295,8 +295,8 @@ impl<'d> InstanceBuilder<'d, '_> {
         Instance { designer: d, name: self.name.to_owned(), outputs: Some(outputs.collect()) }
     }
 
-    /// Returns the driver of a net in the surrounding design, given its driver in the part. Nets of registers and memories get
-    /// their drivers when the registers and memories are added.
+    /// Returns the driver of a net in the surrounding design, given its driver in the part (the instantiated design). Nets of
+    /// registers and memories get their drivers when the registers and memories are added.
     fn placed_driver(&self, driver: &Driver) -> Driver {
         match driver {
             Driver::Op(op) => Driver::Op(op.map(|id| self.nets[id])),

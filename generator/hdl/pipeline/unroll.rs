@@ -81,8 +81,9 @@ pub fn unroll(design: &Design) -> Result<Unrolled, Diagnostics> {
 }
 
 /// Unrolls the microprogram of a design as [`unroll`] does, but with fewer muxes for loops whose number of iterations depends on
-/// an operand. Such iterations become blocks of 8, 4, 2 and 1 iterations, each enabled by one bit of the number. The condition
-/// for this is that the iterations are alike and that a few bits determine their number.
+/// an operand. Such iterations become blocks of 8, 4, 2 and 1 iterations, each enabled by one bit of the number. A loop is
+/// unrolled as by [`unroll`] if it has at most four iterations or if its iterations are not alike. The same holds if the number
+/// of iterations depends on several values or on more than 6 bits.
 ///
 /// # Errors
 /// Fails if no bound of a loop is found because its condition depends on more than 16 bits, or if the computation takes more than
@@ -106,8 +107,9 @@ pub(super) fn unroll_for_pipeline(design: &Design) -> Result<Unrolled, Diagnosti
 enum Iterations {
     /// Each iteration is executed under the condition that all iterations up to it take place.
     OneByOne,
-    /// Blocks of 8, 4, 2 and 1 iterations are executed, each under one bit of the number of iterations. The condition for this is
-    /// that few bits determine the number and that the iterations are alike. Otherwise the loop is executed as with `OneByOne`.
+    /// Blocks of 8, 4, 2 and 1 iterations are executed, each under one bit of the number of iterations. A loop is executed as
+    /// with `OneByOne` if it has at most four iterations, if its iterations are not alike, or if more than 6 bits determine their
+    /// number.
     InPowers,
 }
 

@@ -134,7 +134,8 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Returns the nets that a reader, such as a cell or a register, reads in the Verilog.
+    /// Returns the nets that a reader, such as a cell or a register, reads in the Verilog. The read enable of a ROM, which only a
+    /// pipeline has, is left out.
     pub fn operands(&self, reader: Reader) -> Vec<NetId> {
         match reader {
             Reader::Cell(net) => match &self.design.net(net).driver {

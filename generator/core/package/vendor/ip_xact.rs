@@ -54,7 +54,7 @@ impl IpXactComponent<'_> {
         format!("{number:x}")
     }
 
-    /// Escapes a text for XML.
+    /// Returns `text` in ASCII, with the characters `&`, `<` and `>` escaped for XML.
     fn escaped(&self, text: &str) -> String {
         escaped(text)
     }
@@ -140,7 +140,7 @@ fn buses(top: &Top) -> Vec<BusInterface> {
     buses
 }
 
-/// Escapes a text for XML.
+/// Returns `text` in ASCII, with the characters `&`, `<` and `>` escaped for XML.
 fn escaped(text: &str) -> String {
     ascii(text).replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }

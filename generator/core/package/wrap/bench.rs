@@ -169,8 +169,8 @@ fn access(part: &PortBits, field: &StreamField, net: &str) -> BenchRegister {
     BenchRegister { at: address(part.place), word, mask: format!("32'h{:08x}", mask(part.width)) }
 }
 
-/// Returns the bus registers of the results. If the results share one register, the results are adjacent in this register, each
-/// in whole bytes, as in a stream.
+/// Returns the bus registers of the results. If several results share one register, the list has one entry, in which the results
+/// are adjacent, each in whole bytes, as in a stream.
 fn of_results(map: &Map, fields: &[StreamField]) -> Vec<BenchRegister> {
     if map.last() > map.last_operand() + 1 || fields.len() == 1 {
         return accesses(&map.results, fields, "result");
