@@ -107,7 +107,8 @@ pub struct Restore {
 }
 
 impl Restore {
-    /// Returns the raw result for the raw value `polynomial` of the polynomial.
+    /// Returns the raw result for the raw value `polynomial` of the polynomial, by the steps in the fields of [`Restore`]. For
+    /// example, with an addend of 3 and a shift by 1 without a centre, 10 gives 7.
     pub fn result(self, polynomial: i64) -> i64 {
         if self.zero {
             return 0;

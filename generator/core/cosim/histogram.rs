@@ -21,7 +21,8 @@ pub struct Histogram {
 }
 
 impl Histogram {
-    /// Adds a result with the raw word `f` in the format `format`.
+    /// Counts a result whose reflectance has the raw value `f` in the format `format`, in the class of this reflectance. A
+    /// negative value counts as 0.
     pub(super) fn add(&mut self, format: Format, f: i64) {
         // The largest word below 1.0 is as much as a fraction without integer bits can be.
         let class = if f <= 0 {
@@ -35,7 +36,7 @@ impl Histogram {
         self.counts[class] += 1;
     }
 
-    /// Adds a result whose operands are outside the domain.
+    /// Counts a result whose operands are outside the domain, in the class `outside`.
     pub(super) fn add_outside(&mut self) {
         self.counts[CLASSES.len() - 1] += 1;
     }

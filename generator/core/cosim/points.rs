@@ -95,8 +95,8 @@ impl<'a> PointSource<'a> {
         held.for_each(|operand| operand.domain = (raw, raw));
     }
 
-    /// Limits the length operand of randomly drawn lines to `most`. A line is a row of points that the device computes after one
-    /// `start`. The function does nothing if the device computes no lines.
+    /// Limits the length operand of randomly drawn lines to `most`, or to the smallest length if `most` is less. A line is a row
+    /// of points that the device computes after one `start`. The function does nothing if the device computes no lines.
     pub fn shorten(&mut self, most: i64) {
         if let Some(at) = self.length {
             let (low, high) = self.operands[at].domain;

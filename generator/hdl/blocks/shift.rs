@@ -55,7 +55,8 @@ pub fn normalise_by_pairs<'d>(d: &'d Designer, name: &str, x: Signal<'d>) -> Nor
 }
 
 /// Shifts `x` to the left by multiples of `least` places until one of its `least` top bits is 1. `least` must be a power of two.
-/// The number of places is in units of `least`.
+/// Returns the shifted bits and the number of places, in units of `least`. If `x` is 0, all bits of the number are 1. A signal of
+/// at most `least` bits is not shifted, and the number is 0.
 #[track_caller]
 fn normalise_in_steps<'d>(
     d: &'d Designer,

@@ -188,7 +188,8 @@ impl<'d> SharedProduct<'d> {
 
     /// Returns the product of any of the `pairs`, in one format that can represent all of these products. For example, a register
     /// that loads a different product in each of several microinstructions loads this signal. Reports a mistake if the products
-    /// have different binary points, or if a pair is never multiplied.
+    /// have different binary points, or if a pair is never multiplied. Without any multiplied pair, returns the output of the
+    /// multiplier unchanged.
     #[track_caller]
     pub fn of_any(&self, pairs: &[(Signal<'d>, Signal<'d>)]) -> Signal<'d> {
         let d = self.out.designer();

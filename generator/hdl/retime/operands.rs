@@ -179,8 +179,8 @@ impl<'a> Steady<'a> {
     }
 
     /// Returns the pair of limits with the shortest longest path, and among several the fewest register bits. The function tries
-    /// all pairs if there are few. Otherwise it tries pairs that are evenly spread, and then again pairs between the
-    /// neighbours of the best one.
+    /// all pairs if there are few. Otherwise the function tries pairs that are evenly spread, and then again pairs between the
+    /// neighbours of the best pair, so that it may miss a better pair.
     fn best(&self) -> CutPlaces {
         let mut windows = [(0, self.places.len() - 1); 2];
         loop {
@@ -209,7 +209,7 @@ impl<'a> Steady<'a> {
         }
     }
 
-    /// Returns the limits at two positions in `self.places`.
+    /// Returns the two limits at the positions `first` and `second` in `self.places`, and 0 as the third entry.
     fn at(&self, [first, second]: [usize; 2]) -> CutPlaces {
         [self.places[first], self.places[second], 0]
     }
@@ -255,8 +255,8 @@ impl<'a> Steady<'a> {
         (longest, bits)
     }
 
-    /// Returns the nets behind which registers are inserted. Each has a list of the readers that take the output of the register
-    /// instead of the net, because they compute in a later clock.
+    /// Returns the nets behind which registers are inserted. Each net has a list of the readers that take the output of the
+    /// register instead of the net, because they compute in a later clock.
     fn cut(&self, places: CutPlaces) -> BTreeMap<NetId, Vec<OperandReader>> {
         let cells = self.cells.iter().flat_map(|cell| {
             let own = self.thresholds[cell.net.index()];

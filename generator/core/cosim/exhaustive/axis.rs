@@ -51,7 +51,7 @@ impl FromStr for AxisValues {
 }
 
 /// Parses first value, last value and step from `5`, `0..1000` or `0..1000/10`. For example, `0..1000/10` gives (0, 1000, 10),
-/// and `5` gives (5, 5, 1). Returns `None` if a part is no integer, or if the step is 0.
+/// and `5` gives (5, 5, 1). Returns `None` if a part is no integer, or if the step is not at least 1.
 fn range(item: &str) -> Option<(i64, i64, usize)> {
     let Some((first, rest)) = item.split_once("..") else {
         let value = item.parse().ok()?;
