@@ -97,7 +97,8 @@ impl TableEntry {
         }
     }
 
-    /// Returns the number in a field. Returns `None` if the user did not give the field, or if it is no number.
+    /// Returns the number in a field. Returns `None` if the user did not give the field, or if the value of the field is no
+    /// number.
     pub fn number(&self, name: &str) -> Option<f64> {
         match self.field(name)? {
             Value::Number(value) => Some(*value),

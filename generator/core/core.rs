@@ -265,7 +265,8 @@ impl Core {
     }
 
     /// Returns the same as [`Core::shipped_vectors`], but avoids a repeated search. If the cache `known` has the computations
-    /// that were chosen for this design, the function takes them from the cache. Otherwise it adds them to the cache.
+    /// that were chosen for this design, the function takes them from the cache. Otherwise the function searches for the
+    /// computations and adds them to the cache.
     ///
     /// # Errors
     /// Fails as [`Core::vectors`] does.

@@ -94,8 +94,8 @@ impl Keys {
         Format::unsigned(1, self.decay_fraction as i32)
     }
 
-    /// Returns the number of integer bits of the complete decay. In `blinn` the integer also counts the doublings of the
-    /// cosine: for 20 fraction bits of the cosine it has 6 bits. In `gauss` it has 1 bit.
+    /// Returns the number of integer bits of the complete decay. In `blinn` the integer also counts the doublings of the cosine:
+    /// for 20 fraction bits of the cosine, the integer has 6 bits. In `gauss` the integer has 1 bit.
     fn whole_bits(&self, decay: Decay) -> u32 {
         let octave = (self.operands.cosine.fraction - 1).ilog2() + 1;
         1 + octave * decay.known()

@@ -45,8 +45,8 @@ fn touching(n: f64, x: f64) -> f64 {
 
 /// Returns the error of the parabola with the coefficient `a` at its zero, which is the value of cⁿ at this zero. This is the
 /// largest error below cⁿ, and for the coefficients of [`taylor`] and [`minimax`] the largest error of all. Returns 0 for n ≤ 2,
-/// where these coefficients make no error for n = 1 and n = 2. Returns 0 for a ≤ 1 too, because the zero is then not within 0 < c
-/// < 1.
+/// because these coefficients make no error for n = 1 and n = 2. Returns 0 for a ≤ 1 too, because the zero is then not within 0 <
+/// c < 1.
 pub fn error(a: f64, n: u32) -> f64 {
     if n <= 2 || a <= 1.0 { 0.0 } else { libm::exp(f64::from(n) * libm::log1p(-1.0 / a)) }
 }

@@ -353,8 +353,8 @@ impl Designer {
 
     /// Makes `valid` follow the one-bit `signal` with a delay of `clocks` clocks.
     ///
-    /// This serves a datapath with registers between the operation that a microinstruction starts and the outputs, so that a
-    /// result may come in every clock. No microinstruction may raise [`valid`] in this case. The microprogram must end with
+    /// This method serves a datapath with registers between the operation that a microinstruction starts and the outputs, so that
+    /// a result may come in every clock. No microinstruction may raise [`valid`] in this case. The microprogram must end with
     /// enough microinstructions that the device is busy until the last result is on the outputs. A reset drops the results on
     /// their way. Reports a mistake if `signal` has several bits, or if `valid` already follows a signal.
     #[track_caller]

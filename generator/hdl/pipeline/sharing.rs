@@ -42,7 +42,8 @@ fn factors(graph: &Graph, id: NodeId) -> Option<[NodeId; 2]> {
 }
 
 /// Returns the products among the nodes `live` for which synthesis uses multipliers of the target. The function leaves out narrow
-/// products, which become look-up tables. For example, a product of 5 by 5 bits is left out on iCE40.
+/// products, which become look-up tables. For example, a product of 5 by 5 bits is left out on iCE40. For the generic target, the
+/// function leaves out no product.
 pub fn products(graph: &Graph, target: &Timing, live: &[NodeId]) -> Vec<NodeId> {
     let least = match FAMILIES.iter().find(|family| family.name() == target.name) {
         Some(family) => family.estimate.least_product,

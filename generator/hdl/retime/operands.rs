@@ -9,9 +9,9 @@ use std::collections::{BTreeMap, BTreeSet, HashSet};
 use super::first_use::needed;
 use crate::netlist::{Design, Driver, Net, NetId, Op, RegId, RegisterKind, Sequence};
 
-/// Inserts registers, named `<name>_held`, into steady logic so that the longest path from an operand becomes as short as
-/// possible. Among positions with an equally short path, the function chooses nets with the fewest bits. At most two registers
-/// lie on a path.
+/// Inserts registers, named `<name>_held`, into steady logic so that the longest path from an operand becomes as short as the
+/// search finds. Among positions with an equally short path, the function chooses nets with the fewest bits. At most two
+/// registers lie on a path.
 ///
 /// A device that waits for `start` in the middle of its microprogram is not changed, because its operands may change there.
 pub fn register_held(design: &mut Design) {

@@ -505,8 +505,8 @@ impl<'a> Builder<'a> {
     }
 }
 
-/// Returns an assignment for each word of a ROM, such as `rom[3] = 8'h1f;`. `place` returns its left side, from the number of the
-/// word and the width of this number in bits.
+/// Returns an assignment for each word of a ROM, such as `rom[3] = 8'h1f;`. `place` returns the left side of the assignment, from
+/// the number of the word and the width of this number in bits.
 fn words(
     design: &Design,
     id: RomId,
