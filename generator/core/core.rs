@@ -21,7 +21,7 @@ use glint_golden::{Contract, Sweep};
 use glint_rtl::netlist::Design;
 
 /// The number of results that the default test of a configuration checks, in `glint` without a command and in `glint cosim`. An
-/// option of the command can change it.
+/// option of the command can change this number.
 pub const TEST_POINTS: u64 = 100_000;
 
 /// The seed of the random inputs of the default test.

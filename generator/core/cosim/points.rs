@@ -47,7 +47,8 @@ static POWERS: LazyLock<[f64; PARTS]> =
 /// A value of the formula between its ends 0 and 1, at which errors show.
 const MIDDLE: f64 = 0.6;
 
-/// The largest number of halvings of the way in the search for operands at which the formula is below its peak.
+/// The largest number of times that the search halves the distance of operands from the peak, to find operands at which the
+/// formula is below its peak.
 const OCTAVES: u32 = 32;
 
 /// The number of random values of the other operands with which the peak is searched, and the largest number of operands that
@@ -294,9 +295,9 @@ impl<'a> PointSource<'a> {
         }
     }
 
-    /// Returns the way from the peak to the control operands `far`. If the formula is as large there as at the peak, the way ends
-    /// earlier, at a point where the formula is smaller. Returns `None` if there is no such point, or if the device is no
-    /// highlight.
+    /// Returns the straight line from the peak (the operands with the largest `f`) to the control operands `far`. If the formula
+    /// is as large at `far` as at the peak, the line ends earlier, at a point where the formula is smaller. Returns `None` if
+    /// there is no such point, or if the device is no highlight.
     fn way(&self, far: &[i64]) -> Option<Way> {
         let highlight = self.highlight?;
         let peak = self.peak(highlight, far);
@@ -377,7 +378,8 @@ pub(super) fn length(contract: &dyn Contract) -> Option<usize> {
     contract.operands().iter().position(|operand| Some(operand.name.as_str()) == length)
 }
 
-/// A straight way in the space of control operands, from the peak to a point where the formula is smaller.
+/// A straight line in the space of control operands, from the peak (the operands with the largest `f`) to a point where the
+/// formula is smaller.
 struct Way {
     peak: Vec<i64>,
     far: Vec<i64>,
@@ -387,7 +389,7 @@ struct Way {
 }
 
 impl Way {
-    /// Sets `operands` to the point on the way at `scale`: 0 is the peak, and 1 is the far end.
+    /// Sets `operands` to the point on the straight line at `scale`: 0 is the peak, and 1 is the far end.
     #[inline]
     fn go(&self, scale: f64, operands: &mut [i64]) {
         let ends = self.peak.iter().zip(&self.far);

@@ -88,7 +88,7 @@ struct Steady<'a> {
     design: &'a Design,
     /// All cells, each after the cells on which it depends within a clock.
     cells: Vec<OperandCell>,
-    /// The thresholds of each net, which determine the clock in which it is computed.
+    /// The thresholds of each net, which determine the clock in which the net is computed.
     thresholds: Vec<Thresholds>,
     /// For each net, whether a register may follow it: the net is steady, and more than wiring lies between it and the operand
     /// registers.

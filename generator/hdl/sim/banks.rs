@@ -85,7 +85,7 @@ struct BankSplitter<'a> {
     is_wide: Vec<bool>,
     narrow: Bank,
     wide: Bank,
-    /// For each slot of the compiler, its slot in the narrow bank (32 bits); `None` as long as it has none.
+    /// For each slot of the compiler, its slot in the narrow bank (32 bits); `None` as long as the value has no narrow slot.
     narrow_of: Vec<Option<Slot>>,
     wide_of: Vec<Option<Slot>>,
     steps: Vec<(Sources, SettlingStep)>,

@@ -59,8 +59,8 @@ pub struct Plan<'a> {
     pub reset: Option<NetId>,
     /// The delay lines of a pipeline that the Verilog writes as memories.
     pub delays: Vec<DelayLine>,
-    /// The nets that repeat the value of an earlier net, with the same name without the stage. Only the first declaration of a
-    /// value gets the comment.
+    /// The nets that repeat the value of an earlier net: the names of both nets differ only in the stage. Only the first
+    /// declaration of a value gets the comment.
     repeats: HashSet<NetId>,
 }
 

@@ -26,9 +26,9 @@ const SAME: f64 = 1e-9;
 pub enum Backing {
     /// The bound is proved by Rust code in the golden model of a device of the catalogue.
     Catalogue,
-    /// The record of an exhaustive check of every combination of operands shows the bound.
+    /// The record of an exhaustive check of every combination of operands proves the bound. The text is the path of the record.
     Exhaustive(String),
-    /// The record of statements that the prover Gappa accepted shows the bound.
+    /// The record of statements that the prover Gappa accepted proves the bound. The text is the path of the record.
     Certificate(String),
     /// Only the author of the contract states the bound; no proof is known.
     Author,

@@ -22,7 +22,7 @@ struct PlatformInterface<'a> {
     kind: &'static str,
     /// The side of the interface, as Platform Designer names it: `end` receives, `start` sends.
     side: &'static str,
-    /// The port and its role.
+    /// The ports of the interface, each with its role in the protocol.
     ports: Vec<(&'a TopPort, String)>,
 }
 
