@@ -3,7 +3,8 @@
 //! For example, a device can compute 1/√x for x from 1 to 4 with such a polynomial. The domain is divided into [`Segments`]; a
 //! table has the polynomial's coefficients for each segment, and the hardware evaluates the polynomial in integers by Horner's
 //! rule. [`find`] chooses the degree, the segments, the coefficients and the bit widths. [`Piecewise::prove`] then compares the
-//! result of every operand with the formula, or uses intervals if there are more than 2^[`MOST_BITS`] operands.
+//! result of every operand with the formula or the curve. For more than 2^[`MOST_BITS`] operands of a formula, the proof uses
+//! intervals; so many operands of a curve through samples are an error.
 
 mod minimax;
 mod reduction;
@@ -47,7 +48,8 @@ pub const FULL_CELL: usize = 16;
 /// 2^5.
 const SMALL_PART: u32 = 5;
 
-/// A proof computes the operands of a domain one by one if there are at most 2^26. A larger domain is proved by intervals.
+/// A proof computes the operands of a domain one by one if there are at most 2 to this power. The proof for a larger domain uses
+/// intervals.
 pub const MOST_BITS: u32 = 26;
 
 glint_config::choices! {
@@ -97,7 +99,8 @@ pub struct TargetFunction {
 pub struct Refusal {
     /// The configuration key that the user should change, for example `function.formula`.
     pub key: &'static str,
-    /// The range of bytes in the formula's text to which the reason applies, or `None` if it applies to no particular part.
+    /// The range of bytes in the formula's text to which the reason applies, or `None` if the reason applies to no particular
+    /// part.
     pub place: Option<Range<usize>>,
     /// The reason why no approximation was found, as text for the user.
     pub message: String,
@@ -158,7 +161,7 @@ pub struct Piecewise {
     /// less than there are coefficients.
     pub steps: Vec<HornerStep>,
     /// The formats of the partial sums of Horner's rule. Entry k is the format of the sum that includes coefficient k and all
-    /// higher ones. Entry 0 is the format of the polynomial's value.
+    /// higher coefficients. Entry 0 is the format of the polynomial's value.
     pub sums: Vec<Format>,
     /// The format of the result. Without a range reduction, it is the format of the polynomial's value.
     pub result: Format,
@@ -184,7 +187,8 @@ impl TargetFunction {
     /// fails, the formula is evaluated again with more bits.
     ///
     /// # Errors
-    /// Fails if the formula has no value at this operand, for example 1/x at 0. The error names the part of the formula.
+    /// Fails if the formula has no value at this operand, for example 1/x at 0, or if 1024 bits do not decide a comparison or a
+    /// jump of the formula. The error has the part of the formula. A curve through samples never fails.
     pub fn limits(&self, raw: i64) -> Result<Enclosure, Fault> {
         let unit = exp2(self.fraction as i32);
         let Enclosure { low, high } = match &self.curve {
@@ -212,9 +216,9 @@ impl TargetFunction {
         RBig::from(raw) * scale
     }
 
-    /// Returns two neighbouring operands, as real numbers, between which the formula has a pole or comes too near to one for
-    /// interval arithmetic to exclude it. Returns `None` if there are no such operands, if the function is a curve through
-    /// samples, or if 65536 intervals do not suffice for the search.
+    /// Returns two neighbouring operands, as real numbers, between which the formula has a pole, or comes so near to a pole that
+    /// interval arithmetic cannot exclude the pole. Returns `None` if there are no such operands, if the function is a curve
+    /// through samples, or if 65536 intervals do not suffice for the search.
     pub fn pole(&self) -> Option<(f64, f64)> {
         let Curve::Formula(formula) = &self.curve else { return None };
         let mut open = vec![self.domain];
@@ -235,7 +239,7 @@ impl TargetFunction {
         None
     }
 
-    /// Returns whether the domain has more than 2^[`MOST_BITS`] operands, too many for a proof that computes each.
+    /// Returns whether the domain has more than 2^[`MOST_BITS`] operands, too many for a proof that computes every operand.
     pub fn is_wide(&self) -> bool {
         self.domain.1.abs_diff(self.domain.0) >> MOST_BITS != 0
     }
@@ -262,9 +266,9 @@ impl TargetFunction {
     }
 
     /// Returns the numbering in which the last segment also contains the operands beyond a power of two, the overhang. For
-    /// example, the domain of raw operands 0 to 1024 gets numbers of 10 bits and an overhang of 1. Returns `None` if the
-    /// overhang has more than 1/32 of the operands, or if the results outside the domain are specified. The layout `Halving`
-    /// also gives `None`, because its last segment is too short.
+    /// example, the domain of raw operands 0 to 1024 gets numbers of 10 bits and an overhang of 1. Returns `None` if the overhang
+    /// has more than 1/32 of the operands, if the domain has a single operand, or if the results outside the domain are specified
+    /// (`Clamp` or `Wrap`). The layout `Halving` also gives `None`, because its last segment is too short.
     fn numbering_with_overhang(&self, layout: Option<Layout>) -> Option<Numbering> {
         let span = (self.domain.1 - self.domain.0) as u64;
         let bits = u64::BITS - span.leading_zeros();
@@ -359,14 +363,15 @@ impl Piecewise {
         sums
     }
 
-    /// Returns the raw result that the hardware computes for a raw operand.
+    /// Returns the raw result that the hardware computes for a raw operand of the domain. The function does not apply `outside`:
+    /// the caller must first clamp or wrap an operand outside the domain.
     pub fn result(&self, raw: i64) -> i64 {
         self.restored(raw, self.sums_of(raw)[0])
     }
 
     /// Returns the polynomial without the range reduction, as a function of the number that the reduction computes. Without a
-    /// range reduction, returns a copy. With one, the bound of the copy is infinite, because only the whole function has a
-    /// proof.
+    /// range reduction, returns a copy. With a range reduction, the bound of the returned polynomial is infinite, because only
+    /// the whole function has a proof.
     pub fn behind_reduction(&self) -> Self {
         let Some(reduction) = &self.reduction else { return self.clone() };
         Self {
@@ -380,8 +385,8 @@ impl Piecewise {
         }
     }
 
-    /// Returns the raw result for the raw operand `raw`, where `polynomial` is the raw value of the polynomial. The result is
-    /// that value if there is no range reduction.
+    /// Returns the raw result for the raw operand `raw`, where `polynomial` is the raw value of the polynomial. Without a range
+    /// reduction, the result is `polynomial` itself.
     pub fn restored(&self, raw: i64, polynomial: i64) -> i64 {
         self.reduced(raw).1.result(polynomial)
     }
@@ -393,8 +398,8 @@ impl Piecewise {
         self.words.len() as u64 * u64::from(width)
     }
 
-    /// Returns the number of look-up tables with four inputs that store the table. A table with fewer than 16 words counts as
-    /// one with 16.
+    /// Returns the number of look-up tables with four inputs that store the table. A table with fewer than 16 words counts as a
+    /// table with 16 words.
     pub fn rom_cells(&self) -> f64 {
         let width: u32 = self.coefficients.iter().map(|format| format.width()).sum();
         table::cells(self.words.len().max(FULL_CELL), width)
@@ -419,8 +424,8 @@ impl Piecewise {
     /// Returns the largest possible error of the result at a raw operand, in units of the result's last bit.
     ///
     /// # Errors
-    /// Fails if a sum does not fit its format, if the error is not below the allowed one, or if the function has no value
-    /// there.
+    /// Fails if a sum does not fit its format, if the error is not below the allowed error, or if the function has no value at
+    /// the operand.
     fn error_at(&self, function: &TargetFunction, raw: i64) -> Result<f64, Refusal> {
         let sums = self.sums_of(raw);
         let result = self.restored(raw, sums[0]);

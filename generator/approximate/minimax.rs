@@ -5,13 +5,13 @@
 const MOST: usize = 4;
 
 /// The largest number of exchanges of a reference point. The search ends earlier if the largest error equals the error at the
-/// reference points.
+/// reference points, or lies at a reference point.
 const EXCHANGES: usize = 30;
 
 /// Returns the polynomial of degree `degree` with the smallest largest distance from `values` at the points `at`, and this
-/// distance. The coefficients start with the constant; unused ones are 0. The points must be in rising order, and the degree
-/// may be at most 3. If there are not more points than coefficients, the polynomial passes through all points, with a lower
-/// degree if necessary, and the distance is 0.
+/// distance. The coefficients start with the constant; unused coefficients are 0. The points must be in rising order, and the
+/// degree must be at most 3. If there are not more points than coefficients, the polynomial passes through all points, with a
+/// lower degree if necessary, and the distance is 0.
 pub fn minimax(at: &[f64], values: &[f64], degree: usize) -> ([f64; MOST], f64) {
     let count = degree.min(at.len().saturating_sub(1)) + 1;
     if at.len() <= count {
@@ -72,8 +72,9 @@ fn exchange(reference: &mut Vec<usize>, worst: usize, error: &dyn Fn(usize) -> f
     }
 }
 
-/// Returns the polynomial for the reference points, given by their indices, and a height. With `levelled`, the polynomial
-/// misses each value by the same height, with alternating signs. Otherwise it passes through all values, and the height is 0.
+/// Returns the polynomial for the reference points, given by their indices, and a height. With `levelled`, the polynomial misses
+/// each value by the same height, with alternating signs. Otherwise the polynomial passes through all values, and the height is
+/// 0.
 fn level(at: &[f64], values: &[f64], reference: &[usize], levelled: bool) -> ([f64; MOST], f64) {
     let count = reference.len();
     let columns = if levelled { count - 1 } else { count };

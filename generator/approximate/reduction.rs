@@ -11,8 +11,8 @@ use glint_formula::Function::Log2;
 use glint_formula::{Enclosure, Expression, Kind, RBig, parse};
 
 glint_config::choices! {
-    /// The identity by which a range reduction obtains the values of a function f on a large domain from values on a short one.
-    /// For example, `Even` computes f(−3) as f(3).
+    /// The identity by which a range reduction obtains the values of a function f on a large domain from values on a short
+    /// domain. For example, `Even` computes f(−3) as f(3).
     #[derive(Default, Hash)]
     pub enum Identity {
         /// No identity: the polynomial covers the whole domain.
@@ -38,7 +38,7 @@ impl Identity {
     }
 }
 
-/// A range reduction: it maps an operand of the large domain to a number with `bits` bits, at which the polynomial is
+/// A range reduction, which maps an operand of the large domain to a number with `bits` bits, at which the polynomial is
 /// evaluated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reduction {
@@ -57,15 +57,18 @@ pub struct Reduction {
 /// The rule by which a range reduction maps a raw operand x to a number.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Rule {
-    /// The number is |x|, or the largest possible number if |x| exceeds it. The field is `None` for an even function. For an
-    /// odd function f it is 2·f(0), from which the result of a negative operand is subtracted.
+    /// The number is |x|, but at most the largest number of [`Reduction::bits`] bits. The field is `None` for an even function.
+    /// For an odd function f, the field is 2·f(0) in units of the result's last bit, from which the result of a negative operand
+    /// is subtracted.
     Size(Option<i64>),
-    /// The number is the distance from the nearest zero of a sine, after x is increased by the given number of quadrants. For
-    /// example, a cosine has 1 here.
+    /// The number is the distance from the nearest zero of a sine, after x is increased by the given number of quadrants. At a
+    /// peak of the sine, the number is one less than this distance, so that the number fits its bits. For example, a cosine has 1
+    /// quadrant here.
     Quadrants(u32),
     /// The number consists of the bits behind the leading 1 bit of x. If octaves come in pairs, an additional leading bit tells
-    /// the two octaves apart. For example, without pairs, the raw operand 5 with 8 bits is 00000101. It has five leading zeros,
-    /// and the bits 01 behind its leading 1 give the number 0100000, or 32.
+    /// the two octaves apart. For example, without pairs, the raw operand 5 with 8 bits is 00000101. This operand has five
+    /// leading zeros, and the bits 01 behind its leading 1 give the number 0100000, or 32. The operand 0 has no leading 1; its
+    /// number and its result are 0.
     Octaves {
         /// The number of bits of the operand.
         width: u32,
@@ -104,7 +107,8 @@ pub struct Restore {
 }
 
 impl Restore {
-    /// Returns the raw result for the raw value `polynomial` of the polynomial.
+    /// Returns the raw result for the raw value `polynomial` of the polynomial, by the steps in the fields of [`Restore`]. For
+    /// example, with an addend of 3 and a shift by 1 without a centre, 10 gives 7.
     pub fn result(self, polynomial: i64) -> i64 {
         if self.zero {
             return 0;
@@ -115,7 +119,8 @@ impl Restore {
     }
 
     /// Returns the smallest and the largest raw value of the polynomial whose result is in the range from `low` to `high`, both
-    /// included. If the result is always 0, the range is −2^60 to 2^60.
+    /// included. If the result is always 0, the range is −2^60 to 2^60. If no value of the polynomial has such a result, the
+    /// smallest value exceeds the largest.
     pub(super) fn polynomials(self, (low, high): (i64, i64)) -> (i64, i64) {
         const MOST: i128 = 1 << 60;
         if self.zero {
@@ -169,7 +174,7 @@ impl Reduction {
     }
 
     /// Returns the number of bits by which the hardware shifts the polynomial's value to the right for the raw operand `raw`,
-    /// without the guard bits. The shift follows from the integer part of the operand's exponent. It is 0 if the rule is not
+    /// without the guard bits. The shift follows from the integer part of the operand's exponent. Returns 0 if the rule is not
     /// `Exponent`.
     pub fn places(&self, raw: i64) -> u32 {
         match self.rule {
@@ -180,13 +185,14 @@ impl Reduction {
         }
     }
 
-    /// Returns the range reduction of `function` by `identity`, and the function that its polynomial approximates. `guard` is
-    /// the number of additional fraction bits of the polynomial. `wider` concerns `Odd` and `Even`: with it, the largest |x|
-    /// has a number of its own; without it, the largest |x| may share the next lower number.
+    /// Returns the range reduction of `function` by `identity`, and the function that its polynomial approximates. `guard` is the
+    /// number of additional fraction bits of the polynomial. `wider` concerns `Odd` and `Even`: if true, the largest |x| has its
+    /// own number; if false, the largest |x| may share the next lower number.
     ///
     /// # Errors
-    /// Fails if the function is a curve through samples, if the identity is `None`, if the identity does not hold at a few test
-    /// points, or if the domain does not suit the identity. Also fails if a number would have no bits or more than [`MOST`].
+    /// Fails if the function is a curve through samples, or if the identity is `None`. Fails if the function has no value at one
+    /// of a few test points, if the identity does not hold there, or if the domain does not suit the identity. Also fails if a
+    /// number would have no bits or more than [`MOST`] bits.
     pub(super) fn of(
         identity: Identity,
         function: &TargetFunction,
@@ -239,7 +245,7 @@ fn exponent(scale: Option<(i64, u32)>, raw: i64) -> i64 {
 /// The configuration key of range reductions.
 pub(super) const KEY: &str = "approximation.reduction";
 
-/// A shift to the right by this number of bits leaves nothing of a polynomial's value. Larger shifts are limited to it.
+/// A shift to the right by this number of bits leaves nothing of a polynomial's value. Larger shifts are limited to this number.
 const NOTHING: u32 = 64;
 
 /// The largest number of bits to which an operand may be reduced.
@@ -261,7 +267,7 @@ fn near(a: f64, b: f64) -> bool {
     (a - b).abs() <= EQUAL * a.abs().max(b.abs()).max(1e-3)
 }
 
-/// Returns whether all values are near the first one. The list may not be empty.
+/// Returns whether all values are near the first value. The list must not be empty.
 fn all_near(values: &[f64]) -> bool {
     values.iter().all(|&value| near(value, values[0]))
 }
@@ -297,6 +303,9 @@ impl Whole<'_> {
     }
 
     /// Returns the binary logarithm of the formula's value at `x`. The value itself may be beyond the range of `f64`.
+    ///
+    /// # Errors
+    /// Fails if the formula has no value or no logarithm at `x`.
     fn logarithm_at(&self, x: f64) -> Result<f64, Refusal> {
         let kind = Kind::Unary(Log2, Box::new(self.formula.clone()));
         self.value_of(&Expression::new(kind, self.formula.span.clone()), x)

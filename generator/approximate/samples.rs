@@ -9,7 +9,8 @@ use super::Refusal;
 use glint_base::fixed::exp2;
 use glint_formula::{Enclosure, Expression, parse};
 
-/// The largest ratio of a step between two samples to the longer one of the two neighbouring steps. A longer step is a gap.
+/// The largest ratio of a step between two samples to the longer of the two neighbouring steps. A step with a larger ratio is a
+/// gap, which is an error.
 const GAP: i64 = 4;
 
 /// The configuration key that states the samples.
@@ -170,16 +171,17 @@ fn slopes(points: &[(i64, Enclosure)]) -> Vec<f64> {
     slopes
 }
 
-/// Returns the slope of Steffen's curve at the point between two chords. It is 0 if the chords do not both rise or both fall.
+/// Returns the slope of Steffen's curve at the point between two chords. The slope is 0 if the chords do not both rise or both
+/// fall.
 fn inner_slope((h, s): Chord, (k, t): Chord) -> f64 {
     let parabola = (s * k + t * h) / (h + k);
     let least = s.abs().min(t.abs()).min(parabola.abs() / 2.0);
     if s * t > 0.0 { 2.0 * least.copysign(s) } else { 0.0 }
 }
 
-/// Returns the slope of Steffen's curve at an end, whose chord is `(h, s)`. `beside` is the neighbouring chord, or `None` if
-/// there is only one chord; the slope then is the chord's. Otherwise it is the slope of the parabola through the three points
-/// at this end, limited to the range from 0 to twice the chord's slope.
+/// Returns the slope of Steffen's curve at an end, whose chord is `(h, s)`. `beside` is the neighbouring chord. If `beside` is
+/// `None`, there is only one chord, and its slope is the result. Otherwise the result is the slope of the parabola through the
+/// three points at this end, limited to the range from 0 to twice the chord's slope.
 fn end_slope((h, s): Chord, beside: Option<Chord>) -> f64 {
     let parabola = beside.map_or(s, |(k, t)| s + (s - t) * h / (h + k));
     if parabola * s <= 0.0 { 0.0 } else { parabola.abs().min(2.0 * s.abs()).copysign(s) }

@@ -20,7 +20,7 @@ pub struct Wish {
     /// The identity that the range reduction uses, for example f(−x) = f(x), or `Identity::None`.
     pub identity: Identity,
     /// The smallest number of words with which a table enters the cost. For example, a look-up table with four inputs stores 16
-    /// words of a bit, so a table of 5 words may cost as much as one of 16.
+    /// words of a bit, so a table of 5 words may cost as much as a table of 16 words.
     pub least_words: usize,
 }
 
@@ -37,7 +37,7 @@ const CHOOSING: usize = 1 << 16;
 /// operands.
 const WIDENING: usize = 1 << 20;
 
-/// The largest number of bits by which the operands of a domain may differ.
+/// The first and the last raw operand of a domain must differ by less than 2 to this power.
 const WIDEST: u32 = 46;
 
 /// The margins that the search subtracts from the allowed error if it does not evaluate every operand. A margin is a
@@ -51,16 +51,17 @@ const STEP: f64 = 50.0;
 /// The cost of an octave, in look-up tables: one more row of multiplexers in the shifter that aligns the offsets.
 const OCTAVE: f64 = 12.0;
 
-/// The errors to try if the allowed error cannot be reached, in units of the result's last bit. The message names the smallest
-/// one that can be reached.
+/// The errors to try if the allowed error cannot be reached, in units of the result's last bit. The message names the smallest of
+/// these errors that can be reached, if there is one.
 const NEAREST: [f64; 14] =
     [0.51, 0.55, 0.6, 0.7, 0.8, 0.9, 1.0, 1.5, 2.0, 4.0, 8.0, 16.0, 64.0, 256.0];
 
 /// Finds the cheapest approximation of `function` under the choices `wish`, and proves its error bound.
 ///
 /// # Errors
-/// Fails if the operands of the domain differ by 2^46 or more, if there are more than 2^26 operands of samples, or if no
-/// approximation with the allowed error is found and proved. The error names a key and a remedy.
+/// Fails if the operands of the domain differ by 2^46 or more, or if there are more than 2^26 operands of samples. Fails if the
+/// function has no value at an operand, or if the identity of `wish` does not hold. Fails if no approximation with the allowed
+/// error is found and proved. The error names a key and a remedy.
 pub(super) fn search(function: &TargetFunction, wish: Wish) -> Result<Piecewise, Refusal> {
     let span = function.domain.1.abs_diff(function.domain.0);
     if span >> WIDEST != 0 {
@@ -105,7 +106,8 @@ pub(super) fn search(function: &TargetFunction, wish: Wish) -> Result<Piecewise,
 /// Returns the cheapest approximation with a proved bound, or `None` if the search finds none.
 ///
 /// # Errors
-/// Fails if the function has no value at an operand, or if a found approximation cannot be proved.
+/// Fails if the function has no value at an operand, if a found approximation cannot be proved, or as [`attempt_reduced`] does if
+/// `wish` has an identity.
 fn attempt(function: &TargetFunction, wish: Wish) -> Result<Option<Piecewise>, Refusal> {
     if wish.identity != Identity::None {
         return attempt_reduced(function, wish);
@@ -158,8 +160,8 @@ fn variants(identity: Identity) -> &'static [(u32, bool)] {
 /// variant has one.
 ///
 /// # Errors
-/// Fails if the domain has more than 2^26 operands, if the identity does not hold, or if the found approximation cannot be
-/// proved.
+/// Fails if the domain has more than 2^26 operands, if the identity does not hold, if the function has no value at an operand, or
+/// if the found approximation cannot be proved.
 fn attempt_reduced(function: &TargetFunction, wish: Wish) -> Result<Option<Piecewise>, Refusal> {
     if function.is_wide() {
         let message = format!("the domain has more than 2^{MOST_BITS} operands to be computed");
@@ -177,8 +179,8 @@ fn attempt_reduced(function: &TargetFunction, wish: Wish) -> Result<Option<Piece
     Ok(None)
 }
 
-/// Returns the cheapest approximation that is right at every operand in `seen`, or `None` if the search finds none. The
-/// bound of the approximation is not yet proved.
+/// Returns the cheapest approximation that the search finds, with an allowed result at every operand in `seen`. Returns `None` if
+/// the search finds no approximation. The bound of the approximation is not yet proved.
 fn cheapest(seen: &AllowedResults, wish: Wish) -> Option<Piecewise> {
     let few = seen.thinned(CHOOSING);
     let mut found: Vec<(f64, Segments, Widths, Widths)> = Vec::new();
@@ -273,16 +275,16 @@ struct CutSearch<'s> {
 }
 
 impl CutSearch<'_> {
-    /// Returns whether a division has few enough segments and enough bits for the offsets in the segments, and whether its last
-    /// segment can contain the overhang.
+    /// Returns whether a division has few enough segments, whether its segments leave enough bits for offsets, and whether its
+    /// last segment can contain the overhang.
     fn is_possible(&self, cut: &Segments) -> bool {
         cut.words() <= self.most.min(1 << ADDRESS)
             && cut.octaves + cut.prefix + u32::from(self.degree > 0) <= self.seen.bits
             && cut.holds_overhang()
     }
 
-    /// Returns the division with the fewest segments for this layout and number of octaves that is fine enough, or `None` if no
-    /// possible division is.
+    /// Returns the division with the fewest segments for this layout and number of octaves that is fine enough. Returns `None` if
+    /// no possible division is fine enough.
     fn coarsest(&mut self, layout: Layout, octaves: u32) -> Option<Segments> {
         let least = u32::from(octaves == 0);
         for prefix in least..=ADDRESS {

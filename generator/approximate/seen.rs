@@ -1,6 +1,6 @@
-//! Computes the results that a search for coefficients may accept. For each operand that the search evaluates, these are the
-//! lowest and the highest result within the allowed error. For example, the value 10.3 with an allowed error of 1.0 has the
-//! lowest result 10 and the highest result 11.
+//! Computes the results that a search for coefficients may accept: the lowest and the highest result within the allowed error,
+//! for each operand that the search evaluates. For example, the value 10.3 with an allowed error of 1.0 has the lowest result 10
+//! and the highest result 11.
 
 use rayon::prelude::*;
 
@@ -23,7 +23,7 @@ pub(super) struct AllowedResults<'f> {
     pub(super) bits: u32,
     /// The number of operands whose numbers are 2^`bits` or larger.
     pub(super) overhang: u64,
-    /// The distance between two operands that the search evaluates. It is 1 if the search evaluates every operand.
+    /// The distance between two operands that the search evaluates, or 1 if the search evaluates every operand.
     pub(super) stride: i64,
     /// The lowest and the highest allowed raw value of the polynomial, for each operand that the search evaluates.
     pub(super) right: Vec<(i64, i64)>,
@@ -124,9 +124,9 @@ impl<'f> AllowedResults<'f> {
         Ok(Some(Self { function, origin, bits, overhang, stride, right, result, whole: None }))
     }
 
-    /// Computes the allowed values of the polynomial behind a range reduction. Several operands of `whole` may be reduced to
-    /// the same number; a polynomial's value is allowed if the results of all these operands are. `inner` is the function that
-    /// the polynomial approximates. Returns `None` if a number has no allowed value.
+    /// Computes the allowed values of the polynomial behind a range reduction. Several operands of `whole` may be reduced to the
+    /// same number; a polynomial's value is allowed if the results of all these operands are allowed. `inner` is the function
+    /// that the polynomial approximates. Returns `None` if a number has no allowed value.
     ///
     /// # Errors
     /// Fails if a function has no value at an operand, or if a result needs more than 48 bits.

@@ -28,9 +28,9 @@ impl Layout {
 /// A division of the numbers from 0 to 2^`bits` − 1 into segments. The segments may become shorter toward one end, by octaves.
 /// The last segment may also contain a few numbers from 2^`bits` on, the overhang.
 ///
-/// An octave is the block of numbers with the same highest bit, such as 128 to 255. The numbers below the lowest octave form
-/// one more block, and all blocks have the same number of segments, 2^`prefix`. For example, `bits = 8`, `octaves = 0` and
-/// `prefix = 4` give 16 segments of 16 numbers.
+/// An octave is the block of numbers with the same highest bit, such as 128 to 255. The numbers below the lowest octave form one
+/// more block, which is as long as the lowest octave. All blocks have the same number of segments, 2^`prefix`. For example, `bits
+/// = 8`, `octaves = 0` and `prefix = 4` give 16 segments of 16 numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Segments {
     /// The number of bits of an operand's number, without the additional bit for an overhang.
@@ -52,19 +52,19 @@ pub struct Segments {
 pub struct SegmentOffset {
     /// The index of the segment's word in the table.
     pub word: usize,
-    /// The distance of the operand from the middle of the segment, in units of 2^−[`Segments::rest`] of the segment's length.
-    /// It lies from −1/2 to below 1/2 of the length; in the overhang it is 1/2 or more.
+    /// The distance of the operand from the middle of the segment, in units of 2^−[`Segments::rest`] of the segment's length. The
+    /// distance lies from −1/2 to below 1/2 of the length; in the overhang the distance is 1/2 of the length or more.
     pub offset: i64,
 }
 
 impl Segments {
-    /// Returns the number of bits of an offset in the longest segment. For example, it is 4 for 8-bit numbers in 16 uniform
-    /// segments.
+    /// Returns the number of bits of an offset in the longest segment, without the additional bit for an overhang. For example,
+    /// 8-bit numbers in 16 uniform segments have offsets of 4 bits.
     pub fn rest(&self) -> u32 {
         self.bits - self.prefix - u32::from(self.octaves > 0)
     }
 
-    /// Returns the number of bits of an operand's number. It includes the additional bit for the overhang, if there is one.
+    /// Returns the number of bits of an operand's number, including the additional bit for an overhang, if there is an overhang.
     pub fn number_bits(&self) -> u32 {
         self.bits + self.extra_bit()
     }
@@ -74,8 +74,8 @@ impl Segments {
         u32::from(self.overhang > 0)
     }
 
-    /// Returns whether the last segment can contain the overhang. The overhang may have at most half as many numbers as the
-    /// last segment, and the layout may not be `Halving`. Without an overhang, returns `true`.
+    /// Returns whether the last segment can contain the overhang. The overhang must have at most half as many numbers as the
+    /// longest segment, and the layout must not be `Halving`. Without an overhang, returns `true`.
     pub fn holds_overhang(&self) -> bool {
         if self.overhang == 0 {
             return true;
@@ -85,8 +85,8 @@ impl Segments {
         fits && self.layout != Layout::Halving
     }
 
-    /// Returns the number of bits of an offset in a segment of the block `block`. Block 0 lies below the octaves, and block k
-    /// is octave k from below. For example, 8-bit numbers with 3 octaves and a prefix of 2 bits have 3 bits in block 0 and 5 in
+    /// Returns the number of bits of an offset in a segment of the block `block`. Block 0 lies below the octaves, and block k is
+    /// octave k from below. For example, 8-bit numbers with 3 octaves and a prefix of 2 bits have 3 bits in block 0 and 5 bits in
     /// block 3.
     pub fn rest_of(&self, block: u32) -> u32 {
         (self.bits + block.max(1) - 1) - self.octaves - self.prefix
@@ -131,8 +131,8 @@ impl Segments {
         SegmentOffset { word, offset: ((low << places) as i64) - middle }
     }
 
-    /// Returns the numbers in the segment of the table word `word`: the lowest number, and the count of numbers. For example,
-    /// word 3 of 16 uniform segments over 8 bits gives (48, 16).
+    /// Returns the numbers in the segment of the table word `word`: the lowest number, and the count of numbers, which includes
+    /// the overhang for the last word. For example, word 3 of 16 uniform segments over 8 bits gives (48, 16).
     pub fn numbers(&self, word: usize) -> (u64, u64) {
         let block = (word >> self.prefix) as u32;
         let rest = self.rest_of(block);

@@ -1,9 +1,9 @@
-//! Finds the table of coefficients for given segments. The table has the narrowest coefficients with which the result of every
-//! operand is within the allowed error.
+//! Finds the table of coefficients for given segments. The coefficients are so narrow that no single bit width can be smaller
+//! while the result of every operand stays within the allowed error.
 //!
-//! The search rounds the coefficients one after the other, the highest first. After each coefficient it subtracts the part of
-//! the function that the hardware computes from the coefficients so far, and fits the rest again. The constant comes last:
-//! every operand of a segment allows an interval of constants, and the constant is taken from the intersection of these
+//! The search rounds the coefficients one after the other, the highest first. After each coefficient, the search subtracts the
+//! part of the function that the hardware computes from the coefficients so far, and fits the rest again. The constant comes
+//! last: every operand of a segment allows an interval of constants, and the constant is taken from the intersection of these
 //! intervals.
 
 use rayon::prelude::*;
@@ -127,7 +127,7 @@ impl<'s> Table<'s> {
         table
     }
 
-    /// Returns the indices of the words up to the last one that an operand of the domain reads.
+    /// Returns the indices of the words up to the last word that an operand of the domain reads.
     fn words(&self) -> impl IndexedParallelIterator<Item = usize> {
         let (first, last) = self.seen.function.domain;
         let ends = [first, last].map(|raw| self.cut.place(self.seen.number(raw)).word);
@@ -205,8 +205,8 @@ impl<'s> Table<'s> {
         !fits
     }
 
-    /// Returns the narrowest widths, none wider than `generous`, for which every operand has an allowed result, and the
-    /// words of the table. Returns `None` if the widths `generous` do not suffice.
+    /// Returns narrow widths for which every operand has an allowed result, and the words of the table. No width exceeds its
+    /// width in `generous`, and no single width can be one bit smaller. Returns `None` if the widths `generous` do not suffice.
     pub(super) fn narrowest(&self, generous: &Widths) -> Option<(Widths, Words)> {
         let mut words = self.fitted(generous)?;
         // Each variable is first lowered alone. The combination of all lowered variables usually needs about one bit more.
@@ -234,7 +234,7 @@ impl<'s> Table<'s> {
     }
 
     /// Lowers the widths one bit at a time while the table can still be filled with words. `words` are the words for the given
-    /// widths. Returns the lowest widths and their words.
+    /// widths. Returns the lowered widths, so that no single width can be one bit smaller, and their words.
     pub(super) fn lowered(&self, mut widths: Widths, mut words: Words) -> (Widths, Words) {
         let mut changed = true;
         while changed {
@@ -308,7 +308,7 @@ impl<'s> Table<'s> {
 
     /// Chooses coefficient `k` and all lower coefficients, and writes them to `coefficients`. `product` has the hardware's
     /// product that coefficient `k` is added to, at each point of the fit. Tries the two nearest integers for each coefficient.
-    /// Returns whether it found coefficients with which every operand has an allowed result.
+    /// Returns whether the function found coefficients with which every evaluated operand of the segment has an allowed result.
     fn place(
         &self,
         piece: &CandidateSegment,
@@ -401,8 +401,8 @@ impl<'s> Table<'s> {
         })
     }
 
-    /// Returns the cost of the table and of the partial products, in look-up tables. A table with fewer than `least_words`
-    /// words counts as one with `least_words`.
+    /// Returns the cost of the table and of the partial products, in look-up tables. A table with fewer than `least_words` words
+    /// counts as a table with `least_words` words.
     pub(super) fn cost(&self, widths: &Widths, words: &Words, least_words: usize) -> f64 {
         let formats = self.formats(widths, words);
         let width: u32 = formats.iter().map(|format| format.width()).sum();
@@ -413,9 +413,8 @@ impl<'s> Table<'s> {
         cells(words.len().max(least_words), width) + PARTIAL * f64::from(partial)
     }
 
-    /// Returns widths from which the search can begin again so that no coefficient is too wide for a multiplier. They are the
-    /// widths `most` with fewer fraction bits for each coefficient that is too wide. Returns `None` if no coefficient is too
-    /// wide.
+    /// Returns widths from which the search can begin again so that no coefficient is too wide for a multiplier: the widths
+    /// `most`, with fewer fraction bits for each coefficient that is too wide. Returns `None` if no coefficient is too wide.
     pub(super) fn within_factors(
         &self,
         most: &Widths,
@@ -434,7 +433,7 @@ impl<'s> Table<'s> {
     }
 
     /// Returns the approximation with these words. Returns `None` if a product would have [`MAX_WIDTH`] bits or more, or if no
-    /// operand reads a word. The bound is infinite until it is proved.
+    /// operand reads a word. The bound of the returned approximation is infinite, because it is not proved yet.
     pub(super) fn finished(&self, widths: &Widths, words: Words) -> Option<Piecewise> {
         let AllowedResults { result: polynomial, whole, .. } = self.seen;
         let function = whole.map_or(self.seen.function, |it| it.0);

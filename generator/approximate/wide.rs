@@ -1,9 +1,10 @@
 //! Proves a bound on the error of a piecewise polynomial by intervals, for domains with more than 2^26 operands.
 //!
-//! The proof treats the offset of an operand in its segment as a real number t, so that a word of the table is a polynomial
-//! P(t). The hardware drops bits, so its result differs from P(t); the proof bounds this difference for a whole segment. Within
-//! an interval, the distance between the function and P is at most the distance in the middle plus the largest derivative times
-//! half of the length. If this bound is too large, the interval is halved, down to a few operands that are computed one by one.
+//! The proof treats the offset of an operand in its segment as a real number t, so that a word of the table is a polynomial P(t).
+//! The hardware drops bits, so its result differs from P(t); the proof bounds this difference for a whole segment. Within an
+//! interval, the distance between the function and P is at most the distance in the middle plus the largest derivative times half
+//! of the length. If this bound is too large, or if the function may have no derivative, the proof halves the interval; at most
+//! four operands are computed one by one.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -22,8 +23,8 @@ const FEW: i64 = 4;
 
 /// The limits of the partial sums and of the dropped bits, over all operands of a segment.
 pub(super) struct Walk {
-    /// For each coefficient k, the interval of the partial sum that includes coefficient k and all higher ones, in units of the
-    /// sum's last bit.
+    /// For each coefficient k, the interval of the partial sum that includes coefficient k and all higher coefficients, in units
+    /// of the sum's last bit.
     pub sums: Vec<Interval>,
     /// The limits of P(t) minus the hardware's result, in units of the result's last bit. The difference arises from dropped
     /// bits.
@@ -31,7 +32,8 @@ pub(super) struct Walk {
 }
 
 impl Piecewise {
-    /// Returns the first and the last raw operand of the domain that read a word, or `None` if no operand reads it.
+    /// Returns the first and the last raw operand of the domain that read the word `word`, or `None` if no operand reads the
+    /// word.
     fn operands_of(&self, word: usize) -> Option<(i64, i64)> {
         let (from, count) = self.segments.numbers(word);
         let low = (self.origin + from as i64).max(self.domain.0);
@@ -44,7 +46,7 @@ impl Piecewise {
         self.coefficients[k].frac - self.sums[0].frac
     }
 
-    /// Returns the limits of the sums over all operands that read a word, or `None` if no operand reads it.
+    /// Returns the limits of the sums over all operands that read the word `word`, or `None` if no operand reads the word.
     pub(super) fn walk(&self, word: usize) -> Option<Walk> {
         let (low, high) = self.operands_of(word)?;
         let [a, b] = [low, high].map(|raw| self.place(raw).offset);
@@ -146,8 +148,8 @@ impl Piecewise {
     }
 
     /// Returns a bound on the error over the raw operands from `low` to `high`, which must all read the word `word`. `lag` has
-    /// the limits of the dropped bits. Returns `None` if the formula may jump between these operands, may have no value or no
-    /// derivative, or if a result may not fit its format.
+    /// the limits of the dropped bits. Returns `None` if the formula may jump between these operands, or may have no value or no
+    /// derivative there. Returns `None` also if a result may not fit its format, or if the function is a curve through samples.
     fn error_between(
         &self,
         function: &TargetFunction,

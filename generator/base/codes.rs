@@ -26,7 +26,7 @@ pub const TWO_DRIVERS: Code = Code(201);
 pub const UNDRIVEN: Code = Code(202);
 /// G0203: nets form a combinational loop.
 pub const LOOP: Code = Code(203);
-/// G0204: no output depends on a net or an operand, or a mux always passes the same input. Synthesis would remove such a part.
+/// G0204: no output depends on a net or an operand, or a mux always passes the same input. Synthesis would remove such logic.
 pub const UNUSED: Code = Code(204);
 /// G0205: a signal or a setting belongs to another `Designer`.
 pub const FOREIGN: Code = Code(205);
@@ -36,9 +36,10 @@ pub const REFERENCE: Code = Code(206);
 pub const NAME: Code = Code(301);
 /// G0302: two nets, memories, parts or microinstructions have the same name.
 pub const NAME_TWICE: Code = Code(302);
-/// G0401: the description has no microprogram, two microprograms, or one with fewer than two microinstructions.
+/// G0401: the description has no microprogram, two microprograms, or a microprogram with fewer than two microinstructions.
 pub const MICROPROGRAM: Code = Code(401);
-/// G0402: a microinstruction has no successor, two successors or an unknown one, or no other microinstruction leads to it.
+/// G0402: a microinstruction has no successor, two successors or an unknown successor, or no other microinstruction leads to this
+/// microinstruction.
 pub const SUCCESSOR: Code = Code(402);
 /// G0403: the first microinstruction, in which the device waits for `start`, also loads or raises something.
 pub const IDLE: Code = Code(403);

@@ -9,8 +9,8 @@ use crate::program::Program;
 /// A line of the Rust source of a hardware description. For example, the line that declares a register.
 pub type SourceLocation = &'static Location<'static>;
 
-/// A mistake in a hardware description. It prints as `error[G0203]: …`, followed by a line with `  --> ` and the place in the
-/// Rust source.
+/// A mistake in a hardware description. The printed mistake begins with `error[G0203]: …`, followed by a line with ` --> ` and
+/// the place in the Rust source, and by a line for each note.
 #[derive(Clone, Debug)]
 pub struct Diagnostic {
     /// The code of the kind of mistake, such as `G0203`.
@@ -44,7 +44,7 @@ impl fmt::Display for Diagnostic {
     }
 }
 
-/// All mistakes of a hardware description.
+/// All mistakes of a hardware description. The printed list ends with the command that explains the code of the first mistake.
 #[derive(Clone, Debug)]
 pub struct Diagnostics(pub Vec<Diagnostic>);
 

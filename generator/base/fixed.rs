@@ -10,7 +10,7 @@ use std::str::FromStr;
 /// The largest number of bits that a net may have.
 pub const MAX_WIDTH: u32 = 64;
 
-/// The largest absolute number of fraction bits. Beyond it, `f64` could not represent the value of one ulp, 2⁻ᶠ.
+/// The largest absolute number of fraction bits. Up to this number, `f64` represents 2⁻ᶠ, the value of one ulp, exactly.
 pub const MAX_POINT: i32 = 1000;
 
 /// A fixed-point format, `uI.F` or `sI.F`. The width is I + F bits, and one bit more in a signed format.
@@ -50,7 +50,7 @@ impl Format {
     pub const BIT: Self = Self::unsigned(1, 0);
 
     /// Returns the smallest format with `frac` fraction bits that can represent every raw value from `low` to `high`. For
-    /// example, 0 to 255 with 8 fraction bits gives `u0.8`, and −1 to 3 with none gives `s2.0`.
+    /// example, 0 to 255 with 8 fraction bits gives `u0.8`, and −1 to 3 without fraction bits gives `s2.0`.
     pub fn holding(low: i128, high: i128, frac: i32) -> Self {
         let magnitude = |raw: i128| 128 - if raw < 0 { !raw } else { raw }.leading_zeros() as i32;
         let signed = low < 0;
@@ -60,11 +60,11 @@ impl Format {
         Self { signed, int: bits - frac, frac }
     }
 
-    /// Returns the width in bits: I + F, and one more if the format is signed.
+    /// Returns the width in bits: I + F, and one bit more if the format is signed.
     ///
     /// # Panics
-    /// Panics if the width is negative. The constructors of the DSL and the configuration never accept such a format, and no
-    /// caller may make one.
+    /// Panics if the width is negative. The constructors of the DSL and the configuration never accept such a format, and a
+    /// caller must not make such a format.
     pub fn width(self) -> u32 {
         u32::try_from(self.int + self.frac + i32::from(self.signed)).expect("a positive width")
     }
@@ -99,8 +99,8 @@ impl Format {
         value * exp2(-self.frac)
     }
 
-    /// Returns the raw value nearest to `x`, ties upward. Returns `None` if `x` is not a number, or if rounding takes it outside
-    /// the format.
+    /// Returns the raw value nearest to `x`, ties upward. Returns `None` if `x` is not a number, or if the rounded value is
+    /// outside the format.
     ///
     /// For example, `u0.8` represents 0 to 255/256: 0.998 is rounded to 255/256, and 0.999 gives `None`, since its nearest
     /// multiple of 1/256 is 1.0.
@@ -129,7 +129,7 @@ impl Format {
         raw as u64 & mask(self.width())
     }
 
-    /// Returns the raw value that a bit pattern denotes; it ignores the bits above the width. For example, `0b111` is −1 in
+    /// Returns the raw value that a bit pattern denotes. The bits above the width are ignored. For example, `0b111` is −1 in
     /// `s2.0`, and 7 in `u3.0`.
     pub fn raw(self, bits: u64) -> i128 {
         let width = self.width();
@@ -142,7 +142,8 @@ impl Format {
     }
 
     /// Converts `raw`, which has `from_frac` fraction bits, to a raw value of this format. For example, raw 6 with two fraction
-    /// bits is 1.5; in `u4.0` it becomes 1 if truncated, and 2 if rounded to the nearest.
+    /// bits is 1.5; in `u4.0` it becomes 1 if truncated, and 2 if rounded to the nearest. A result outside the range of the
+    /// format saturates or wraps, as `overflow` states.
     pub fn narrow(self, raw: i128, from_frac: i32, rounding: Rounding, overflow: Overflow) -> i128 {
         let shifted = rounding.shift(raw, from_frac - self.frac);
         match overflow {

@@ -31,7 +31,7 @@ pub fn label(path: &str) -> String {
 /// Opens a file, or standard input if the path is [`STDIN`].
 ///
 /// # Errors
-/// Fails if the file cannot be read, or if the path is a directory, a pipe or a device. A pipe or a device might never end.
+/// Fails if the file cannot be opened, or if the path is a directory, a pipe or a device. A pipe or a device might never end.
 pub fn open(path: &Path) -> io::Result<Box<dyn Read>> {
     if path == Path::new(STDIN) {
         return Ok(Box::new(io::stdin().lock()));

@@ -6,13 +6,13 @@ use super::fixed::Format;
 /// An interval of raw values: the smallest and the largest, both included.
 pub type Interval = (i128, i128);
 
-/// Returns the smallest interval that contains all `intervals`, or `None` if there are none. For example, (0, 3) and (8, 9) give
-/// (0, 9).
+/// Returns the smallest interval that contains all `intervals`, or `None` if there are no intervals. For example, (0, 3) and (8,
+/// 9) give (0, 9).
 pub fn hull(intervals: impl IntoIterator<Item = Interval>) -> Option<Interval> {
     intervals.into_iter().reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
 }
 
-/// Returns the smallest interval that contains all `raws`, or `None` if there are none. For example, 5, 2 and 7 give (2, 7).
+/// Returns the smallest interval that contains all `raws`, or `None` if there are no values. For example, 5, 2 and 7 give (2, 7).
 pub fn of_values(raws: impl IntoIterator<Item = i128>) -> Option<Interval> {
     hull(raws.into_iter().map(|raw| (raw, raw)))
 }

@@ -13,7 +13,7 @@ use std::fmt;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct KeyError {
-    /// The dotted name of the key. For example, `cosine.fraction`. It is empty if the error concerns the whole file.
+    /// The dotted name of the key, for example `cosine.fraction`. The name is empty if the error concerns the whole file.
     pub key: String,
     /// The description of the error, for the user. For example, "`core` cannot run at 900 MHz".
     pub message: String,

@@ -1,5 +1,5 @@
 //! Stores the name of the running program, for messages that tell a user which command to type. The name is `glint`, unless a
-//! program with devices of its own sets another one with [`run_as`].
+//! program with its own devices sets another name with [`run_as`].
 
 use std::fmt;
 use std::sync::OnceLock;

@@ -34,9 +34,9 @@ pub struct DelayMemory {
 }
 
 impl DelayMemory {
-    /// Returns whether a memory of `words` words of `bits` bits takes fewer look-up tables and registers, with its address
-    /// counter, than the registers that it replaces. For example, on ECP5 the result is true for 3 words of 4 bits, and false for
-    /// 2.
+    /// Returns whether a memory of `words` words of `bits` bits, together with its address counter, takes fewer look-up tables
+    /// and registers than the registers that the memory replaces. For example, on ECP5 the result is true for 3 words of 4 bits,
+    /// and false for 2 words. Returns false for a single word.
     pub fn pays(self, words: usize, bits: u32) -> bool {
         let words = words as u32;
         let memories = bits.div_ceil(self.width) * words.div_ceil(self.words);
@@ -45,7 +45,7 @@ impl DelayMemory {
     }
 }
 
-/// The delays of a multiplier with a register at its output, in nanoseconds. They do not include the delay of an ordinary
+/// The delays of a multiplier with a register at its output, in nanoseconds. The delays do not include the delay of an ordinary
 /// register.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Registered {
@@ -55,7 +55,8 @@ pub struct Registered {
     pub output: f64,
 }
 
-/// The delays of a target in nanoseconds, and the sizes of its multipliers and memories. The scheduler of pipelines reads them.
+/// The delays of a target in nanoseconds, and the sizes of its multipliers and memories. The scheduler of pipelines reads these
+/// numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Timing {
     /// The name of the target, which the configuration key `pipeline.target` gives.
@@ -108,8 +109,8 @@ pub struct BlockMemory {
 }
 
 impl BlockMemory {
-    /// Returns the number of blocks for a ROM of `words` words of `width` bits. A block can have twice the words if each has half
-    /// the width. For example, a block of 18 432 bits has 512 words of 36 bits, or 1024 words of 18 bits.
+    /// Returns the number of blocks for a ROM of `words` words of `width` bits. A block has twice as many words if each word has
+    /// half the width. For example, a block of 18 432 bits has 512 words of 36 bits, or 1024 words of 18 bits.
     pub fn count(&self, words: u64, width: u64) -> u64 {
         let mut block_width = self.widest;
         while block_width > 0 {
@@ -133,7 +134,7 @@ impl BlockMemory {
 pub struct Chip {
     /// The name of the chip, as people write it.
     pub name: &'static str,
-    /// The options with which nextpnr selects the chip and its package. Empty if Glint does not run nextpnr for it.
+    /// The options with which nextpnr selects the chip and its package. Empty if Glint does not run nextpnr for the chip.
     pub options: &'static str,
     /// The numbers of look-up tables, DSP blocks and block RAMs on the chip, in this order.
     pub has: [u64; 3],
@@ -159,10 +160,10 @@ pub struct Estimate {
     pub weights: [f64; 6],
     /// The factor for the predicted clock period: the measured period divided by the period that the delays predict.
     pub scale: f64,
-    /// The number of bits by which a signed operand of a DSP block may be wider than an unsigned one.
+    /// The number of bits by which a signed operand of a DSP block may be wider than an unsigned operand.
     pub sign: u32,
     /// A product, or a part of a wide product, becomes look-up tables instead of a DSP block if its result has fewer bits than
-    /// this.
+    /// this number.
     pub least_product: u32,
 }
 
@@ -199,7 +200,7 @@ pub struct Family {
     pub block_rams: Kinds,
     /// The cells that count as flip-flops.
     pub flip_flops: Kinds,
-    /// The chips of the family, from a small and common one to the largest.
+    /// The chips of the family, from a small and common chip to the largest chip.
     pub chips: &'static [Chip],
     /// The numbers with which the cost of a core is estimated.
     pub estimate: Estimate,

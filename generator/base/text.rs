@@ -19,8 +19,8 @@ pub fn counted(number: usize, thing: &str) -> String {
     format!("{} {thing}{plural}", grouped(number as u64))
 }
 
-/// Returns a limit with `places` decimals. It is rounded up, so that it is still a limit. For example, 0.12 with one decimal
-/// becomes `0.2`.
+/// Returns a limit with `places` decimals. The limit is rounded up, so that the returned number is still a limit. For example,
+/// 0.12 with one decimal becomes `0.2`.
 pub fn rounded_up(limit: f64, places: usize) -> String {
     let text = format!("{limit:.places$}");
     match text.parse::<f64>() {

@@ -1,9 +1,9 @@
 //! Operands and colour outputs that the hardware descriptions of several devices share.
 //!
-//! The operands are `cos_gamma` (c = cos γ, γ being the angle between the surface normal and the half vector) and `exponent` (the
-//! specular exponent n). The colour outputs are the colours times the reflectance f. [`outputs_note`] writes a paragraph for the
-//! device's page. It tells the user that the device ignores operands that the host writes while it is busy, and until when the
-//! outputs keep their values.
+//! The operands are `cos_gamma` (c = cos γ, where γ is the angle between the surface normal and the half vector) and `exponent`
+//! (the specular exponent n). The colour outputs are the colours times the reflectance f. [`outputs_note`] writes a paragraph for
+//! the device's page. The paragraph says that a busy device ignores writes of operands, and until when the outputs keep their
+//! values.
 
 use glint_base::fixed::{Format, Rounding};
 use glint_keys::common as keys;
@@ -25,7 +25,7 @@ pub fn exponent(d: &Designer, bits: u32) -> InputOperand<'_> {
 }
 
 /// The products of the reflectance f with the three colours. The configuration key `colour.multipliers` chooses one multiplier
-/// for all colours or one for each.
+/// for all colours or one multiplier for each colour.
 pub struct ColourProducts<'d> {
     colours: Colours<'d>,
     in_turn: bool,
@@ -43,8 +43,9 @@ impl<'d> ColourProducts<'d> {
         Self { colours: Colours::new(d, keys.bits as i32, blocks), in_turn: keys.in_turn() }
     }
 
-    /// Adds the colour outputs, which are the colours times `f`. Returns the microinstructions that compute the products; they
-    /// must come before the microinstruction that raises `valid`. The list is empty if each colour has its own multiplier.
+    /// Adds the colour outputs, which are the colours times `f`. Returns the microinstructions that compute the products; these
+    /// microinstructions must come before the microinstruction that raises `valid`. The list is empty if each colour has its own
+    /// multiplier.
     #[track_caller]
     pub fn outputs(&self, f: Signal<'d>, rounding: Rounding) -> Vec<Step> {
         if self.in_turn {
@@ -54,8 +55,9 @@ impl<'d> ColourProducts<'d> {
         Vec::new()
     }
 
-    /// Adds the colour outputs. Returns the microinstructions that compute the products, followed by one that raises `valid` and
-    /// ends the microprogram.
+    /// Adds the colour outputs. Returns the microinstructions that compute the products, followed by a microinstruction that
+    /// raises `valid` and ends the microprogram. If each colour has its own multiplier, the list has only this last
+    /// microinstruction.
     #[track_caller]
     pub fn results(&self, f: Signal<'d>, rounding: Rounding) -> Vec<Step> {
         let mut steps = self.outputs(f, rounding);
@@ -64,9 +66,13 @@ impl<'d> ColourProducts<'d> {
     }
 }
 
-/// Returns a paragraph for the page of a device. It says that the device ignores operands that the host writes while it is busy,
-/// and until when the outputs keep their values. If each colour has its own multiplier, the outputs follow the register that
-/// `follow` names, until the next computation does `until`. For example, `follow` is "the accumulator", and `until` is "begins".
+/// Returns a paragraph for the page of a device. The paragraph says that a busy device ignores writes of operands, and until when
+/// the outputs keep their values.
+///
+/// If each colour has its own multiplier, the outputs follow the register that `follow` names, until a colour is written or the
+/// next computation does `until`. For example, `follow` is "the accumulator", and `until` is "begins". With one multiplier for
+/// all colours, the paragraph uses neither text: the outputs are then registers, which keep their values until the next
+/// computation reaches the products.
 pub fn outputs_note(keys: &keys::ColourKeys, follow: &str, until: &str) -> Note {
     if keys.in_turn() {
         return Topic::Writes.note(

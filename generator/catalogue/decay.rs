@@ -2,9 +2,10 @@
 //!
 //! c = cos γ, where γ is the angle between the surface normal and the half vector; n is the specular exponent; f is the
 //! reflectance, the factor by which the devices multiply colours. The decay depends on c alone: −log₂ c in `blinn`, γ²/(2 ln 2)
-//! in `gauss`. It is computed as the distance 1 − c times a smooth ratio, so that it stays accurate relative to its size near c =
-//! 1; n multiplies its error. Piecewise polynomials on one multiplier give the ratio and 2^−x, and another multiplier computes
-//! distance times ratio and n times decay. The integer part of n·decay becomes a shift.
+//! in `gauss`. `gauss` computes the decay as the distance 1 − c times a smooth ratio. `blinn` first scales c by 2^octave to a
+//! mantissa m from 1/2 to 1, and computes (1 − m) times a ratio plus the octave. The relative error of the decay therefore stays
+//! small near c = 1, where n multiplies the error. Piecewise polynomials on one multiplier give the ratio and 2^−x. Another
+//! multiplier computes distance times ratio, and n times decay. The integer part of n·decay becomes a shift. f is 0 if c ≤ 0.
 
 use glint_base::fixed::{Format, Overflow, Rounding};
 use glint_config::Config;
@@ -15,17 +16,18 @@ use glint_rtl::dsl::{Designer, Note, Signal, Topic, step};
 use super::common::{self, ColourProducts};
 use super::piecewise::{PolynomialDatapath, StepMultiplier, Tables};
 
-/// The distance 1 − c and the octave of the cosine c (the power of two by which c is scaled). `blinn` and `gauss` compute them in
-/// different ways.
+/// The distance of the cosine c from 1, and the octave of c. `gauss` uses the distance 1 − c and no octave. `blinn` scales c by
+/// 2^octave to a mantissa m from 1/2 to 1, and uses the distance 1 − m.
 pub struct Distance<'d> {
-    /// The distance 1 − c in units of its last place, less one unit, as an integer.
+    /// The distance (1 − c in `gauss`, 1 − m in `blinn`) in units of its last place, less one unit, as an integer.
     pub u: Signal<'d>,
-    /// The number of octaves, an integer that is added to the product of distance and ratio. `None` for `gauss`.
+    /// The octave, an integer that is added to the product of distance and ratio. `None` for `gauss`.
     pub octave: Option<Signal<'d>>,
 }
 
-/// Describes the part of the hardware that `blinn` and `gauss` share: it computes 2^(−n·decay) from the `distance` 1 − c. The
-/// function adds the operands, the products, the table of 2^−x, the outputs and the microprogram.
+/// Describes the part of the hardware that `blinn` and `gauss` share: this part computes f = 2^(−n·decay) from the distance of
+/// the cosine from 1. The function adds the operands `exponent` and the colours, both tables of polynomials, the products, the
+/// outputs and the microprogram. The caller adds the operand `cos_gamma` before.
 ///
 /// # Panics
 /// Panics if the schema's check does not accept the configuration. The caller must check the configuration first.
@@ -132,7 +134,7 @@ pub fn describe<'d>(
 /// Returns the decay as a factor of the multiplier, and a bit that is 1 if the decay is large.
 ///
 /// A small decay, below ¼, is multiplied by large n and needs all its fraction bits; its three upper bits are zeros. A large
-/// decay needs few fraction bits, but also the number of octaves. Both factors therefore have about the same width. The bit
+/// decay needs fewer fraction bits, but in `blinn` also the octave. Both factors therefore have about the same width. The bit
 /// decides only where the binary point of the product is.
 fn factor_of<'d>(
     d: &'d Designer,

@@ -12,7 +12,8 @@ use glint_rtl::netlist::About;
 
 use crate::plan::describe_plan;
 
-/// Describes the hardware of `expression`: a datapath and a microprogram for the plan of the configuration's formulas.
+/// Describes the hardware of `expression`: a datapath and a microprogram for the plan of the configuration's formulas. Each
+/// result has an output port, whose name is the result's name followed by `_out`.
 ///
 /// # Panics
 /// Panics if the schema's check does not accept the configuration. The caller must check the configuration first.

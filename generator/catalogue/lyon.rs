@@ -1,10 +1,11 @@
 //! The hardware description of the device `lyon`, which computes f = max(0, 1 − β·D²)^m with m = 2^s.
 //!
-//! D = N − H is the difference of the unit normal N and the unit half vector H; D² is its squared length; β = n/(2·m) with the
-//! specular exponent n; f is the reflectance, the factor by which the device multiplies colours. The source is the patent US 5
-//! 739 820 (Fig. 7C and 7D), which the patent of the device `quad-cosine` (Glint calls it seed 000) cites. Seed 000 lists only
-//! the blocks: two adders, four multipliers, shift register, counter, comparator and mux. Glint chose the wiring, and numbers
-//! each kind of block from 1: adder 1, multiplier 1.
+//! D = N − H is the difference of the unit normal N and the unit half vector H; D² is its squared length; f is the reflectance,
+//! the factor by which the device multiplies colours. With the key `scale` = `"multiplier"`, β is n/(2·m) for the specular
+//! exponent n. With the default `"shift"`, as in the patent, β is 2^shift/(2·m), where the operand `shift` is log₂ n, rounded.
+//! The source is the patent US 5 739 820 (Fig. 7C and 7D), which the patent of the device `quad-cosine` (Glint calls it seed 000)
+//! cites. Seed 000 lists only the blocks: two adders, four multipliers, shift register, counter, comparator and mux. Glint chose
+//! the wiring, and numbers each kind of block from 1: adder 1, multiplier 1.
 
 use glint_base::fixed::{Format, Overflow, Rounding};
 use glint_config::{Config, Shared};
@@ -26,7 +27,7 @@ struct SquaredDistance<'d> {
 
 /// The part of the hardware that computes β·D²: its result and its microinstructions.
 struct Scaled<'d> {
-    /// β·D². If the shift register computes it, it has more fraction bits than f.
+    /// β·D². Its number of fraction bits can differ from the number of f.
     value: Signal<'d>,
     steps: Vec<Step>,
     squarings: Squarings<'d>,
@@ -89,7 +90,8 @@ fn distance<'d>(d: &'d Designer, keys: &Keys, components: [Signal<'d>; 3]) -> Sq
     }
 }
 
-/// Builds D² with one multiplier and one adder. A register collects the first two squares, and the third is then added.
+/// Builds D² with one multiplier and one adder. A register collects the first two squares in two microinstructions, and the
+/// microinstruction after them adds the third square.
 fn distance_in_turn<'d>(
     d: &'d Designer,
     keys: &Keys,
@@ -163,7 +165,8 @@ fn by_shift<'d>(d: &'d Designer, keys: &Keys, distance: SquaredDistance<'d>) -> 
     Scaled { value: register.q(), steps, squarings }
 }
 
-/// Builds the exact β·D², with a multiplier that the patent does not have. The factor n/2^(s+1) is a shift by wiring.
+/// Builds β·D² with β = n/2^(s+1) for every n, with a multiplier that the patent does not have. The division by 2^(s+1) is a
+/// shift by wiring. The product is rounded to the fraction bits of f, and saturates just below 2.
 fn by_multiplier<'d>(d: &'d Designer, keys: &Keys, distance: SquaredDistance<'d>) -> Scaled<'d> {
     let count = keys.squarings();
     let exponent = common::exponent(d, keys.exponent_bits).q();
@@ -186,8 +189,8 @@ fn by_multiplier<'d>(d: &'d Designer, keys: &Keys, distance: SquaredDistance<'d>
     Scaled { value: scaled.q(), steps, squarings }
 }
 
-/// Returns `1 − β·D²` as the complement of β·D². The complement is an ulp too small, and is therefore always a fraction. If
-/// β·D² reaches 1.0, the comparator makes the mux pass 0 instead.
+/// Returns `1 − β·D²` as the complement of β·D². The complement is one unit in the last place (an ulp) too small, and is
+/// therefore always below 1. If β·D² is 1.0 or more, the comparator makes the mux pass 0 instead.
 fn base<'d>(d: &'d Designer, value: Signal<'d>, f: Format) -> Signal<'d> {
     let one = d.constant("one", 1.0, Format::unsigned(1, f.frac));
     let comparator = d.less("comparator", value, one).doc("1 if beta*D^2 is below 1.0");

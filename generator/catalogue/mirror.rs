@@ -1,8 +1,10 @@
-//! Builds a value that conditions mirror, such as an angle in one of eight octants, as a single sum.
+//! Builds a chain of mirrored values with a single adder. For example, three conditions mirror an angle from one of eight octants
+//! into the first octant.
 //!
-//! A plan mirrors a value v at a constant c by a choice between v and c − v. A chain of such choices, and the rounding after
-//! it, has the value ±v + base. The sign is the parity of the conditions, and the base is a constant for each combination of
-//! them. One adder therefore computes the whole chain, although the plan has a difference and a choice for each mirror.
+//! A mirror is a choice between a value v and the difference c − v from a constant c. A chain of up to three such choices, and
+//! the rounding after the chain, has the value ±v + base. The sign is negative if an odd number of the conditions is 1, and each
+//! combination of conditions has a constant base. One adder therefore computes the whole chain, although the plan has a
+//! difference and a choice for each mirror.
 
 use glint_base::fixed::{Format, Overflow, Rounding};
 use glint_plan::{ExpressionPlan, NodeId, Operation};
@@ -14,7 +16,7 @@ const MOST_MIRRORS: usize = 3;
 /// One mirror of a chain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Mirror {
-    /// The value is mirrored if this node is 1.
+    /// The condition: if this node is 1, the mirror replaces the value v by c − v.
     condition: NodeId,
     /// The constant c of c − v: its raw value and its fraction bits.
     constant: (i128, i32),
@@ -36,8 +38,9 @@ pub(super) struct MirrorChain {
 }
 
 impl MirrorChain {
-    /// Returns the chain of mirrors that ends at node `end`. Returns `None` if the node ends no chain, or if the chain would
-    /// save no adder. `held` says for each node whether it has a register.
+    /// Returns the chain of mirrors that ends at node `end`. Returns `None` if no chain ends at the node, or if the chain would
+    /// save no adder, which is the case for one mirror without rounding. `held` says for each node whether the node has a
+    /// register.
     pub(super) fn ending_at(plan: &ExpressionPlan, end: NodeId, held: &[bool]) -> Option<Self> {
         let mut chain = Self {
             start: end,
@@ -158,8 +161,8 @@ impl MirrorChain {
     }
 }
 
-/// Returns the mirror at a node, the node of the value that is mirrored, and the node of the difference. Returns `None` for any
-/// other node.
+/// Returns the mirror at node `id`, the node of the value v, and the node of the difference c − v. Returns `None` if the node is
+/// no such choice, or if another node reads the difference too.
 fn mirror_at(plan: &ExpressionPlan, id: NodeId) -> Option<(Mirror, NodeId, NodeId)> {
     let Operation::Choose { condition, cases: [value, mirrored] } = plan.node(id).operation else {
         return None;
@@ -186,7 +189,8 @@ fn readers(plan: &ExpressionPlan, id: NodeId) -> Vec<NodeId> {
     readers
 }
 
-/// Builds the choice of one constant by the conditions. `bases` has the raw constant for each combination of conditions.
+/// Builds the choice of one constant by the conditions. `bases` has the raw constant for each combination of conditions; bit 0 of
+/// its index is the first condition. Equal constants share one net.
 fn chosen_base<'d>(
     d: &'d Designer,
     name: &str,

@@ -1,7 +1,8 @@
 //! The hardware description of the device `normaliser`, which computes the unit vector v/|v| of a vector v of any length.
 //!
 //! A multiplier squares the components one after the other, a shifter scales their sum v·v, and a table interpolates 1/√(v·v).
-//! The same result scales all components. For example, v = (0, 0, 0.5) gives (0, 0, 1).
+//! The same 1/√(v·v) scales all components. For example, v = (0, 0, 0.5) gives (0, 0, 1). The zero vector, which has no
+//! direction, gives (0, 0, 0).
 
 use glint_base::fixed::{Format, Overflow, Rounding};
 use glint_config::Config;
@@ -13,7 +14,7 @@ fn integer(bits: i32) -> Format {
     Format::unsigned(bits, 0)
 }
 
-/// Describes the hardware of `normaliser`, which computes the unit vector of a vector of any length.
+/// Describes the hardware of `normaliser`, which computes the unit vector of a vector of any length. The zero vector gives zeros.
 pub fn describe(d: &Designer, config: &Config) {
     d.about(About {
         device: "normaliser".into(),
@@ -100,8 +101,9 @@ pub(super) fn by_pairs<'d>(d: &'d Designer, mut word: Signal<'d>) -> (Signal<'d>
     (word, d.join("pairs", &places, count))
 }
 
-/// Builds 1/√m for the mantissa m, from 1.0 to below 4.0, by a chord between two rounded values of the function. `address` is
-/// the number of address bits of the table, and `inverse` the number of fraction bits of the result.
+/// Builds 1/√m for the mantissa m, from 1.0 to below 4.0, by a chord between two rounded values of the function. A mantissa of 0,
+/// which only the zero vector has, gives 0. `address` is the number of address bits of the table, and `inverse` the number of
+/// fraction bits of the result, whose format is u1.`inverse`.
 pub(super) fn inverse_root<'d>(
     d: &'d Designer,
     mantissa: Signal<'d>,

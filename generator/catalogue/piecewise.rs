@@ -1,8 +1,9 @@
 //! Builds the hardware of a piecewise polynomial: a table of coefficients, and Horner's rule with one product and one sum in
 //! each step.
 //!
-//! The devices `function`, `expression`, `blinn` and `gauss` use it. The position of the operand within its domain addresses the
-//! table, which gives the coefficients of the operand's segment. One multiplier serves all polynomials of a device.
+//! The devices `function`, `expression`, `blinn` and `gauss` use this hardware. The position of the operand within its domain
+//! addresses the table, which gives the coefficients of the operand's segment. One multiplier serves all polynomials of a device;
+//! if the device is a pipeline, each step can get its own multiplier.
 
 use std::ops::Range;
 
@@ -61,7 +62,8 @@ impl<'d> StepMultiplier<'d> {
         settings
     }
 
-    /// Returns the product of a pair of factors. The factors must be known to [`StepMultiplier::new`].
+    /// Returns the product of a pair of factors. If the device has several products, the pair must be one of the pairs that
+    /// [`StepMultiplier::new`] received.
     pub fn product(&self, [first, second]: [Signal<'d>; 2]) -> Signal<'d> {
         match &self.shared {
             Some((_, product)) => product.of(first, second),
@@ -70,7 +72,7 @@ impl<'d> StepMultiplier<'d> {
     }
 
     /// Returns the setting with which a microinstruction selects a pair of factors for the multiplier. Returns `None` if the
-    /// multiplier has only one product.
+    /// device has only one product, which needs no selection.
     pub fn pick(&self, [first, _]: [Signal<'d>; 2]) -> Option<StepSetting> {
         let (factors, _) = self.shared.as_ref()?;
         Some(factors.pick(first))
@@ -133,16 +135,16 @@ pub struct PolynomialDatapath<'d, 'p> {
     coefficients: Vec<Signal<'d>>,
     /// The offset of the operand from the middle of its segment, shortened to the bits that each step multiplies.
     offsets: Vec<Signal<'d>>,
-    /// The registers of the partial sums. Register k has the sum of the terms from coefficient k on, so that the first has the
-    /// whole polynomial.
+    /// The registers of the partial sums. Register k has the sum of the terms from coefficient k on, so that the first register
+    /// has the whole polynomial.
     registers: Vec<Register<'d>>,
 }
 
 impl<'d, 'p> PolynomialDatapath<'d, 'p> {
     /// Makes the table, and the registers of the partial sums. `registers` are the names of these registers, starting with the
-    /// register of the whole polynomial. The names of other nets begin with `prefix`. `number` is the position of the operand
-    /// in its domain, an integer of [`glint_approximate::Segments::number_bits`] bits. It must be stable while the sums are
-    /// loaded, and one clock earlier if the table is read at the rising clock edge.
+    /// register of the whole polynomial. The names of other nets begin with `prefix`. `number` is the position of the operand in
+    /// its domain, an integer of [`glint_approximate::Segments::number_bits`] bits. `number` must be stable while the sums are
+    /// loaded, and also one clock earlier if the table is read at the rising clock edge.
     pub fn new(
         d: &'d Designer,
         prefix: &str,

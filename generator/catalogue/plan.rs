@@ -1,8 +1,9 @@
 //! Builds the hardware of a plan: logic between registers for each operation, and a microprogram.
 //!
-//! The devices `function` and `expression` use it. A plan is a list of fixed-point operations ([`glint_plan`]). All products of
-//! a plan share one multiplier, and each product has its own microinstruction. If the device is a pipeline, the microprogram is
-//! unrolled, and each product gets its own multiplier.
+//! The devices `function` and `expression` use this hardware. A plan is a list of fixed-point operations ([`glint_plan`]). All
+//! products of a plan share one multiplier, and each product has its own microinstruction. If the device is a pipeline, the
+//! microprogram is unrolled, and each product gets its own multiplier. With the key `pipeline.interval` above 1, a pipeline
+//! accepts a point only every few clocks, and products can share multipliers.
 
 use glint_approximate::{Outside, Piecewise};
 use glint_base::fixed::{Format, Overflow, Rounding};
@@ -85,8 +86,9 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
         }
     }
 
-    /// Builds the nodes in their order, except for products and the nodes that are computed from them up to a register.
-    /// `microprogram` builds these with the multiplier.
+    /// Builds the nodes in their order, except for nodes that a chain of mirrors replaces, for products, and for the nodes
+    /// between a product and the next register. `microprogram` builds the products, and these nodes behind them, with the
+    /// multiplier.
     fn build(&mut self) {
         for at in 0..self.plan.nodes.len() {
             if self.is_inner[at] {
@@ -130,12 +132,12 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
         [first, second]
     }
 
-    /// Returns the signal of a node. Panics if the node is not built yet.
+    /// Returns the signal of node `id`. Panics if the node is not built yet.
     fn signal(&self, id: NodeId) -> Signal<'d> {
         self.signals[id.0].unwrap_or_else(|| panic!("`{}` is built", self.plan.node(id).name))
     }
 
-    /// Returns a signal in the format `format`. Bits above the format are dropped.
+    /// Returns a signal in the format `format`. Bits above and below the format are dropped.
     fn in_format(&self, name: &str, signal: Signal<'d>, format: Format) -> Signal<'d> {
         if signal.format() == format {
             return signal;
@@ -157,7 +159,8 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
         self.in_format(&name, value, *format)
     }
 
-    /// Builds the combinational logic of node `id`. The nodes that it reads must be built.
+    /// Builds the combinational logic of node `id`, and returns its value. The nodes that node `id` reads must already be built,
+    /// and the node must not be a product.
     fn logic(&mut self, id: NodeId) -> Signal<'d> {
         let d = self.d;
         let plan = self.plan;
@@ -405,7 +408,7 @@ fn aligned(signals: [Signal<'_>; 2]) -> [Signal<'_>; 2] {
     signals.map(|signal| signal.with_fraction(first.max(second)))
 }
 
-/// Builds x · 2^`places` in `format`. Bits above the format are dropped.
+/// Builds x · 2^`places` in `format`. Bits above and below the format are dropped.
 fn left_by<'d>(
     d: &'d Designer,
     name: &str,
@@ -430,8 +433,8 @@ fn left_by<'d>(
     row.read_as(format)
 }
 
-/// Returns whether all bits of the first number have larger weights than the bits of the second, which must have no sign. Their
-/// sum then needs no adder.
+/// Returns whether the second number has no sign, and all bits of the first number have larger weights than the bits of the
+/// second. The sum of the two numbers then needs no adder.
 fn is_above(first: Signal<'_>, second: Signal<'_>) -> bool {
     !second.format().signed && second.format().int == -first.format().frac
 }

@@ -1,10 +1,11 @@
 //! The hardware description of the device `quadratic`, which computes f = max(0, c + a(n)·(c² − c)).
 //!
 //! c = cos γ, where γ is the angle between the surface normal and the half vector, and n is the specular exponent. A table,
-//! ROM(n), has the coefficients a(n), and f is the reflectance, the factor by which the device multiplies colours. The source
-//! is the patent UA 20998, which the patent UA 60139 (Glint calls it seed 001) cites. UA 20998 connects its blocks without a
-//! control block; this description adds two registers, so that no clock contains more than one multiplier before the outputs.
-//! Each kind of block is numbered from 1, as in the text of seed 001: register 1, adder 1, multiplier 1.
+//! ROM(n), has the coefficients a(n); n = 0 has the coefficient 0, as n = 1. f is the reflectance, the factor by which the device
+//! multiplies colours. The source is the patent UA 20998, which the patent UA 60139 (Glint calls it seed 001) cites. UA 20998
+//! connects its blocks without a control block; this description adds two registers, so that no clock contains more than one
+//! multiplier before the outputs. Each kind of block is numbered from 1, as in the text of seed 001: register 1, adder 1,
+//! multiplier 1.
 
 mod coefficient;
 

@@ -3,7 +3,7 @@
 //! The sum runs over the lights. α is the angle between the surface normal and the direction of a light, γ the angle between the
 //! normal and the half vector of the light; f is the highlight's formula, for example cⁿ with c = cos γ. `shading` consists of
 //! other devices, called its parts: for each light two `dot-product` devices and a highlight device, such as `blinn` or
-//! `function`.
+//! `function`. A sum above the largest colour becomes the largest colour.
 
 use super::{blinn, cosine_power, dot_product, function, gauss, quadratic, schlick, threshold};
 use glint_base::fixed::{Overflow, Rounding};
@@ -11,10 +11,11 @@ use glint_config::Config;
 use glint_keys::shading::{HighlightDevice, Keys};
 use glint_rtl::dsl::{About, Designer, Signal};
 
-/// Describes the hardware of `shading`: its parts, which are other devices, and the sum of the light.
+/// Describes the hardware of `shading`: its parts, which are other devices, and the sum of ambient, diffuse and specular light
+/// for each colour.
 ///
 /// # Panics
-/// Panics if the check of the schema has not accepted the configuration. The caller must check it first.
+/// Panics if the schema's check does not accept the configuration. The caller must check the configuration first.
 pub fn describe<'d>(d: &'d Designer, config: &Config) {
     let keys = Keys::of(config);
     let parts = keys.parts().unwrap_or_else(|(part, _)| panic!("`{part}` is checked"));

@@ -2,10 +2,11 @@
 //! level.
 //!
 //! c = cos γ, where γ is the angle between the surface normal and the half vector, and n is the specular exponent. The level
-//! comes from a table, ROM(n), and f is the reflectance, the factor by which the device multiplies colours. The source is the
-//! patent UA 30041, which the patent UA 60139 (Glint calls it seed 001) cites. UA 30041 connects its blocks without a control
-//! block; this description adds two registers, so that no clock contains more than one multiplier before the outputs. Each kind
-//! of block is numbered from 1, as in the text of seed 001: register 1, adder 1, multiplier 1.
+//! comes from a table, ROM(n), and f is the reflectance, the factor by which the device multiplies colours. f is 0 too for c ≤ 0,
+//! and where n/2·(c − 1) + 1 is negative. The source is the patent UA 30041, which the patent UA 60139 (Glint calls it seed 001)
+//! cites. UA 30041 connects its blocks without a control block; this description adds two registers, so that no clock contains
+//! more than one multiplier before the outputs. Each kind of block is numbered from 1, as in the text of seed 001: register 1,
+//! adder 1, multiplier 1.
 
 use glint_base::fixed::{Format, Overflow, Rounding, exp2};
 use glint_config::Config;
@@ -28,8 +29,8 @@ const fn channel(number: u16) -> ChannelBlocks {
     }
 }
 
-/// Describes the hardware of `threshold`: the square `(n/2·(cos γ − 1) + 1)²`, which a comparator with ROM(n) sets to 0 if it is
-/// too small.
+/// Describes the hardware of `threshold`: the square `(n/2·(cos γ − 1) + 1)²`, which a comparator sets to 0 if the square is
+/// below the level in ROM(n). The result is 0 too if cos γ ≤ 0 or if the base of the square is negative.
 pub fn describe(d: &Designer, config: &Config) {
     let keys = Keys::of(config);
     let f = keys.f.format();
@@ -102,8 +103,8 @@ fn level_rom<'d>(d: &'d Designer, keys: &Keys, exponent: Signal<'d>) -> Rom<'d> 
         .comments(comments)
 }
 
-/// Returns the level for the exponent n in hundredths of an output unit: the configured level of n's octave. For example, n =
-/// 20 is in octave 4, from 16 to 31. Octaves beyond the configured levels have the last level.
+/// Returns the level for the exponent n in hundredths of an output unit: the configured level of n's octave. For example, n = 20
+/// is in octave 4, from 16 to 31; n = 0 is in octave 0, like n = 1. Octaves beyond the configured levels have the last level.
 fn hundredths(keys: &Keys, n: i64) -> u32 {
     let levels = &keys.levels;
     let octave = n.max(1).ilog2() as usize;

@@ -2,7 +2,8 @@
 //!
 //! If the user's values and a default are invalid together, the default moves to the nearest valid value. For example,
 //! `exponent.bits = 8` lowers the default of `domain.exponent_max` from 1000 to 255. Only integers and lists of integers are
-//! adjusted; choices, flags and the keys that every device shares are not.
+//! adjusted. Keys of all other types keep their defaults, and so do keys with a [`Key::drawn`] range and the keys that every
+//! device shares.
 
 use std::collections::BTreeSet;
 
@@ -10,9 +11,9 @@ use super::problems::Problems;
 use super::schema::{Key, KeyKind, Schema};
 use super::values::{Config, Value};
 
-/// Returns the configuration with adjusted defaults. One key after another that is not in `given` moves to the value that
-/// satisfies the most conditions of the device. If a condition still fails afterwards, only a change of a key in `given` can
-/// satisfy it.
+/// Returns the configuration with adjusted defaults. In each step, the function moves one key that is not in `given` to the value
+/// with which the fewest conditions of the device fail; a key moves at most once. The function stops if no condition fails, or if
+/// no move of a single key helps. Conditions can therefore still fail in the result.
 pub fn follow(schema: &Schema, config: &Config, given: &BTreeSet<&str>) -> Config {
     let mut config = config.clone();
     let mut left = complaints(schema, &config);
@@ -33,7 +34,7 @@ pub fn follow(schema: &Schema, config: &Config, given: &BTreeSet<&str>) -> Confi
     config
 }
 
-/// Finds the value of the key `key` with which the fewest conditions fail. If several values are equal in this, it takes the
+/// Finds the value of the key `key` with which the fewest conditions fail. Among several such values, the function takes the
 /// value nearest to the default. Returns the number of failing conditions, the key, and the configuration with this value.
 /// Returns `None` if `limit` or more conditions fail with every value.
 fn best<'k>(

@@ -5,9 +5,9 @@ use serde_json::{Map, Value as Json, json};
 use super::schema::{Key, KeyKind, Schema};
 use super::values::Value;
 
-/// Returns a JSON Schema (draft 7) for configurations of any of these devices: names, types, ranges, defaults and the
-/// meaning of each key. Conditions between keys are only mentioned in descriptions, because Glint checks them when it reads a
-/// file.
+/// Returns a JSON Schema (draft 7) for configurations of any of these devices: names, types, ranges, defaults and the meaning of
+/// each key. The condition under which a key applies is only mentioned in the description of the key. The checks of a device
+/// between its keys are not in the JSON Schema; Glint makes these checks when it reads a file.
 pub fn json_schema(schemas: &[Schema]) -> Json {
     let names: Vec<&str> = schemas.iter().map(|schema| schema.device).collect();
     // Not `oneOf`: if a file is wrong, editors then say only that no alternative fits. With `if` and `then` they name the
@@ -113,7 +113,8 @@ fn of_key(key: &Key) -> Json {
     entry
 }
 
-/// Returns the schema of an entry: a table with these fields, or only the value of the field `shorthand`.
+/// Returns the schema of an entry: a table with these fields. If `shorthand` names a field, an entry may also be only the value
+/// of this field.
 fn record(fields: &[Key], shorthand: Option<&str>) -> Json {
     let mut entry = table();
     let of_fields = properties(&mut entry);
@@ -131,7 +132,8 @@ fn record(fields: &[Key], shorthand: Option<&str>) -> Json {
     }
 }
 
-/// Returns a word of a choice as a file writes it: an integer without quotes, or a text.
+/// Returns the option `option` of a key as a file writes it: an integer without quotes if the key takes integers and the option
+/// is an integer, and otherwise a text.
 fn choice(key: &Key, option: &str) -> Json {
     match option.parse::<i64>() {
         Ok(number) if key.kind.takes_integers() => json!(number),

@@ -7,14 +7,14 @@ use glint_base::fixed::Rounding;
 
 /// A type of configuration values: a field of a struct that [`keys!`](macro@crate::keys) declares has such a type.
 pub trait Setting: Sized {
-    /// Reads the value of the field from a configuration. `keys` are the configuration keys of the field, at least one. Panics
-    /// if the configuration does not have the keys, or if they have another type.
+    /// Reads the value of the field from a configuration. `keys` are the configuration keys of the field, at least one. Panics if
+    /// the configuration does not have the keys, or if the keys have another type.
     fn read(config: &Config, keys: &[Key]) -> Self;
 }
 
 /// Declares a struct whose fields are configuration keys. Its function `keys` returns the keys for a [`Schema`](super::Schema),
-/// in the order of the fields, and its function `of` reads their values from a configuration. Each field has a [`Key`], or is
-/// another such struct with several keys.
+/// in the order of the fields, and its function `of` reads the values of these keys from a configuration. `of` panics if the
+/// configuration belongs to a device without these keys. Each field has a [`Key`], or is another such struct with several keys.
 ///
 /// ```
 /// use glint_config::{Config, Key, Schema};

@@ -1,5 +1,5 @@
-//! Checks whether a name can be the name of a Verilog module, and explains why if it cannot. For example, `2fast` begins with a
-//! digit.
+//! Checks whether a name can be the name of a Verilog module, and explains the mistake if the name cannot. For example, the name
+//! `2fast` begins with a digit.
 
 use super::problems::quoted;
 use glint_base::key_error::KeyError;
@@ -8,8 +8,8 @@ use glint_base::keywords::is_keyword;
 /// The largest number of characters of a name. Derived modules and files append endings to the name.
 const LONGEST: usize = 60;
 
-/// Checks a module name. Returns `None` if the name is an identifier of Verilog and SystemVerilog that every tool accepts, and
-/// a plain file name. Otherwise returns the error, with a similar valid name as the remedy.
+/// Checks a module name. Returns `None` if the name has 1 to 60 ASCII letters, digits and `_`, does not begin with a digit, and
+/// is no keyword of Verilog or SystemVerilog. Otherwise returns the error, with a similar valid name in the remedy.
 pub(super) fn error(name: &str) -> Option<KeyError> {
     let message = complaint(name)?;
     let remedy = format!(
@@ -44,8 +44,9 @@ fn complaint(name: &str) -> Option<String> {
     }
 }
 
-/// Returns a valid module name that is similar to a name or path. It is the part between the last slash and the first dot, with
-/// `_` for characters that are not allowed. If this part is still not valid, `glint_` is added at its front. For example,
+/// Returns a valid module name that is similar to a name or path. The function takes the part between the last slash and the
+/// first dot, writes a single `_` for other characters than ASCII letters and digits, and keeps at most 54 characters. If this
+/// part is still not valid, the function adds `glint_` at its front; an empty part gives `glint_device`. For example,
 /// `cores/my-core.toml` gives `my_core`, and `2fast` gives `glint_2fast`.
 fn legalised(name: &str) -> String {
     let file = name.rsplit(['/', '\\']).find(|part| !part.is_empty()).unwrap_or("");

@@ -20,12 +20,13 @@ use glint_base::program::Program;
 
 /// Parses a configuration from the text of a TOML file.
 ///
-/// Messages show `file_name`. Its stem (with `_` for `-`) is the module name unless the text states a `name`. `schemas` must
-/// contain the schemas of all devices.
+/// Messages show `file_name`. Its stem (with `_` for `-`) is the module name unless the text states a `name`; a text from
+/// standard input must state a `name`. `schemas` must contain the schemas of all devices. Defaults of keys that the text does not
+/// set are adjusted to the values that it sets.
 ///
 /// # Errors
-/// Fails if the text has any problem. The error lists all problems at once. Conditions between keys are checked only if the
-/// text is valid TOML, because otherwise some keys of the file are unknown.
+/// Fails if the text has any problem. The error lists all problems at once, at most 200. Conditions between keys are checked only
+/// if the text is valid TOML and names a device, because otherwise some keys of the file are unknown.
 pub fn parse(file_name: &str, text: &str, schemas: &[Schema]) -> Result<Config, Problems> {
     located(file_name, text, schemas).map(|(config, _)| config)
 }
@@ -144,8 +145,9 @@ impl TomlReader<'_> {
         }
     }
 
-    /// Returns the schema of the device that the file names, or else of the device with the most similar name. Returns `None`
-    /// without either. A missing or wrong name is reported.
+    /// Returns the schema of the device that the file names, or else of the device with the most similar name. Returns `None` if
+    /// the file names no device, or if no name is similar. A missing or wrong name is reported as a problem; if the TOML has a
+    /// syntax error, a missing name is not reported.
     fn device<'s>(&mut self, document: &DeTable, schemas: &'s [Schema]) -> Option<&'s Schema> {
         let devices: Vec<&str> = schemas.iter().map(|schema| schema.device).collect();
         let remedy = format!("devices: {}", devices.join(", "));
@@ -349,7 +351,8 @@ impl TomlReader<'_> {
         draft.give(key, is_good.then_some(value));
     }
 
-    /// Returns the fields of an entry in such a table. Returns `None` if one of them is wrong, and reports the problem.
+    /// Returns the fields of one entry in a table whose entries the user names. Returns `None` if a field is wrong or unknown,
+    /// and reports the problem.
     fn record(
         &mut self,
         key: &Key,
@@ -485,7 +488,7 @@ impl TomlReader<'_> {
     }
 }
 
-/// Returns a value in the type of its key, or all of its mistakes.
+/// Returns a value in the type of its key. Fails with all mistakes of the value if its type or its range is wrong.
 fn converted(key: &Key, value: &Spanned<DeValue>) -> Result<Value, Vec<Violation>> {
     let wrong_type = || vec![key.wrong_type(&described(value))];
     let too_large = || vec![key.violation(out_of_range(key.name, written(value)))];
@@ -536,13 +539,13 @@ fn converted(key: &Key, value: &Spanned<DeValue>) -> Result<Value, Vec<Violation
     if violations.is_empty() { Ok(converted) } else { Err(violations) }
 }
 
-/// Returns the value of an integer, or `None` if it does not fit into 64 bits.
+/// Returns the value of an integer. Returns `None` if `value` is no integer, or does not fit into 64 bits with a sign.
 fn integer(value: &Spanned<DeValue>) -> Option<i64> {
     let integer = value.get_ref().as_integer()?;
     i64::from_str_radix(integer.as_str(), integer.radix()).ok()
 }
 
-/// Returns a number as it is written in the file, without underscores.
+/// Returns a number as the file writes the number, without underscores. Any other value gives an empty text.
 fn written(value: &Spanned<DeValue>) -> String {
     match value.get_ref() {
         DeValue::Integer(integer) => integer.to_string(),

@@ -5,12 +5,13 @@ use std::{fs, io};
 
 /// Reads the points of a file, and returns them in the form `x,y x,y`.
 ///
-/// A line must have two numbers, with or without quotes, that are separated by a comma, a semicolon, blanks or a tab. Lines of
-/// words before the first point are headings, and `#` begins a comment. For example, the lines `x,y`, `0,0` and `1; -0.5 # low`
-/// give `0,0 1,-0.5`.
+/// A line must have two numbers, with or without quotes, that are separated by a comma, a semicolon, blanks or a tab. Lines
+/// without a number before the first point are headings, `#` begins a comment, and empty lines are skipped. For example, the
+/// lines `x,y`, `0,0` and `1; -0.5 # low` give `0,0 1,-0.5`.
 ///
 /// # Errors
-/// Fails if the file cannot be read, if a line is not two numbers, or if no line is. The error is a message and a remedy.
+/// Fails if the file is no regular file, cannot be read or is not UTF-8, if a line is not two finite numbers, or if the file has
+/// no points. The error is a message and a remedy.
 pub(super) fn read(path: &Path) -> Result<String, (String, String)> {
     let name = path.display();
     let text = text(path).map_err(|error| {
@@ -61,6 +62,9 @@ fn has_decimal_commas(line: &str) -> bool {
 
 /// Reads a file in UTF-8, and converts the line ends of any system to newlines. The path must name a regular file, because a
 /// pipe may never end.
+///
+/// # Errors
+/// Fails if the path names no regular file, or if the file cannot be read or is not UTF-8.
 fn text(path: &Path) -> io::Result<String> {
     let refused = |message: String| Err(io::Error::new(io::ErrorKind::InvalidInput, message));
     if !fs::metadata(path)?.is_file() {

@@ -9,7 +9,8 @@ use serde_json::{Value as Json, json};
 
 use glint_base::key_error::KeyError;
 
-/// All mistakes of one configuration file, in the order of their locations.
+/// The mistakes of one configuration file, in the order of their locations. The list has at most 200 mistakes; further mistakes
+/// are only counted.
 ///
 /// `Display` shows each mistake with its lines of the file in plain text. [`Problems::to_json`] returns JSON for scripts.
 #[derive(Clone, Debug, Default)]
@@ -61,7 +62,7 @@ impl Problems {
     }
 
     /// Adds a mistake that concerns some bytes of a key's text. The report marks these bytes if the file contains the text
-    /// literally.
+    /// literally, in quotes and without escapes. Otherwise, and if `bytes` is `None`, the report marks the whole value.
     pub fn push_within(
         &mut self,
         key: &str,
@@ -102,7 +103,8 @@ impl Problems {
         self.locations.contains_key(key)
     }
 
-    /// Returns a list for the same file and with the same locations, but without problems. A check can fill it for a trial.
+    /// Returns a list for the same file and with the same locations, but without problems. A check can fill this list for a
+    /// trial. [`Problems::is_refused`] gives the same result for both lists.
     pub(super) fn cleared(&self) -> Self {
         Problems { list: Vec::new(), further: 0, refused: self.is_refused(), ..self.clone() }
     }
@@ -120,8 +122,8 @@ impl Problems {
         }
     }
 
-    /// Inserts a problem, unless the list already has it. The list is sorted by location; problems without a location come
-    /// last.
+    /// Inserts a problem, unless the list already has the problem. If the list has 200 problems, the problem is only counted. The
+    /// list is sorted by location; problems without a location come last.
     fn insert(&mut self, problem: Problem) {
         if self.list.len() == LIMIT {
             self.further += 1;
@@ -137,12 +139,12 @@ impl Problems {
         self.list.is_empty()
     }
 
-    /// Returns the number of mistakes.
+    /// Returns the number of mistakes, including the mistakes that are only counted.
     pub fn len(&self) -> usize {
         self.list.len() + self.further
     }
 
-    /// Returns the mistakes in the order of their locations. Mistakes without a location come last.
+    /// Returns the mistakes in the list, at most 200, in the order of their locations. Mistakes without a location come last.
     pub fn iter(&self) -> impl Iterator<Item = &Problem> {
         self.list.iter()
     }
@@ -189,7 +191,8 @@ impl Problems {
         Json::Array(self.list.iter().map(each).collect())
     }
 
-    /// Returns the report for people, in the style of `renderer`, which also chooses colours.
+    /// Returns the report for people, in the style of `renderer`, which also chooses colours. The report ends with the number of
+    /// mistakes that are only counted, if there are any.
     pub fn render(&self, renderer: &Renderer) -> String {
         let each = |problem: &Problem| {
             let title = Level::ERROR.primary_title(&problem.error.message);
@@ -255,7 +258,8 @@ pub(super) fn shown(text: &str) -> String {
     }
 }
 
-/// Returns a text from a file for a message: in quotes, at most 40 characters long, and with control characters escaped.
+/// Returns a text from a file for a message: in quotes, and with quotes, backslashes and control characters escaped. A text of
+/// more than 40 characters is cut, and ends in `…`.
 pub(super) fn quoted(text: &str) -> String {
     format!("\"{}\"", shown(&text.escape_debug().to_string()))
 }

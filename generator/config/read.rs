@@ -12,14 +12,14 @@ use glint_base::input;
 use glint_base::key_error::KeyError;
 use glint_base::program::Program;
 
-/// The largest size of a configuration file in bytes. It protects against files that would exhaust the memory.
+/// The largest size of a configuration file in bytes. The limit protects against files that would exhaust the memory.
 const LARGEST: u64 = 1 << 16;
 
 /// Reads a configuration file, or standard input if the path is `-`. `schemas` must contain the schemas of all devices.
 ///
 /// # Errors
-/// Fails if the file cannot be read, is not text, or has a problem that [`parse`](super::parse()) finds. The error lists all
-/// problems at once.
+/// Fails if the file cannot be read, has more than 65,536 bytes, is not UTF-8, or has a problem that [`parse`](super::parse())
+/// finds. The error lists all problems at once.
 pub fn read(path: &Path, schemas: &[Schema]) -> Result<Config, Problems> {
     read_located(path, schemas).map(|(config, _)| config)
 }
@@ -59,7 +59,7 @@ pub fn read_located(path: &Path, schemas: &[Schema]) -> Result<(Config, Problems
     }
 }
 
-/// Returns the bytes of a file, or a message and a remedy if it cannot be read or is too large.
+/// Returns the bytes of a file. Fails with a message and a remedy if the file cannot be read or is too large.
 fn contents(path: &Path) -> Result<Vec<u8>, (String, String)> {
     let mut bytes = Vec::new();
     let read = input::open(path).and_then(|file| file.take(LARGEST + 1).read_to_end(&mut bytes));

@@ -14,13 +14,15 @@ const REPAIRS: usize = 100;
 
 /// Returns a random valid configuration of a device. The same seed gives the same configuration.
 ///
-/// Every key is drawn from its whole range, the ends of the range more often than other values. Keys that do not apply keep their
-/// defaults. If the device refuses a combination, the offending key is drawn again, so that keys with narrow conditions vary too.
-/// The name of the configuration is the device's name, with `_` for `-`, and the seed. For example, seed 7 of `dot-product` gives
-/// the name `dot_product_7`.
+/// Integers, numbers, choices, flags and lists of the device are drawn from their ranges. A key with a [`Key::drawn`] range is
+/// drawn from that range. The ends of a range are drawn more often than other values. Texts, tables, keys that do not apply and
+/// the keys that every device shares keep their defaults. If the device refuses a combination, the offending key is drawn again,
+/// so that keys with narrow conditions vary too. The name of the configuration is the device's name, with `_` for `-`, and the
+/// seed. For example, seed 7 of `dot-product` gives the name `dot_product_7`.
 ///
 /// # Panics
-/// Panics if the device refuses every draw. The ranges of a schema must not be invalid almost everywhere.
+/// Panics if the device refuses all 1000 configurations that are drawn. The ranges of a schema must allow enough valid
+/// combinations.
 pub fn sample(schema: &Schema, seed: u64) -> Config {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let name = format!("{}_{seed}", schema.device.replace('-', "_"));

@@ -15,13 +15,14 @@ pub struct Schema {
     /// The device's own keys, in the order in which a written file shows them. The keys that every device shares
     /// ([`super::shared_keys`]) are not among them.
     pub keys: Vec<Key>,
-    /// Checks the conditions between keys. It gets configurations in which every value is inside its own range, in any
-    /// combination, and must not panic. It reports each violated condition under the key that the user should change.
+    /// Checks the conditions between keys. The function gets configurations in which every value is inside its own range, in any
+    /// combination, and must not panic. The function must report each violated condition under the key that the user should
+    /// change.
     pub check: fn(&Config, &mut Problems),
 }
 
 impl Schema {
-    /// Returns the default name of the Verilog module. It is the name of the device with `_` for `-`. If this is a Verilog
+    /// Returns the default name of the Verilog module: the name of the device with `_` for `-`. If this name is a Verilog
     /// keyword, `my_` is added at its front. For example, a device `table` would have the module `my_table`.
     pub fn module(&self) -> String {
         let name = self.device.replace('-', "_");
@@ -47,6 +48,8 @@ pub struct Key {
     /// default, so that digests of older configurations stay valid.
     pub joined_later: bool,
     /// The range from which random configurations draw an integer, if larger values would make a configuration too slow to test.
+    /// The default of a key with such a range is never adjusted to other keys. `None` if random configurations draw from the
+    /// whole range.
     pub drawn: Option<(i64, i64)>,
 }
 
@@ -88,7 +91,7 @@ pub enum KeyKind {
     /// A finite number between two limits, both included. If `or_zero` is true, the number may also be 0. A file may write the
     /// number as an integer.
     Number { min: f64, max: f64, or_zero: bool },
-    /// One of several texts. If all of them are decimal integers, a file writes an integer.
+    /// One of several texts. A file writes an option that is a decimal integer without quotes, for example `power = 16`.
     Choice(&'static [&'static str]),
     /// `true` or `false`.
     Flag,
@@ -149,8 +152,8 @@ impl Key {
         Self::new(name, KeyKind::Number { min, max, or_zero: true }, Value::Number(0.0), doc)
     }
 
-    /// Makes a key whose value is one of several texts. The default must be one of them. If all of them are decimal integers,
-    /// such as `["2", "4"]`, a file writes an integer, and [`Config::integer`] reads it as one.
+    /// Makes a key whose value is one of several texts. The default must be one of these texts. If all texts are decimal
+    /// integers, such as `["2", "4"]`, a file must write an integer, and [`Config::integer`] returns this integer.
     pub fn choice(
         name: &'static str,
         default: &'static str,
@@ -229,7 +232,7 @@ impl Key {
     }
 
     /// Sets the range from which random configurations draw the integer, because larger values take long to test. Both ends are
-    /// included.
+    /// included. The default of the key is then never adjusted to other keys.
     pub fn drawn(self, min: i64, max: i64) -> Self {
         Self { drawn: Some((min, max)), ..self }
     }

@@ -1,6 +1,6 @@
-//! Declares the configuration keys that every device has, including devices that a user adds. They choose the architecture of
-//! the hardware and its interface, not the function that the hardware computes. For example, `architecture = "pipelined"` asks
-//! for a pipeline.
+//! Declares the configuration keys that every device has, including devices that a user adds. These keys choose the architecture
+//! of the hardware, its interface and the generated files, not the function that the hardware computes. For example,
+//! `architecture = "pipelined"` asks for a pipeline.
 //!
 //! [`Schema::key`] finds these keys like the keys of a device. A shared key that has its default is not written to a file, so
 //! that the digests in older records stay valid.

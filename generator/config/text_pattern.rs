@@ -4,18 +4,19 @@
 /// A pattern that a text in a configuration must match.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TextPattern {
-    /// The name of a vendor: a letter, followed by letters, digits, `.`, `-` and `_`.
+    /// The name of a vendor: a letter, followed by letters, digits, `.`, `-` and `_`; 60 characters at most.
     Name,
-    /// A version: three numbers without leading zeros, separated by dots. For example, `0.1.0`.
+    /// A version: three numbers from 0 to 9999 without leading zeros, separated by dots. For example, `0.1.0`.
     Version,
-    /// An SPDX licence expression. Only the characters are checked: letters, digits, blanks, `.`, `-`, `+` and parentheses,
-    /// beginning with a letter or a parenthesis. For example, `MIT OR Apache-2.0`.
+    /// An SPDX licence expression. Only the characters are checked: at most 60 letters, digits, blanks, `.`, `-`, `+` and
+    /// parentheses, beginning with a letter or an opening parenthesis. For example, `MIT OR Apache-2.0`.
     Licence,
     /// A formula or a number, of 1 to 500 characters without control characters. The formula parser decides which other
     /// characters a formula may have, because it can mark the wrong character in its message.
     Formula,
-    /// Samples as pairs `x,y x,y`, or an empty text. A file may state the path of a CSV file instead. For example, `0,0
-    /// 0.5,0.25 1,1`.
+    /// Samples as pairs `x,y x,y`, or an empty text. For example, `0,0 0.5,0.25 1,1`. Only the characters and the length (at most
+    /// 2^20 bytes) are checked. A configuration file may state the path of a CSV file instead, which the reader replaces by its
+    /// points.
     Samples,
 }
 
@@ -59,7 +60,8 @@ impl TextPattern {
         }
     }
 
-    /// Returns the pattern as a regular expression that both JavaScript and Rust understand.
+    /// Returns the pattern as a regular expression that both JavaScript and Rust understand. For `Samples`, the expression also
+    /// matches the path of a file with points, and states no largest length.
     pub fn regex(self) -> &'static str {
         match self {
             TextPattern::Name => "^[A-Za-z][A-Za-z0-9._-]{0,59}$",

@@ -1,5 +1,5 @@
-//! Checks the values of a configuration, and builds a [`Config`] from valid ones. It checks ranges, the conditions under which
-//! keys apply, and the conditions of the device between keys.
+//! Checks the values of a configuration, and builds a [`Config`] from valid values. The checks concern ranges, the conditions
+//! under which keys apply, and the conditions of the device between keys.
 
 use std::collections::BTreeSet;
 
@@ -179,7 +179,8 @@ impl Key {
     }
 
     /// Returns values that replace an unknown value in trials of the device's check: the default, and the ends of the range or
-    /// all options.
+    /// all options. For a list of integers, these ends are the shortest list of the smallest integer and the longest list of the
+    /// largest integer. A text or a table has only its default.
     fn stand_ins(&self) -> Vec<Value> {
         let ends: Vec<Value> = match &self.kind {
             KeyKind::Integer { min, max } => vec![Value::Integer(*min), Value::Integer(*max)],
@@ -227,8 +228,8 @@ pub(super) struct Draft<'a> {
 /// Checks the conditions between keys: the conditions of `only_when` and `unless`, the conditions between shared keys, and the
 /// device's own check.
 ///
-/// A value that is not accepted is unknown. A condition is reported only if it fails for all trial values of the unknown keys,
-/// so that one mistake raises no messages about other keys.
+/// A value that is not accepted is unknown. A condition is reported only if the condition fails for all trial values of the
+/// unknown keys, so that one mistake raises no messages about other keys.
 fn check(schema: &Schema, draft: &Draft, problems: &mut Problems) {
     for key in schema.all_keys() {
         let governors = chain(schema, key);
@@ -307,8 +308,8 @@ fn check(schema: &Schema, draft: &Draft, problems: &mut Problems) {
     problems.extend(found);
 }
 
-/// Returns the message about a key that the user did not give. It begins with the key's value, and says that this is the
-/// default.
+/// Returns the message about a key that the user did not give. The message begins with the key's value, and says that this value
+/// is the default.
 fn of_default(key: &Key, draft: &Draft, message: &str) -> String {
     let value = draft.config.value(key.name).toml();
     format!("`{}` = {value}, its default, since it is not given: {message}", key.name)
@@ -329,8 +330,8 @@ fn chain(schema: &Schema, key: &Key) -> Vec<Condition> {
     conditions
 }
 
-/// Returns configurations in which trial values replace each unknown value. Each configuration uses the next trial value of
-/// every such key.
+/// Returns configurations in which trial values replace each unknown value. Each configuration uses the next trial value of every
+/// such key. Without unknown values, the function returns one configuration, the draft itself.
 fn trials(schema: &Schema, draft: &Draft) -> Vec<Config> {
     let stand_ins: Vec<(&str, Vec<Value>)> = schema
         .all_keys()
@@ -390,8 +391,8 @@ impl Config {
         draft.finish(schema, problems)
     }
 
-    /// Sets the keys that do not apply to their defaults. For example, `output.registered` applies only to sequential cores, so
-    /// a configuration that has become a pipeline must not keep its value.
+    /// Sets the keys that do not apply to their defaults. For example, `output.registered` applies only to sequential cores, so a
+    /// configuration that has become a pipeline must not keep the value `true`.
     pub fn reset_keys_without_effect(&mut self, schema: &Schema) {
         for key in schema.all_keys() {
             if !self.applies(schema, key.name) {
@@ -400,8 +401,8 @@ impl Config {
         }
     }
 
-    /// Returns whether the key `key` has an effect, given the values of the other keys. It also returns true for a key without
-    /// a condition.
+    /// Returns whether the key `key` has an effect, given the values of the other keys. Returns true for a key without a
+    /// condition, and for a key that the schema does not have.
     pub fn applies(&self, schema: &Schema, key: &str) -> bool {
         match schema.key(key).and_then(|key| key.condition) {
             None => true,
@@ -433,8 +434,11 @@ impl<'a> Draft<'a> {
         }
     }
 
-    /// Adjusts the defaults of keys that the user left out, and checks the conditions between keys. Returns the configuration,
-    /// or all problems if there is any.
+    /// Adjusts the defaults of keys that the user left out, and checks the conditions between keys. If a given value is unknown,
+    /// no default is adjusted. Returns the configuration, or all problems if there is any.
+    ///
+    /// # Errors
+    /// Fails if `problems` has a problem already, or if a condition between keys fails.
     pub(super) fn finish(
         mut self,
         schema: &Schema,

@@ -88,8 +88,8 @@ impl TableEntry {
         }
     }
 
-    /// Returns the number of bits in a field. Returns `None` if the user did not give the field, or if it is no integer of 0 or
-    /// more.
+    /// Returns the number of bits in a field. Returns `None` if the user did not give the field, or if the field is no integer of
+    /// 0 or more.
     pub fn bits(&self, name: &str) -> Option<u32> {
         match self.field(name)? {
             Value::Integer(value) => u32::try_from(*value).ok(),
@@ -97,7 +97,8 @@ impl TableEntry {
         }
     }
 
-    /// Returns the number in a field. Returns `None` if the user did not give the field, or if it is no number.
+    /// Returns the number in a field. Returns `None` if the user did not give the field, or if the value of the field is no
+    /// number.
     pub fn number(&self, name: &str) -> Option<f64> {
         match self.field(name)? {
             Value::Number(value) => Some(*value),
@@ -157,9 +158,11 @@ impl Serialize for TableEntry {
     }
 }
 
-/// A valid configuration: every value is in the range of its key, and the device accepts the combination.
+/// The values of all keys of one device. A configuration that [`super::read()`], [`super::parse()`], [`super::sample()`] or
+/// [`Config::from_values`] returns is valid: every value is in the range of its key, and the device accepts the combination.
+/// [`Config::defaults`] and [`Config::set`] do not check these conditions.
 ///
-/// Keys that do not apply (see [`super::Key::condition`]) have their defaults.
+/// In a valid configuration, keys that do not apply (see [`super::Key::condition`]) have their defaults.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Config {
     /// The name of the Verilog module and of its files, a legal Verilog identifier.
@@ -253,7 +256,8 @@ impl Config {
         }
     }
 
-    /// Returns every key with its value, in the order of the schema, and then the keys that every device shares.
+    /// Returns every key with its value: first the keys of the device in the order of its schema, and then the keys that every
+    /// device shares.
     pub fn values(&self) -> impl Iterator<Item = (&'static str, &Value)> {
         self.values.iter().map(|(name, value)| (*name, value))
     }
@@ -269,8 +273,8 @@ impl Config {
         }
     }
 
-    /// Replaces the value of a key. The caller must make sure that the key accepts the value. It does nothing if the device has
-    /// no such key.
+    /// Replaces the value of a key. The caller must make sure that the key accepts the value. The function does nothing if the
+    /// device has no such key.
     pub fn set(&mut self, key: &str, value: Value) {
         if let Some(slot) = self.values.iter_mut().find(|(name, _)| *name == key) {
             slot.1 = value;
@@ -282,7 +286,7 @@ impl Config {
     }
 }
 
-/// Returns whether a text is an integer in its usual form. For example, `7` is one, and `007` and `+7` are not.
+/// Returns whether a text is a 64-bit integer in its usual form. For example, `7` is such an integer, and `007` and `+7` are not.
 pub(super) fn is_integer(word: &str) -> bool {
     word.parse::<i64>().is_ok_and(|value| value.to_string() == word)
 }

@@ -4,20 +4,23 @@ use super::schema::{Key, KeyKind, Schema};
 use super::shared::shared_keys;
 use super::values::{Config, Value};
 
-/// The largest width of a comment line.
+/// The largest width of a comment line, unless a single word is longer.
 const WIDTH: usize = 90;
 
 /// The width to which a line of [`brief`] is padded, so that the remarks begin in the same column.
 const REMARK_COLUMN: usize = 38;
 
-/// The largest length of a remark with the values of a choice.
+/// If the first clause of a description and the options of a choice have this many bytes or more together, the remark has only
+/// the options.
 const REMARK_WIDTH: usize = 80;
 
-/// Returns the short file that `glint new` prints: one line for each key of the device, with a remark.
+/// Returns the short file that `glint new` prints: one line for each key of the device, with a remark. A key that is a table has
+/// one line for each entry.
 ///
-/// The keys in `given` are set. All other keys are comments that show their values, so that a default still adjusts to the keys
-/// that a user sets (see [`super::parse()`]). Keys that do not apply are left out, and so are the keys that every device
-/// shares, unless they are in `given`. `glint new DEVICE --all` prints the text of [`commented`].
+/// The keys in `given`, `device`, `name` and `architecture` are set, and `strict` if it is true. All other keys are comments that
+/// show their values, so that a default still adjusts to the keys that a user sets (see [`super::parse()`]). Keys that do not
+/// apply are left out. The other keys that every device shares are left out too, unless they are in `given`. `glint new DEVICE
+/// --all` prints the text of [`commented`].
 pub fn brief(schema: &Schema, config: &Config, given: &[String]) -> String {
     let mut text = String::new();
     for (key, value) in common(config) {
@@ -97,8 +100,8 @@ fn remarked(line: &str, remark: &str) -> String {
 
 /// Returns the file that `glint new --all` prints: every key with its value, its meaning, and the values that it accepts.
 ///
-/// The keys in `given` are set. All other keys are comments that show their values. If `# ` is removed from the lines of these
-/// keys, the file is read as the same configuration.
+/// The keys in `given`, `device`, `name` and `strict` are set. All other keys are comments that show their values, including keys
+/// that do not apply. If `# ` is removed from the lines of these keys, the file is read as the same configuration.
 pub fn commented(schema: &Schema, config: &Config, given: &[String]) -> String {
     let mut text = comment(&format!(
         "Glint configuration of the device \"{}\". It shows all keys. A key in a comment has its default, \

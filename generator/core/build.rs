@@ -1,7 +1,7 @@
 //! Build script: sets `GLINT_SOURCES` to a digest of the source files that an exhaustive check depends on.
 //!
 //! An exhaustive check that was interrupted, or divided among machines, may continue only with the same sources. `glint cosim`
-//! compares this digest to make sure.
+//! therefore compares this digest with the digest in the file of the check.
 
 use std::fs;
 use std::path::{Path, PathBuf};

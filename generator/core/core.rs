@@ -1,7 +1,7 @@
 //! Defines [`Core`]: a configuration of a device, with the netlist and the accuracy contract that Glint builds from it.
 //!
-//! Its methods make everything else from the configuration: Verilog and other files, digests, timing, bench vectors, and the jobs
-//! of co-simulation and exhaustive checks.
+//! The methods of [`Core`] make everything else from the configuration: Verilog and other files, digests, timing, bench vectors,
+//! and the jobs of co-simulation and exhaustive checks. For example, [`Core::files`] returns every emitted file.
 
 use std::path::Path;
 
@@ -21,21 +21,22 @@ use glint_golden::{Contract, Sweep};
 use glint_rtl::netlist::Design;
 
 /// The number of results that the default test of a configuration checks, in `glint` without a command and in `glint cosim`. An
-/// option of the command can change it.
+/// option of the command can change this number.
 pub const TEST_POINTS: u64 = 100_000;
 
 /// The seed of the random inputs of the default test.
 pub const TEST_SEED: u64 = 1;
 
-/// The number of random computations at the beginning of the bench that is emitted with a sequential core. They use everything
-/// that the handshake allows, such as writes while the core is busy. For a device with lines, random lines are computed until
-/// they have this number times [`BENCH_LINE`] results. The bench of a pipeline has [`PIPELINE_POINTS`] points instead.
+/// The number of random computations at the beginning of the bench that is emitted with a sequential core. These computations use
+/// everything that the handshake allows, such as writes while the core is busy. For a device with lines, random lines are
+/// computed until they have this number times [`BENCH_LINE`] results. The bench of a pipeline has [`PIPELINE_POINTS`] points
+/// instead.
 const BENCH_POINTS: u64 = 64;
 
 /// The largest number of results of a line among these computations.
 const BENCH_LINE: i64 = 6;
 
-/// The number of random points at the beginning of the emitted bench of a pipeline, which takes one in every clock.
+/// The number of random points at the beginning of the emitted bench of a pipeline.
 const PIPELINE_POINTS: u64 = 2000;
 
 /// The seed of the random inputs of emitted test benches.
@@ -60,7 +61,8 @@ impl Core {
     /// Fails in these cases:
     /// - The description has mistakes.
     /// - The pipeline cannot be made.
-    /// - A result depends on an earlier computation, or no output shows it.
+    /// - A result depends on an earlier computation, the golden model never shows a result, or the formula gives a wrong number
+    ///   of values.
     /// - The constraints ask for a faster clock than the pipeline was scheduled for.
     /// - The configuration sets `package.rom_style`, and no ROM of the core can have such an attribute.
     /// - The configuration asks for a program that recomputes results, and the contract does not allow one; see
@@ -108,21 +110,23 @@ impl Core {
         Ok(Self { device, config, design, contract })
     }
 
-    /// Returns a digest that identifies this configuration and the version of Glint: SHA-256 of the TOML text, in hexadecimal.
+    /// Returns a digest that identifies this configuration and the version of Glint: SHA-256 of the version and the TOML text, in
+    /// hexadecimal.
     pub fn digest(&self) -> String {
         let text = self.config.to_toml(&(self.device.schema)());
         package::digest(format!("{}\n{text}", env!("CARGO_PKG_VERSION")).as_bytes())
     }
 
-    /// Returns a digest that identifies the contract in a record of a proof: SHA-256 in hexadecimal. It covers the name of the
-    /// device, and its own keys that are not at their defaults. A key that is added to the device later does not change the
-    /// digest while it is at its default.
+    /// Returns a digest that identifies the contract in a record of a proof: SHA-256 in hexadecimal. The digest covers the name
+    /// of the device, and those keys of this device alone that apply and are not at their defaults. Keys that all devices share
+    /// do not change the digest. A key that is added to the device later does not change the digest while it is at its default.
     pub fn contract_digest(&self) -> String {
         self.digest_of((self.device.schema)().keys.iter())
     }
 
-    /// Returns the evidence for the contract's bound. `proofs` is the directory of records; a device of the catalogue needs
-    /// none.
+    /// Returns the evidence for the contract's bound. `proofs` is the directory of records; a device whose bound is proved in the
+    /// catalogue needs no record. Without a record that proves the bound, the evidence is [`Backing::Author`], the statement of
+    /// the device's author.
     ///
     /// # Errors
     /// Fails if a record cannot be read, or does not fit the contract.
@@ -133,9 +137,9 @@ impl Core {
         Backing::of_records(proofs, &self.contract_digest(), self.contract.as_ref())
     }
 
-    /// Returns a digest that identifies this core, whatever its name: SHA-256 in hexadecimal. It covers the same keys as
+    /// Returns a digest that identifies this core, whatever its name: SHA-256 in hexadecimal. The digest covers the same keys as
     /// [`Core::contract_digest`], and the keys that all devices share, such as the architecture. Keys of the tables `interface`
-    /// and `package` do not change it, because they concern only wrappers and packages around the core.
+    /// and `package` do not change the digest, because these keys concern only wrappers and packages around the core.
     pub fn core_digest(&self) -> String {
         let schema = (self.device.schema)();
         self.digest_of(schema.all_keys().filter(|key| {
@@ -156,9 +160,9 @@ impl Core {
         package::digest(text.as_bytes())
     }
 
-    /// Returns a digest that identifies an exhaustive check of this configuration: SHA-256 in hexadecimal. It covers the
-    /// configuration, the sweep, the sources of the code that takes part, and the errors at some operand combinations. The
-    /// errors also reveal a changed golden model in another crate. The digest is the same on every machine.
+    /// Returns a digest that identifies an exhaustive check of this configuration: SHA-256 in hexadecimal. The digest covers the
+    /// configuration, the sweep, the sources of the code that takes part, and the errors at some operand combinations. The errors
+    /// also reveal a changed golden model in another crate. The digest is the same on every machine.
     pub fn fingerprint(&self, sweep: &Sweep) -> String {
         let contract = self.contract.as_ref();
         let places = [Places::of_sweep(contract, sweep.clone()), Places::of_colours(contract)];
@@ -190,8 +194,8 @@ impl Core {
         Lockstep::new(design, model, self.contract.as_ref(), seed)
     }
 
-    /// Returns the exhaustive check of this core. It checks the error bound and, if the operands have few bits, compares model
-    /// and hardware clock by clock for every combination of operands.
+    /// Returns the exhaustive check of this core. The check tests the error bound and, if the operands have few bits, compares
+    /// model and hardware clock by clock for every combination of operands.
     ///
     /// # Errors
     /// Fails if golden model, design and contract do not have the same signals, operands and outputs.
@@ -228,7 +232,7 @@ impl Core {
     /// Returns a worked example: one computation with the values of all operands and outputs.
     ///
     /// # Errors
-    /// Fails if a simulated computation does not finish within 65 536 clocks.
+    /// Fails if a simulated computation does not finish within 65 536 clocks, or never raises `valid`.
     pub fn example(&self) -> Result<WorkedExample> {
         trial::example(&self.design, self.contract.as_ref())
     }
@@ -237,7 +241,7 @@ impl Core {
     /// length. Returns `None` if the device computes single points, or if the numbers are no linear functions.
     ///
     /// # Errors
-    /// Fails if a simulated computation does not finish within 65 536 clocks.
+    /// Fails if a simulated computation does not finish within 65 536 clocks, or never raises `valid`.
     pub fn line(&self) -> Result<Option<LineClocks>> {
         trial::line(&self.design, self.contract.as_ref())
     }
@@ -246,7 +250,7 @@ impl Core {
     /// `points` results in all. The golden model and the simulated netlist agree on the outputs.
     ///
     /// # Errors
-    /// Fails if golden model and simulation differ.
+    /// Fails as [`Core::lockstep`] does, or if golden model and simulation differ.
     pub fn vectors(&self, points: u64, seed: u64) -> Result<Vectors> {
         self.lockstep(seed)?.record(points, &[])
     }
@@ -261,7 +265,8 @@ impl Core {
     }
 
     /// Returns the same as [`Core::shipped_vectors`], but avoids a repeated search. If the cache `known` has the computations
-    /// that were chosen for this design, the function takes them from the cache. Otherwise it adds them to the cache.
+    /// that were chosen for this design, the function takes them from the cache. Otherwise the function searches for the
+    /// computations and adds them to the cache.
     ///
     /// # Errors
     /// Fails as [`Core::vectors`] does.
@@ -285,8 +290,8 @@ impl Core {
     /// the contents of the ROMs.
     ///
     /// # Errors
-    /// Fails if the contract is neither a formula of one operand nor a list of formulas with conditions, or if there are more
-    /// than 2^32 combinations of operands.
+    /// Fails if the contract is neither a formula of one operand nor a list of formulas with conditions. Fails if the operands of
+    /// such a list have more than 2^32 combinations, if a result wraps, or if the core has no C model.
     pub fn recomputation(&self) -> Result<OutputFiles> {
         let asked = Surroundings { software: true, recomputation: true, ..Surroundings::default() };
         let inputs = EmitInputs {
@@ -300,6 +305,9 @@ impl Core {
 
     /// Returns the sequential design from which the core was made, if the core is a pipeline and `is_wanted` is true; otherwise
     /// `None`.
+    ///
+    /// # Errors
+    /// Fails if the sequential design cannot be built.
     fn microprogram(&self, is_wanted: bool) -> Result<Option<Design>> {
         let wanted = is_wanted && self.design.pipeline.is_some();
         Ok(wanted.then(|| self.device.sequential(&self.config)).transpose()?)

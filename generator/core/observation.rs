@@ -10,7 +10,8 @@ use glint_golden::Contract;
 pub struct WorkedExample {
     /// The operands, in the order of the operand ports.
     pub operands: Vec<Quantity>,
-    /// The outputs, in the order of the result ports. If the computation has several results, these are the outputs of the first.
+    /// The outputs, in the order of the result ports. If the computation has several results, the field has the outputs of the
+    /// first result.
     pub outputs: Vec<Quantity>,
     /// The outputs of every result of the computation, the first result first.
     pub results: Vec<Vec<Quantity>>,
@@ -126,7 +127,7 @@ pub struct Computation {
 }
 
 impl Computation {
-    /// Returns whether the last result is shown in the clock of `done`. It is false for a computation without results.
+    /// Returns whether the last result is shown in the clock of `done`. Returns false for a computation without results.
     pub fn ends_with_result(&self) -> bool {
         let last = self.results.last();
         last.is_some_and(|result| result.clock == self.done)
@@ -155,18 +156,19 @@ pub struct Quantity {
 
 /// The vectors of a test bench: inputs and expected outputs of every clock.
 ///
-/// The bench applies the inputs of a clock on the falling edge that begins the clock. It compares the outputs just before the
-/// rising edge in the middle of the clock.
+/// The bench applies the inputs of a clock on the falling edge that begins the clock. The bench compares the outputs just before
+/// the rising edge in the middle of the clock.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Vectors {
     /// For each clock, the bit patterns of all input ports except `clk`, in the order of the ports.
     pub inputs: Vec<Vec<u64>>,
     /// For each clock, the expected bit patterns of all output ports, in the order of the ports.
     pub expected: Vec<Vec<u64>>,
-    /// The index of the first clock in which the bench compares results and status. It compares the handshake outputs from the
-    /// first clock after a clock with reset.
+    /// The index of the first clock in which the bench compares results and status. The bench compares the handshake outputs from
+    /// the first clock after a clock with reset.
     pub known_from: usize,
     /// The distance between two ROM words with computations that detect faults, in words. For example, 1 means that every word
-    /// has such computations, and 2 that every second word has them. It is 0 if the bench has no computations for ROM words.
+    /// has such computations, and 2 that every second word has such computations. The distance is 0 if the bench has no
+    /// computations for ROM words.
     pub word_stride: usize,
 }

@@ -30,21 +30,21 @@ const OPERANDS_BUFFERED: &str = "operands.buffered";
 /// example of a complete device outside Glint.
 #[derive(Clone, Copy)]
 pub struct Device {
-    /// The name of the device, which the key `device` of a configuration gives. It must equal [`Schema::device`].
+    /// The name of the device, which the key `device` of a configuration gives. The name must equal [`Schema::device`].
     pub name: &'static str,
     /// A line about the device, which `glint list` prints.
     pub summary: &'static str,
     /// Returns the device's own configuration keys, with their defaults.
     pub schema: fn() -> Schema,
-    /// Describes the hardware of a configuration: adds blocks and a microprogram to a designer, whose name is the module's. It
-    /// must not call `finish`.
+    /// Describes the hardware of a configuration: adds blocks and a microprogram to a designer, whose name is the name of the
+    /// module. The function must not call `finish`.
     pub describe: fn(&Designer, &Config),
     /// Returns the golden model of a configuration.
     pub model: fn(&Config) -> Box<dyn Model>,
     /// Returns the accuracy contract of a configuration.
     pub contract: fn(&Config) -> Box<dyn Contract>,
-    /// Whether the contract's bound is proved for every configuration, by a proof beside the golden model. Otherwise the bound is
-    /// only the statement of the author.
+    /// Whether the contract's bound is proved for every configuration, by a proof next to the golden model. Otherwise the bound
+    /// is only the statement of the author.
     ///
     /// A device that replaces the contract must set this field too: `Device { contract, proved: false, ..own }`.
     pub proved: bool,
@@ -57,7 +57,7 @@ impl Device {
         Config::defaults(&schema, &schema.module())
     }
 
-    /// Returns the netlist of a configuration: with a microprogram, or as a pipeline if the configuration asks for one.
+    /// Returns the netlist of a configuration: with a microprogram, or as a pipeline if the configuration asks for a pipeline.
     ///
     /// # Errors
     /// Fails if the description has mistakes, or if the pipeline cannot be made. The error lists the mistakes, or names the key
@@ -155,8 +155,8 @@ impl Device {
     /// Checks that the contract can describe the results of the device.
     ///
     /// # Errors
-    /// Fails if [`Contract::check`] fails, for example because the golden model never shows a result. Fails also if results
-    /// depend on values that an earlier computation left, or if no output shows them.
+    /// Fails if [`Contract::check`] fails, for example because the golden model never shows a result, or because the formula
+    /// gives too few values. Fails also if results depend on values that an earlier computation left.
     pub fn check_contract(
         &self,
         config: &Config,

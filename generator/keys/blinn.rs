@@ -1,6 +1,6 @@
-//! Declares the configuration keys of the device `blinn`, which computes cⁿ with c = cos γ and the specular exponent n. The
-//! keys are the same as for `gauss`, and the module `decay` declares them. They are checked for the decay −log₂ c, since cⁿ is
-//! 2^(−n·decay).
+//! Declares the configuration keys of the device `blinn`, which computes cⁿ with c = cos γ and the specular exponent n. The keys
+//! are the same as for `gauss`, and the module `decay` declares them. The module also checks the keys, for the decay −log₂ c,
+//! because cⁿ is 2^(−n·decay).
 
 pub use super::decay::Keys;
 

@@ -59,8 +59,8 @@ glint_config::keys! {
 }
 
 impl ColourKeys {
-    /// Returns whether one multiplier computes the products of f and all colours one after the other, instead of one multiplier
-    /// for each.
+    /// Returns whether one multiplier computes the products of f and all colours one after the other. If not, each colour has its
+    /// own multiplier, as in every pipeline.
     pub fn in_turn(&self) -> bool {
         self.multipliers == 1
     }
@@ -99,8 +99,8 @@ impl Operands {
 }
 
 glint_config::keys! {
-    /// The keys of the reflectance f, the factor by which a highlight device multiplies colours. They set the fraction bits of
-    /// f, the rounding of f, and the rounding of the products.
+    /// The keys of the reflectance f, the factor by which a highlight device multiplies colours. These keys set the fraction bits
+    /// of f, the rounding of f, and the rounding of the products.
     pub struct Intensity {
         fraction: u32 = intensity_fraction(16),
         rounding: Rounding = Key::rounding("intensity.rounding", "truncate",
@@ -231,8 +231,9 @@ pub fn line_stages(choices: &'static [&'static str]) -> Key {
     .joined_later()
 }
 
-/// Checks the range of the exponent n, and adds the problems to `problems`. The smallest exponent may not exceed the largest,
-/// and an operand of `bits` bits must be able to represent the largest. For example, 8 bits cannot represent n = 1000.
+/// Checks the range of the exponent n, and adds the problems to `problems`. The smallest exponent must not exceed the largest
+/// exponent, and an operand of `bits` bits must be able to represent the largest exponent. For example, 8 bits cannot represent n
+/// = 1000.
 pub fn check_exponents(domain: &Domain, bits: u32, problems: &mut Problems) {
     let (min, max) = domain.exponents();
     if min > max {
@@ -267,11 +268,11 @@ pub fn check_rom_size(
     }
 }
 
-/// Checks the segments of a table over the distance 1 − cos γ, an operand of `bits` bits. The table has ranges, each a quarter
-/// as long as the preceding range, so range j has `bits` − 2·j operand bits. `segments` has the number of leading bits that
-/// select a segment in each range. This number may not exceed the operand bits of the range; otherwise the function adds a
-/// problem of the key `key`. Returns the largest number of bits that remain in a segment, up to the first range with a problem.
-/// For example, 20 bits and segments of 6 and 5 bits give 14.
+/// Checks the segments of a table over the distance 1 − cos γ, an operand of `bits` bits. The table has ranges, each a quarter as
+/// long as the preceding range, so range j has `bits` − 2·j operand bits. `segments` has the number of leading bits that select a
+/// segment in each range. This number must not exceed the operand bits of the range; otherwise the function adds a problem of the
+/// key `key`, and checks no further range. Returns the largest number of bits that remain in a segment, up to the first range
+/// with a problem. For example, 20 bits and segments of 6 and 5 bits give 14.
 pub fn check_segments(segments: &[u32], key: &str, bits: u32, problems: &mut Problems) -> u32 {
     let mut most = 0;
     for (range, &prefix) in (0u32..).zip(segments) {

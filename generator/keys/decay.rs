@@ -1,8 +1,9 @@
 //! Declares the configuration keys of the devices `blinn` and `gauss`, and computes their tables of polynomials.
 //!
-//! Both devices compute f = 2^(−n·decay(c)), where c = cos γ and n is the specular exponent. The decay is −log₂ c in `blinn`
-//! and γ²/(2 ln 2) in `gauss`. Both have two tables of polynomials. One table gives the ratio of the decay to the distance 1 −
-//! c, and the other gives 2^−x.
+//! Both devices compute f = 2^(−n·decay(c)), where c = cos γ and n is the specular exponent. The decay is −log₂ c in `blinn` and
+//! γ²/(2 ln 2) in `gauss`. Both devices have two tables of polynomials. One table gives the ratio of the decay to the distance 1
+//! − c, and the other table gives 2^−x. In `blinn`, the first table gives the ratio for the mantissa m of the cosine, from 1/2 to
+//! 1, instead of c.
 
 use std::sync::Arc;
 
@@ -46,8 +47,8 @@ fn degree(name: &'static str) -> Key {
 /// The decay of a device as a function of c = cos γ. The device computes f = 2^(−n·decay).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Decay {
-    /// The decay −log₂ c of the device `blinn`. The table covers c from 1/2 to 1. For smaller c, every doubling of c up to this
-    /// range adds 1 to the decay.
+    /// The decay −log₂ c of the device `blinn`. The table covers c from 1/2 to 1. A smaller c is doubled until it lies in this
+    /// range; each doubling adds 1 to the decay.
     Logarithm,
     /// The decay γ²/(2 ln 2) of the device `gauss`.
     Angle,
@@ -81,8 +82,9 @@ impl Decay {
 }
 
 impl Keys {
-    /// Returns the number of bits of u, the operand of the ratio's table. u is the distance 1 − c minus one unit in the last
-    /// place of the cosine c. For example, for a cosine with 20 fraction bits u has 19 bits in `blinn` and 20 in `gauss`.
+    /// Returns the number of bits of u. In `gauss`, u is the distance 1 − c minus one unit in the last place of the cosine c; in
+    /// `blinn`, the mantissa of c, from 1/2 to 1, replaces c. The leading bits of u are the operand of the ratio's table. For
+    /// example, for a cosine with 20 fraction bits u has 19 bits in `blinn` and 20 bits in `gauss`.
     pub fn distance(&self, decay: Decay) -> u32 {
         self.operands.cosine.fraction - decay.known()
     }
@@ -93,8 +95,8 @@ impl Keys {
         Format::unsigned(1, self.decay_fraction as i32)
     }
 
-    /// Returns the number of integer bits of the complete decay. In `blinn` the integer also counts the doublings of the
-    /// cosine: for 20 fraction bits of the cosine it has 6 bits. In `gauss` it has 1 bit.
+    /// Returns the number of integer bits of the complete decay. In `blinn` the integer also counts the doublings of the cosine:
+    /// for 20 fraction bits of the cosine, the integer has 6 bits. In `gauss` the integer has 1 bit.
     fn whole_bits(&self, decay: Decay) -> u32 {
         let octave = (self.operands.cosine.fraction - 1).ilog2() + 1;
         1 + octave * decay.known()
@@ -113,8 +115,9 @@ impl Keys {
         Format::unsigned(whole as i32, self.argument as i32)
     }
 
-    /// Returns the number of low bits of u that do not address the table of the ratio. The table reads one fraction bit of 1 −
-    /// c more than the ratio has. For example, the defaults of 20 cosine bits and 16 ratio bits leave 3 bits.
+    /// Returns the number of low bits of u that do not address the table of the ratio. The table reads one fraction bit of 1 − c
+    /// more than the ratio has. For example, the defaults of 20 cosine bits and 16 ratio bits leave 3 bits. The number is 0 if
+    /// the cosine has at most one fraction bit more than the ratio.
     pub fn unseen(&self) -> u32 {
         self.operands.cosine.fraction.saturating_sub(self.ratio_fraction + 1)
     }
@@ -184,8 +187,8 @@ pub(super) fn schema(device: &'static str, check: fn(&Config, &mut Problems)) ->
     Schema { device, keys, check }
 }
 
-/// Checks that the values of the keys are valid together and that both tables can be found, and adds the problems to
-/// `problems`.
+/// Checks that the values of the keys are valid together and that both tables can be found, and adds the problems to `problems`.
+/// The tables, which can take long to find, are searched only if the file has no other mistake.
 pub(super) fn check(config: &Config, decay: Decay, problems: &mut Problems) {
     let keys = Keys::of(config);
     common::check_exponents(&keys.domain, keys.operands.exponent_bits, problems);

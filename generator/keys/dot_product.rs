@@ -42,7 +42,8 @@ impl Keys {
     }
 
     /// Returns the format of the scalar product N·H, where N is shifted so that its length lies between 1 and 2. For example,
-    /// `factor.bits = 18` gives `u1.17`.
+    /// `factor.bits = 18` gives `u1.17`. The format has no sign, because a negative product becomes 0, or loses its sign with
+    /// `two_sided`.
     pub fn distance(&self) -> Format {
         Format::unsigned(1, self.factor as i32 - 1)
     }

@@ -1,8 +1,8 @@
 //! Declares the configuration keys of the device `expression`, and finds the plan of its formulas.
 //!
-//! The tables `operands`, `let` and `results` of a configuration have operands, named parts of formulas, and formulas. For
-//! example, the result `r` may have the formula `sqrt(x^2 + y^2)`. A plan is a list of fixed-point operations that computes the
-//! formulas ([`glint_plan`]).
+//! The table `operands` of a configuration states the operands, the table `let` named parts of formulas, and the table `results`
+//! the results with their formulas. For example, the result `r` may have the formula `sqrt(x^2 + y^2)`. A plan is a list of
+//! fixed-point operations that computes the formulas ([`glint_plan`]).
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -155,7 +155,8 @@ impl StatementError {
 /// Returns the plan for the formulas of a configuration, with a proved error bound for each result.
 ///
 /// # Errors
-/// Fails if a name, an operand, a formula or an allowed error is wrong, or if no plan can be found. The error says why.
+/// Fails if a name, an operand, a formula or an allowed error is wrong, if no result depends on some operand, or if no plan can
+/// be found. The error says why.
 pub fn found(config: &Config) -> Result<Arc<ProvedPlan>, StatementError> {
     let statement = statement(&Keys::of(config))?;
     find(&statement).map_err(|refusal| refused(&statement, refusal))
@@ -172,11 +173,12 @@ fn refused(statement: &ExpressionStatement, refusal: PlanRefusal) -> StatementEr
     StatementError { place: refusal.place, ..error }
 }
 
-/// Returns the operands and results that a configuration states. Its formulas contain operands alone: named parts are replaced
-/// by their formulas.
+/// Returns the operands and results that a configuration states. The returned formulas contain operands alone: the function
+/// replaces named parts by their formulas.
 ///
 /// # Errors
-/// Fails if an entry is wrong, if a name is used twice, or if no result depends on an operand.
+/// Fails if an entry is wrong, if two entries have the same name, if there is an operand on which no result depends, or if
+/// [`error_of_relative`] fails.
 fn statement(keys: &Keys) -> Result<ExpressionStatement, StatementError> {
     check_names(keys)?;
     let mut operands = Vec::new();
@@ -216,7 +218,8 @@ fn statement(keys: &Keys) -> Result<ExpressionStatement, StatementError> {
 /// 2^-13, just below 4 units with 15 fraction bits. The error is at most [`LARGEST_ERROR`].
 ///
 /// # Errors
-/// Fails if `text` is not a number between 0 and 1, if the result may be 0, or if the error would be below half a unit.
+/// Fails if `text` is not a number between 0 and 1, or if the result may be 0 or near 0. Fails if the smallest absolute value of
+/// the result cannot be computed, or if the error would be below half a unit.
 fn error_of_relative(
     statement: &ExpressionStatement,
     number: usize,
@@ -270,8 +273,11 @@ const PORTS: [&str; 12] = [
     "side_out",
 ];
 
-/// Checks that every name is an identifier and neither a port of every core nor a constant of formulas. Checks also that no two
-/// entries have the same name.
+/// Checks that every name is an identifier, and neither one of [`PORTS`] nor a constant of formulas, such as `pi`. Checks also
+/// that no two entries have the same name.
+///
+/// # Errors
+/// Fails at the first name that breaks one of these rules. The error names the entry.
 fn check_names(keys: &Keys) -> Result<(), StatementError> {
     let mut known: Vec<(&str, &str)> = Vec::new();
     let tables = [("operands", &keys.operands), ("let", &keys.parts), ("results", &keys.results)];

@@ -1,6 +1,6 @@
 //! Declares the configuration keys of the device `function`, and finds the piecewise polynomial for its function.
 //!
-//! The keys state a function of one operand x, as a formula such as `1 / sqrt(x)` or as samples (measured points). They also
+//! The keys state a function of one operand x, as a formula such as `1 / sqrt(x)` or as samples (measured points). The keys also
 //! state the domain and the allowed error.
 
 use std::sync::Arc;
@@ -84,8 +84,8 @@ fn check(config: &Config, problems: &mut Problems) {
 /// bound.
 ///
 /// # Errors
-/// Fails if the formula, the samples or the domain are wrong, if no approximation can be found, or if its plan is refused. The
-/// error says why, and names a key to change.
+/// Fails if the formula, the samples or the domain are wrong, if no approximation can be found, or if the planner refuses the
+/// approximation. The error says why, and names a key to change.
 pub fn found(config: &Config) -> Result<(TargetFunction, Arc<Piecewise>), Refusal> {
     let keys = Keys::of(config);
     let function = function(&keys)?;
@@ -168,11 +168,12 @@ pub(super) struct End {
 }
 
 impl End {
-    /// Evaluates the text of an end exactly, for an operand with `fraction` fraction bits. For example, `0.1 * 10` is 1, and
-    /// `log2(16)` is 4. `key` is the configuration key for errors.
+    /// Evaluates the text of an end, for an operand with `fraction` fraction bits, without rounding errors. For example, `0.1 *
+    /// 10` is 1, and `log2(16)` is 4. `key` is the configuration key for errors.
     ///
     /// # Errors
-    /// Fails if the text is not a formula, or if the formula has no exact value.
+    /// Fails if the text is not a formula, or if the formula has an operand or no value, such as `1 / 0`. Fails also if 1024 bits
+    /// do not decide whether the value is an operand.
     pub(super) fn read(key: &'static str, text: &str, fraction: u32) -> Result<Self, Refusal> {
         let formula = parse(text).map_err(|fault| misread(key, fault))?;
         let (ceiling, is_operand) = formula.ceiling(fraction).map_err(|fault| {

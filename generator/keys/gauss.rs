@@ -1,6 +1,6 @@
-//! Declares the configuration keys of the device `gauss`, which computes exp(−n·γ²/2) with the specular exponent n. The keys
-//! are the same as for `blinn`, and the module `decay` declares them. They are checked for the decay γ²/(2 ln 2), since the
-//! result is 2^(−n·decay).
+//! Declares the configuration keys of the device `gauss`, which computes exp(−n·γ²/2) with the specular exponent n. The keys are
+//! the same as for `blinn`, and the module `decay` declares them. The module also checks the keys, for the decay γ²/(2 ln 2),
+//! because the result is 2^(−n·decay).
 
 pub use super::decay::Keys;
 

@@ -1,7 +1,7 @@
 //! Declares the configuration keys of the device `lyon`, and checks that their values are valid together.
 //!
-//! `lyon` computes f = max(0, 1 − β·D²)^m, where D is the difference between normal and half vector. For example, the key
-//! `power` sets m.
+//! `lyon` computes f = max(0, 1 − β·D²)^m, where D is the difference between normal and half vector, and β depends on the
+//! specular exponent. For example, the key `power` sets m.
 
 use super::common::{self, ColourKeys, Domain, Intensity};
 use glint_base::fixed::Rounding;
@@ -48,8 +48,8 @@ impl Keys {
         self.power.ilog2()
     }
 
-    /// Returns whether one multiplier squares the three components of D one after the other, instead of one multiplier for
-    /// each.
+    /// Returns whether one multiplier squares the three components of D one after the other. If not, each component has its own
+    /// multiplier, as in every pipeline.
     pub fn squares_in_turn(&self) -> bool {
         self.distance_multipliers == 1
     }

@@ -55,7 +55,7 @@ fn check(config: &Config, problems: &mut Problems) {
 }
 
 /// Checks the table of inverse roots for vectors whose components have `fraction` fraction bits. The sum of squares must have
-/// more bits than `address`, and `inverse` may not be below `address`. Adds the problems to `problems`.
+/// more bits than `address`, and `inverse` must not be below `address`. Adds the problems to `problems`.
 pub(super) fn check_root(fraction: u32, address: u32, inverse: u32, problems: &mut Problems) {
     let sum = 2 * fraction + 4;
     if address >= sum {

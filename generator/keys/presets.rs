@@ -1,7 +1,7 @@
 //! Lists the configurations from which a user can start, by name.
 //!
 //! For the device `function` a preset has the name of a function, such as `exp2`, `sqrt` or `sigmoid`. For the device
-//! `expression` it has the name of a computation, such as `divide`, `polar` or `rotate`. A preset states some keys of the
+//! `expression` a preset has the name of a computation, such as `divide`, `polar` or `rotate`. A preset states some keys of the
 //! device; the other keys have their defaults.
 
 use glint_config::{TableEntries, TableEntry, Value};

@@ -12,7 +12,7 @@ glint_config::choices! {
     pub enum Scheme {
         /// a(n) = n − 1, and 0 for n = 0. For n ≥ 1, f agrees with cosⁿγ in value and slope at the peak.
         Taylor = "taylor",
-        /// The a(n) for which the largest error of f is smallest.
+        /// The a(n) for which the largest error of f is smallest; 0 for n = 0, as for n = 1.
         Minimax = "minimax",
     }
 }
@@ -36,7 +36,7 @@ glint_config::keys! {
 }
 
 impl Keys {
-    /// Returns the number of fraction bits of the coefficient a(n). It is 0 for the scheme `Taylor`, whose coefficients are
+    /// Returns the number of fraction bits of the coefficient a(n). Returns 0 for the scheme `Taylor`, whose coefficients are
     /// integers.
     pub fn coefficient_fraction(&self) -> u32 {
         if self.scheme == Scheme::Minimax { self.fraction } else { 0 }

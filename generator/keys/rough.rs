@@ -22,7 +22,7 @@ glint_config::choices! {
     /// The layout of ROM 18, the table of sines.
     pub enum RomLayout {
         /// The table has ranges of 1 − cos that become shorter toward cos = 1. A range consists of segments, within which the
-        /// sine is interpolated along a straight line.
+        /// sine is interpolated along a straight line. Below the last range, the table has an exact entry for each cosine.
         Segmented = "segmented",
         /// The table has one entry for each of 2^`sine.address` equally long intervals of the cosine, without interpolation.
         Direct = "direct",
@@ -32,8 +32,8 @@ glint_config::choices! {
 glint_config::keys! {
     /// The values of a configuration of the device `rough`, one field for each of its keys.
     ///
-    /// In the patent's arithmetic all numbers have `cosine.fraction` bits; `cosine.signed`, `clamp`, `product.*`, `intensity.*`
-    /// and `sine.fraction` do not apply.
+    /// In the patent's arithmetic, cosines, sines, their products and f all have `cosine.fraction` bits; `cosine.signed`,
+    /// `clamp`, `product.*`, `intensity.*` and `sine.fraction` do not apply.
     pub struct Keys {
         arithmetic: ArithmeticMode = Key::choice("arithmetic", "exact", ArithmeticMode::WORDS,
             "exact: numbers have an integer bit. patent: numbers are modulo 1.0, as in UA 60139."),

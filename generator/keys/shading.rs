@@ -11,17 +11,17 @@ use glint_config::{Config, Key, Problems, Schema, TextPattern, Value};
 glint_config::choices! {
     /// The device that computes the highlight from the cosine c = cos γ and the specular exponent n.
     pub enum HighlightDevice {
-        /// W(n, γ).
+        /// (n/m·(c − 1) + 1)^m with the key `power` as m; 0 if the base is negative.
         CosinePower = "cosine-power",
-        /// cosⁿγ.
+        /// cⁿ.
         Blinn = "blinn",
         /// c/(n − nc + c).
         Schlick = "schlick",
         /// exp(−n·γ²/2).
         Gauss = "gauss",
-        /// c − a(n)·(c − c²).
+        /// max(0, c − a(n)·(c − c²)), with a(n) from a table.
         Quadratic = "quadratic",
-        /// (n/2·(c − 1) + 1)² from ROM(n) on.
+        /// (n/2·(c − 1) + 1)², or 0 if this square is below the level of n in a table, or if its base is negative.
         Threshold = "threshold",
         /// A formula of the cosine alone.
         Function = "function",
@@ -120,7 +120,8 @@ struct PartSettings {
     schema: Schema,
     /// The number of fraction bits of the reflectance f.
     fraction: i64,
-    /// The smallest exponent n for which the accuracy contract of `shading` is stated. For a smaller n, f jumps at a right angle.
+    /// The smallest exponent n for which the accuracy contract of `shading` is stated. For a smaller n, f can jump from a
+    /// positive value to 0 where γ reaches a right angle.
     least: i64,
 }
 
@@ -159,20 +160,22 @@ impl Keys {
         Format::unsigned(self.exponent_bits as i32, 0)
     }
 
-    /// Returns the number of guard bits: the highlight computes so many bits more than a result has, to make its rounding error
-    /// small. The width of its colour operands limits the number.
+    /// Returns the number of guard bits: the colours of the highlight device have so many bits more than a result, to make the
+    /// rounding error of the highlight small. For example, `colour.bits = 8` gives 4. A colour of the highlight device has at
+    /// most 12 bits, so `colour.bits = 10` gives 2.
     pub fn guard(&self) -> u32 {
         (12 - self.colour_bits).min(4)
     }
 
-    /// Returns the number of fraction bits of the cosine between normal and light. It needs fewer than the cosine of the
-    /// highlight, because a colour changes less with it.
+    /// Returns the number of fraction bits of the cosine between normal and light: `colour.bits` + 6, but at most
+    /// `cosine.fraction`. A colour changes less with this cosine than with the cosine of the highlight, so fewer bits suffice.
     pub fn facing(&self) -> u32 {
         self.cosine.min(self.colour_bits + 6)
     }
 
-    /// Returns the smallest exponent n for which the accuracy contract is stated. For a smaller n the highlight's formula jumps
-    /// at a right angle.
+    /// Returns the smallest exponent n for which the accuracy contract is stated. For a smaller n, the highlight can jump from a
+    /// positive value to 0 where γ reaches a right angle. For example, the number is 1 for `blinn`, 16 for `gauss` and the key
+    /// `power` for `cosine-power`. The device `function`, which has no exponent, gives 1.
     pub fn least(&self) -> i64 {
         self.highlight_part().least
     }
@@ -182,7 +185,8 @@ impl Keys {
         self.highlight != HighlightDevice::Function
     }
 
-    /// Returns the suffixes that the names of operands and parts have, one for each light.
+    /// Returns the suffixes that the names of operands and parts have, one for each light. The first suffix is empty; the
+    /// suffixes of the other lights are `2`, `3` and `4`.
     pub fn suffixes(&self) -> impl Iterator<Item = &'static str> + use<> {
         SUFFIXES.into_iter().take(self.lights as usize)
     }
@@ -190,7 +194,8 @@ impl Keys {
     /// Returns the configurations of the parts.
     ///
     /// # Errors
-    /// Fails if a part refuses its configuration. The error names the part and says why.
+    /// Fails if a part refuses its configuration. The error has the name of the part's device, and the problems of its
+    /// configuration.
     pub fn parts(&self) -> Result<PartConfigs, (&'static str, Box<Problems>)> {
         let make = |schema: Schema, keys: Vec<(&str, Value)>| {
             let keys = keys.into_iter().map(|(key, value)| (key.to_owned(), value)).collect();

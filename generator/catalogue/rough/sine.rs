@@ -1,4 +1,4 @@
-//! Builds the table of sines of the device `rough`, ROM 18 of the patent UA 60139: it gives √(1 − x²) for a cosine x.
+//! Builds the table of sines of the device `rough`, ROM 18 of the patent UA 60139, which gives √(1 − x²) for a cosine x.
 //!
 //! The key `sine.scheme` chooses one entry for each bucket of cosines, as in the patent, or straight segments that become shorter
 //! toward x = 1.

@@ -20,7 +20,7 @@ const LANES: usize = 32;
 const PIECE: usize = 4096;
 
 /// The raw operands of many computations, and the number of results that each computation gives. A device that computes a line
-/// gives several results for one `start`; all others give one.
+/// gives several results for one `start`; all other devices give one result.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Points {
     operands: usize,
@@ -97,8 +97,8 @@ pub trait Engine {
     fn compute(&mut self, points: &Points) -> Result<Vec<i64>>;
 }
 
-/// An [`Engine`] that computes the results with the arithmetic of the golden model, through its contract. It simulates no
-/// clocks.
+/// An [`Engine`] that computes the results with the arithmetic of the golden model, through its contract. This engine simulates
+/// no clocks.
 pub struct Golden<'a>(pub &'a dyn Contract);
 
 impl Engine for Golden<'_> {

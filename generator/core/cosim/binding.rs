@@ -36,7 +36,7 @@ pub(super) struct Binding<'a> {
     pub(super) compared: Vec<NetId>,
     /// The number of nets in `compared` that are registers. For a pipeline, the number of its checkpoints.
     pub(super) registers: usize,
-    /// The register with the address of the current microinstruction. It is `None` for a pipeline.
+    /// The register with the address of the current microinstruction; `None` for a pipeline.
     pub(super) address: Option<NetId>,
     pub(super) space: Arc<Space>,
     pub(super) points: PointSource<'a>,
@@ -101,7 +101,7 @@ impl<'a> Binding<'a> {
         self.points.shorten(results - 1);
     }
 
-    /// Returns an upper bound of the number of results of one computation. It is 1 for a device without lines.
+    /// Returns an upper bound of the number of results of one computation. Returns 1 for a device without lines.
     pub(super) fn longest(&self) -> u64 {
         let Some(length) = self.points.length() else { return 1 };
         let (_, longest) = self.measure.contract.operands()[length].domain;

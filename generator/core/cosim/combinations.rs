@@ -10,7 +10,7 @@ use std::sync::Arc;
 use super::ports::{OperandPort, Ports};
 use glint_base::fixed::mask;
 
-/// The constant k of the shuffling: odd, and with bits that look random. It is 2^64 divided by the golden ratio.
+/// The constant k of the shuffling: odd, and with bits that look random: 2^64 divided by the golden ratio.
 const SCATTER: u64 = 0x9e37_79b9_7f4a_7c15;
 
 /// The combinations of operands. Each combination has a number, its *place*.
@@ -35,8 +35,8 @@ impl Space {
         Self { listed: list.to_vec(), ..Self::new(ports) }
     }
 
-    /// Fixes operands at raw values, given by name, so that the combinations cover only the other operands. It ignores a name
-    /// that no operand has.
+    /// Fixes operands at raw values, given by name, so that the combinations cover only the other operands. The function ignores
+    /// a name that no operand has.
     pub(super) fn hold(&mut self, held: &[(String, i64)]) {
         for (name, raw) in held {
             let operands = self.ports.operands.iter().zip(&mut self.held);
@@ -112,7 +112,7 @@ impl Combinations {
         self.first + self.started.saturating_sub(1)
     }
 
-    /// Returns the number of clocks since the latest `start`. It is 0 in the clock that takes `start`.
+    /// Returns the number of clocks since the latest `start`. Returns 0 in the clock that takes `start`.
     pub(super) fn since_start(&self) -> u64 {
         self.since_start
     }

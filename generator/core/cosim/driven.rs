@@ -80,7 +80,8 @@ impl Driven {
     }
 }
 
-/// Returns the index of the signal `name` among the signals of a model. Fails if the model does not predict it.
+/// Returns the index of the signal `name` among the signals of a model. Fails if the model does not predict a signal with this
+/// name.
 pub(super) fn signal(model: &dyn Model, name: &str) -> Result<usize> {
     let at = model.signals().iter().position(|other| other == name);
     at.with_context(|| format!("the golden model does not predict `{name}`"))

@@ -21,7 +21,8 @@ pub struct Histogram {
 }
 
 impl Histogram {
-    /// Adds a result with the raw word `f` in the format `format`.
+    /// Counts a result whose reflectance has the raw value `f` in the format `format`, in the class of this reflectance. A
+    /// negative value counts as 0.
     pub(super) fn add(&mut self, format: Format, f: i64) {
         // The largest word below 1.0 is as much as a fraction without integer bits can be.
         let class = if f <= 0 {
@@ -35,7 +36,7 @@ impl Histogram {
         self.counts[class] += 1;
     }
 
-    /// Adds a result whose operands are outside the domain.
+    /// Counts a result whose operands are outside the domain, in the class `outside`.
     pub(super) fn add_outside(&mut self) {
         self.counts[CLASSES.len() - 1] += 1;
     }
@@ -51,7 +52,7 @@ impl Histogram {
     }
 
     /// Returns the share of results whose `f` is neither 0 nor in the class `1`, as a number from 0 to 1. Results outside the
-    /// domain count in the total. It is 0 if there are no results.
+    /// domain count in the total. Returns 0 if there are no results.
     pub fn share_inside(&self) -> f64 {
         let inside: u64 = self.counts[1..CLASSES.len() - 2].iter().sum();
         inside as f64 / self.counts.iter().sum::<u64>().max(1) as f64

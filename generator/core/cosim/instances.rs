@@ -1,4 +1,4 @@
-//! Runs instances of one design side by side in the lanes of one simulator. This is faster than one simulator for each instance.
+//! Runs instances of one design side by side in the lanes of one simulator, which is faster than one simulator for each instance.
 //!
 //! The caller gives each instance the operands of a computation, and reads its results from the same lane.
 
@@ -32,7 +32,7 @@ impl<const LANES: usize> Instances<LANES> {
     }
 
     /// Starts a computation in some lanes in the next clock. Entry i of `computations` has the raw operands for lane i, in the
-    /// order of `Contract::operands`, or `None`.
+    /// order of `Contract::operands`, or is `None` if lane i takes no computation.
     pub(super) fn offer(&mut self, computations: [Option<&[i64]>; LANES]) {
         let taking = computations.map(|raw| u64::from(raw.is_some()));
         for port in &self.ports.operands {

@@ -86,10 +86,10 @@ impl<'a> Lockstep<'a> {
         self
     }
 
-    /// Compares random computations until `points` results were compared, or until model and hardware differ. It uses all
-    /// threads of rayon's pool, and returns the outcome of all streams.
+    /// Compares random computations until `points` results were compared, or until model and hardware differ. The function uses
+    /// all threads of rayon's pool, and returns the outcome of all streams.
     ///
-    /// It calls `progress` now and then with the number of results since the last call.
+    /// The function calls `progress` now and then with the number of results since the last call.
     ///
     /// # Errors
     /// Fails if the design cannot be simulated, or if its signals do not settle in a clock. A difference between model and
@@ -113,8 +113,12 @@ impl<'a> Lockstep<'a> {
         Ok(self.outcome(records.into_iter().flatten()))
     }
 
-    /// Runs streams in one simulator; the first of them has number `first` in the run. It stops early if an earlier stream
-    /// differs, and then returns the streams as far as they ran.
+    /// Runs streams in one simulator; the first of them has number `first` in the run. The function stops early if an earlier
+    /// stream differs, and then returns the streams as far as they ran.
+    ///
+    /// # Errors
+    /// Fails if the design cannot be simulated, or if its signals do not settle in a clock. A difference between model and
+    /// hardware is no error.
     fn group<const L: usize>(
         &self,
         courses: impl IntoIterator<Item = Course>,
@@ -199,6 +203,9 @@ impl<'a> Lockstep<'a> {
     }
 
     /// Runs a stream to its end, and adds its clocks to the vectors.
+    ///
+    /// # Errors
+    /// Fails if golden model and simulation differ, or if the simulation fails.
     fn add(&self, vectors: &mut Vectors, alone: &mut Runner<'_, 1>) -> Result<()> {
         let valid = self.binding.ports.valid;
         while !alone.ended() {
@@ -227,10 +234,10 @@ impl<'a> Lockstep<'a> {
         Ok(())
     }
 
-    /// Runs golden model and simulation from power-up on with recorded inputs, for example the inputs from
-    /// [`Lockstep::record`]. `streams` has the inputs by stream, then by clock, then by input port. Each stream runs for
-    /// `clocks` clocks, and begins again with its first clock after its last one. The run compares the hardware with the golden
-    /// model, and does not compare results with the formula.
+    /// Runs golden model and simulation from power-up on with recorded inputs, for example the inputs from [`Lockstep::record`].
+    /// `streams` has the inputs by stream, then by clock, then by input port. Each stream runs for `clocks` clocks, and begins
+    /// again with its first clock after its last clock. The run compares the hardware with the golden model, and does not compare
+    /// results with the formula.
     ///
     /// # Errors
     /// Fails as [`Lockstep::run`] does. Fails also if a stream has no clock, or if a clock has more or fewer inputs than the
@@ -276,6 +283,9 @@ impl<'a> Lockstep<'a> {
     }
 
     /// Makes a runner for one stream with `points` results, under the seed of the run.
+    ///
+    /// # Errors
+    /// Fails if the design cannot be simulated.
     fn alone(&self, points: u64) -> Result<Runner<'_, 1>> {
         Runner::new(&self.binding, [self.course(points, 1, 0)])
     }

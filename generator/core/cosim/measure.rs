@@ -7,8 +7,8 @@ use glint_base::fixed::{Format, MAX_WIDTH, exp2};
 use glint_golden::{Contract, Output, nearer};
 use glint_rtl::netlist::{Design, NetId};
 
-/// Measures the errors of a contract's outputs against the formula in f64. It reads the outputs from the values of the signals
-/// that a run of the co-simulation compares, one result at a time, and keeps the largest error.
+/// Measures the errors of a contract's outputs against the formula in f64. The outputs come from the values of the signals that a
+/// run of the co-simulation compares, one result at a time. The struct keeps the largest error.
 pub(super) struct Measure<'a> {
     pub(super) contract: &'a dyn Contract,
     /// The outputs, in the order of the contract.
@@ -17,14 +17,14 @@ pub(super) struct Measure<'a> {
 
 /// An output of the contract among the compared signals.
 struct OutputQuantity {
-    /// Its index among the compared signals.
+    /// The index of the output among the compared signals.
     at: usize,
     format: Format,
-    /// The weight of its last bit, and the inverse of the weight.
+    /// The weight of the last bit of the output, and the inverse of this weight.
     unit: f64,
     per_unit: f64,
     /// The largest bound of any output, divided by the bound of this output. The errors of outputs with different bounds are
-    /// multiplied by it before they are compared.
+    /// multiplied by this factor before they are compared.
     weight: f64,
 }
 
@@ -75,9 +75,9 @@ impl<'a> Measure<'a> {
         pairs.all(|(operand, raw)| (operand.domain.0..=operand.domain.1).contains(raw))
     }
 
-    /// Measures one result: counts its word `f`, and updates the largest error in `seen`. `values` has the compared signals
-    /// with the result, and `index` is the number of the result in its computation, from 0. The raw `operands` must be inside
-    /// the domain.
+    /// Measures one result: counts its word `f` if the device is a highlight, and updates the largest error in `seen`. `values`
+    /// has the compared signals with the result, and `index` is the number of the result in its computation, from 0. The raw
+    /// `operands` must be inside the domain.
     #[inline]
     pub(super) fn note(
         &self,

@@ -60,7 +60,7 @@ impl Offers {
         self.listed = Some(points.iter().cloned().collect());
     }
 
-    /// Returns whether the pipeline has taken all points of [`Offers::follow`]. It is false as long as [`Offers::follow`] was
+    /// Returns whether the pipeline has taken all points of [`Offers::follow`]. Returns false as long as [`Offers::follow`] was
     /// not called.
     pub(super) fn is_over(&self) -> bool {
         self.offered.is_none() && self.listed.as_ref().is_some_and(VecDeque::is_empty)

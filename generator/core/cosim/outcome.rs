@@ -27,15 +27,16 @@ pub struct Outcome {
     /// The largest error of an output against the formula in f64. `None` if no error was measured, for example because inputs
     /// were recorded.
     pub worst: Option<Worst>,
-    /// The number of results by the value of `f`. Empty for a device that is no highlight.
+    /// The number of results by the value of `f`. For a device that is no highlight, only the results outside the domain are
+    /// counted.
     pub histogram: Histogram,
     /// The first difference between model and hardware, at which the run ended. `None` if they agree.
     pub mismatch: Option<Mismatch>,
 }
 
 impl Outcome {
-    /// Joins the records of streams, up to and including the first that differs. `registers` and `outputs` are the numbers of
-    /// compared signals.
+    /// Joins the records of streams, up to and including the first stream that differs. `registers` and `outputs` are the numbers
+    /// of compared signals.
     pub(super) fn of(
         registers: usize,
         outputs: usize,
@@ -59,8 +60,8 @@ impl Outcome {
         outcome
     }
 
-    /// Returns a sentence for each failure of the run: a difference between model and hardware, or an error above `bound`.
-    /// Returns an empty list if the run passed.
+    /// Returns a sentence for each failure of the run: a difference between model and hardware, or an error above `bound` by more
+    /// than 10^−6 units, the rounding of the measurement. Returns an empty list if the run passed.
     pub fn failures(&self, bound: &Bound) -> Vec<String> {
         let mut failures = Vec::new();
         if let Some(mismatch) = &self.mismatch {
@@ -93,10 +94,10 @@ impl Outcome {
 /// The largest error of an output against the formula, and its operands.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Worst {
-    /// The error in output units. It is infinite if the formula has no value at the operands.
+    /// The error in output units; infinite if the formula has no value at the operands.
     pub units: f64,
     /// The error in units, multiplied by the largest bound of any output and divided by the bound of this output. Errors of
-    /// different outputs are compared by it.
+    /// different outputs are compared by this number.
     pub weighted: f64,
     /// The name of the output.
     pub output: String,
@@ -107,8 +108,9 @@ pub struct Worst {
 /// A signal on which golden model and hardware differ.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mismatch {
-    /// The seed of the stream. An undivided run with this seed, such as [`Lockstep::trace`](super::Lockstep::trace), has the
-    /// same inputs from the first clock on. In a run of all combinations, the number of the combination instead.
+    /// The seed of the stream. An undivided run with this seed, such as [`Lockstep::trace`](super::Lockstep::trace), has the same
+    /// inputs from the first clock on. In a run of all combinations, the number of the combination instead. In a run of recorded
+    /// inputs, 0.
     pub seed: u64,
     /// The number of rising clock edges of the stream, from power-up to the difference.
     pub clock: u64,
@@ -141,7 +143,7 @@ pub(super) struct StreamRecord {
     pub(super) worst: Option<Worst>,
     pub(super) histogram: Histogram,
     pub(super) mismatch: Option<Mismatch>,
-    /// The control operands of the latest result, and the formula's values for it. They are kept here to avoid new allocations.
+    /// The control operands of the latest result, and the formula's values for it. Both are stored here to avoid new allocations.
     pub(super) point: Vec<i64>,
     pub(super) exact: Vec<[f64; 2]>,
 }

@@ -3,12 +3,12 @@
 //! A highlight device multiplies colours by a reflectance `f`, from 0 to 1. Over most of the domain `f` is 0, so evenly drawn
 //! operands test little. Three of four points (sets of operands) are therefore drawn by the value of the formula for `f`:
 //!
-//! 1. [`PointSource`] draws operands in the domain, and a target value for `f`. It draws half of the targets evenly, and half
+//! 1. [`PointSource`] draws operands in the domain, and a target value for `f`. Half of the targets are drawn evenly, and half
 //!    with an evenly drawn logarithm.
-//! 2. It moves the operands along a straight line toward the operands with the largest `f`, until the formula has about the
-//!    target value.
-//! 3. For one in eight of these points, it continues to the two neighbouring operand values between which the formula crosses the
-//!    target, or leaves 0, and takes one of the two.
+//! 2. [`PointSource`] moves the operands along a straight line toward the operands with the largest `f`, until the formula has
+//!    about the target value.
+//! 3. For one in eight of these points, [`PointSource`] continues to the two neighbouring operand values between which the
+//!    formula crosses the target, or leaves 0. One of the two values becomes the operand.
 //!
 //! The other points are corners of the domain, points that are drawn evenly, or arbitrary bit patterns.
 //!
@@ -22,8 +22,8 @@ use glint_golden::{Contract, Highlight, Operand};
 
 use super::random::Random;
 
-/// The number of kinds of points. Kind 0 has arbitrary bit patterns, kinds 1 and 2 are mostly at the ends of the domain, and
-/// kind 3 is drawn evenly. The other kinds are drawn by the value of the formula.
+/// The number of kinds of points. Kind 0 has many arbitrary bit patterns, kinds 1 and 2 are often at or near the ends of the
+/// domain, and kind 3 is drawn evenly. For a highlight, the other kinds are drawn by the value of the formula.
 const KINDS: i64 = 16;
 
 /// If the device is no highlight, kinds above this take the operands that [`Contract::hint`] suggests.
@@ -34,8 +34,8 @@ const HINTED: i64 = 7;
 const SHORT: i64 = 12;
 const LONG: u64 = 64;
 
-/// The number of halvings of the way from the peak in the search for a value of the formula. They give the value within some
-/// hundredths.
+/// The number of halvings of the way from the peak in the search for a value of the formula. This number of halvings gives the
+/// value within some hundredths.
 const HALVINGS: u32 = 10;
 const _: () = assert!(HALVINGS.is_multiple_of(2), "they come in pairs");
 
@@ -47,7 +47,8 @@ static POWERS: LazyLock<[f64; PARTS]> =
 /// A value of the formula between its ends 0 and 1, at which errors show.
 const MIDDLE: f64 = 0.6;
 
-/// The largest number of halvings of the way in the search for operands at which the formula is below its peak.
+/// The largest number of times that the search halves the distance of operands from the peak, to find operands at which the
+/// formula is below its peak.
 const OCTAVES: u32 = 32;
 
 /// The number of random values of the other operands with which the peak is searched, and the largest number of operands that
@@ -64,17 +65,17 @@ pub struct PointSource<'a> {
     /// The operands with the domains from which they are drawn: the contract's domains, except for operands that the caller
     /// fixed.
     operands: Vec<Operand>,
-    /// The number of control operands, which determine `f`. They come first.
+    /// The number of control operands, which determine `f`. The control operands come before the other operands.
     control: usize,
     /// The index of the operand that gives the number of results of a computation, or `None` if a computation has one result.
     length: Option<usize>,
-    /// For each control operand, its value at the largest `f`, or `None` if the operand need not move. It is used if the
-    /// contract does not state the peak. All are `None` if the device is no highlight.
+    /// For each control operand, its value at the largest `f`, or `None` if the operand need not move. These values are used if
+    /// the contract does not state the peak. All values are `None` if the device is no highlight.
     peak: Vec<Option<i64>>,
 }
 
 impl<'a> PointSource<'a> {
-    /// Prepares to draw points for a contract. For a highlight, it searches for the operands with the largest `f`.
+    /// Prepares to draw points for a contract. For a highlight, the function searches for the operands with the largest `f`.
     pub fn new(contract: &'a dyn Contract) -> Self {
         let highlight = contract.highlight();
         let operands = contract.operands().to_vec();
@@ -89,14 +90,14 @@ impl<'a> PointSource<'a> {
     }
 
     /// Restricts the operand `name` to one raw value. Nearly all points then have this value; a point of arbitrary bit patterns
-    /// may have another. It does nothing if no operand has this name.
+    /// may have another. The function does nothing if no operand has this name.
     pub fn hold(&mut self, name: &str, raw: i64) {
         let held = self.operands.iter_mut().filter(|operand| operand.name == name);
         held.for_each(|operand| operand.domain = (raw, raw));
     }
 
-    /// Limits the length operand of randomly drawn lines to `most`. A line is a row of points that the device computes after
-    /// one `start`. It does nothing if the device computes no lines.
+    /// Limits the length operand of randomly drawn lines to `most`, or to the smallest length if `most` is less. A line is a row
+    /// of points that the device computes after one `start`. The function does nothing if the device computes no lines.
     pub fn shorten(&mut self, most: i64) {
         if let Some(at) = self.length {
             let (low, high) = self.operands[at].domain;
@@ -125,8 +126,8 @@ impl<'a> PointSource<'a> {
         self.draw_kind(random, values, free, kind);
     }
 
-    /// Draws new raw values for all operands, within the domain. They are drawn in the same ways as by [`PointSource::draw`],
-    /// except for arbitrary bit patterns.
+    /// Draws new raw values for all operands, within the domain. The values are drawn in the same ways as by
+    /// [`PointSource::draw`], except for arbitrary bit patterns.
     pub fn of_domain(&self, random: &mut Random) -> Vec<i64> {
         let mut values = vec![0; self.operands.len()];
         let kind = random.within(1, KINDS - 1);
@@ -192,9 +193,10 @@ impl<'a> PointSource<'a> {
         low.wrapping_add(lengths[0].min(lengths[1]) as i64)
     }
 
-    /// Returns a random raw value for operand number `at`. Half of the values are arbitrary bit patterns of the operand's
-    /// format, and the others are drawn by [`PointSource::one`]. If the device is no highlight, a quarter of the values lie
-    /// outside the domain, mostly just outside, where a core may saturate.
+    /// Returns a random raw value for operand number `at`. Half of the values are arbitrary bit patterns of the operand's format,
+    /// and the other half is drawn by [`PointSource::one`]. For a device that is no highlight, a quarter of the values are drawn
+    /// outside the domain instead, mostly just outside, where a core may saturate. If the domain is the whole format, no value is
+    /// drawn outside.
     pub fn any(&self, random: &mut Random, at: usize) -> i64 {
         let Operand { format, domain: (low, high), .. } = self.operands[at];
         let (least, most) = (format.min_raw() as i64, format.max_raw() as i64);
@@ -210,7 +212,7 @@ impl<'a> PointSource<'a> {
         }
     }
 
-    /// Moves control operands to where the formula has a random value. For a line, it moves both ends of the line.
+    /// Moves control operands to where the formula has a random value. For a line, the function moves both ends of the line.
     fn spread(&self, random: &mut Random, control: &mut [i64]) {
         let Some((length, highlight)) = self.length.zip(self.highlight) else {
             self.aim(random, control);
@@ -230,8 +232,8 @@ impl<'a> PointSource<'a> {
         }
     }
 
-    /// Moves control operands toward the peak, to where the formula has a random value. It does nothing if the formula is
-    /// nowhere below its peak on the way.
+    /// Moves control operands toward the peak, to where the formula has a random value. The function does nothing if the formula
+    /// is nowhere below its peak on the way.
     fn aim(&self, random: &mut Random, far: &mut [i64]) {
         let Some((way, highlight)) = self.way(far).zip(self.highlight) else { return };
         let (top, bottom) = (way.top, way.bottom);
@@ -262,8 +264,8 @@ impl<'a> PointSource<'a> {
         }))
     }
 
-    /// Moves control operands on a straight line toward the operands with the largest `f`, until the formula has about the
-    /// given `value`. It does nothing if the device is no highlight, or if the formula does not fall on the line.
+    /// Moves control operands on a straight line toward the operands with the largest `f`, until the formula has about the given
+    /// `value`. The function does nothing if the device is no highlight, or if the formula does not fall on the line.
     pub fn to_value(&self, control: &mut [i64], value: f64) {
         if let Some((way, highlight)) = self.way(control).zip(self.highlight) {
             let [inner, _] = way.crossing(highlight, value, false, control);
@@ -271,9 +273,9 @@ impl<'a> PointSource<'a> {
         }
     }
 
-    /// Moves control operands so that errors show. Each goes to an end of its domain if the formula is then nearer to the
-    /// middle of its range. The operands that lead to the largest `f`, such as `cos_gamma`, and the length of a line stay. It
-    /// does nothing if the device is no highlight.
+    /// Moves control operands so that errors show. Each control operand goes to an end of its domain if the formula is then
+    /// nearer to the middle of its range. The operands that lead to the largest `f`, such as `cos_gamma`, and the length of a
+    /// line stay. The function does nothing if the device is no highlight.
     pub fn show(&self, control: &mut [i64]) {
         let Some(highlight) = self.highlight else { return };
         for at in 0..self.control {
@@ -293,8 +295,9 @@ impl<'a> PointSource<'a> {
         }
     }
 
-    /// Returns the way from the peak to the control operands `far`. If the formula is as large there as at the peak, the way
-    /// ends earlier, at a point where the formula is smaller. Returns `None` without such a point.
+    /// Returns the straight line from the peak (the operands with the largest `f`) to the control operands `far`. If the formula
+    /// is as large at `far` as at the peak, the line ends earlier, at a point where the formula is smaller. Returns `None` if
+    /// there is no such point, or if the device is no highlight.
     fn way(&self, far: &[i64]) -> Option<Way> {
         let highlight = self.highlight?;
         let peak = self.peak(highlight, far);
@@ -323,9 +326,9 @@ impl<'a> PointSource<'a> {
         self.clamped(said)
     }
 
-    /// Searches for the control operands with the largest `f`, and returns the value of each operand that leads there. It tries
-    /// the ends of the domain and 0. It varies the first operands with fraction bits (a cosine, an angle, the components of a
-    /// vector), or the first operands if none has fraction bits.
+    /// Searches for the control operands with the largest `f`, and returns the value of each operand that leads there. The
+    /// function tries the ends of the domain and 0. Only the first operands with fraction bits vary (a cosine, an angle, the
+    /// components of a vector), or the first operands if no operand has fraction bits.
     fn search(&self, highlight: &Highlight) -> Vec<Option<i64>> {
         let control = &self.operands[..self.control];
         let mut moved: Vec<usize> =
@@ -375,7 +378,8 @@ pub(super) fn length(contract: &dyn Contract) -> Option<usize> {
     contract.operands().iter().position(|operand| Some(operand.name.as_str()) == length)
 }
 
-/// A straight way in the space of control operands, from the peak to a point where the formula is smaller.
+/// A straight line in the space of control operands, from the peak (the operands with the largest `f`) to a point where the
+/// formula is smaller.
 struct Way {
     peak: Vec<i64>,
     far: Vec<i64>,
@@ -385,7 +389,7 @@ struct Way {
 }
 
 impl Way {
-    /// Sets `operands` to the point on the way at `scale`: 0 is the peak, and 1 is the far end.
+    /// Sets `operands` to the point on the straight line at `scale`: 0 is the peak, and 1 is the far end.
     #[inline]
     fn go(&self, scale: f64, operands: &mut [i64]) {
         let ends = self.peak.iter().zip(&self.far);
@@ -394,8 +398,9 @@ impl Way {
         }
     }
 
-    /// Returns the two scales between which the formula crosses the value `target`: just above it, and just below it. If
-    /// `exact` is true, they lie at neighbouring operands. `at` is overwritten with the operands that are tried.
+    /// Returns the two scales between which the formula crosses the value `target`: one scale at which the formula is not below
+    /// `target`, and one scale at which the formula is below. If `exact` is true, both scales lie at neighbouring operands. `at`
+    /// is overwritten with the operands that are tried.
     fn crossing(
         &self,
         highlight: &Highlight,

@@ -17,7 +17,7 @@ pub(super) struct Ports {
     /// The port `start`, or `in_valid` if the design is a pipeline.
     pub(super) start: usize,
     pub(super) out_ready: Option<usize>,
-    /// The input `side_in` of a pipeline, with a mask of its bits. It is `None` if the design has no such port.
+    /// The input `side_in` of a pipeline, with a mask of its bits; `None` if the design has no such port.
     pub(super) side_in: Option<(usize, u64)>,
     /// The operands of the contract, in the order of the design.
     pub(super) operands: Vec<OperandPort>,

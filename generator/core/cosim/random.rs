@@ -3,16 +3,16 @@
 use glint_base::fixed::{exp2, mask};
 use glint_golden::Operand;
 
-/// A small deterministic random number generator (SplitMix64). It gives the same numbers on every machine, and is fast compared
-/// with the simulation.
+/// A small deterministic random number generator (SplitMix64). The generator gives the same numbers on every machine, and is fast
+/// compared with the simulation.
 #[derive(Clone, Debug)]
 pub struct Random(u64);
 
 /// The constant that is added to the state for each number.
 const STEP: u64 = 0x9e37_79b9_7f4a_7c15;
 
-/// [`Random::of_domain`] makes a list of seven values. It draws one of the 16 entries of a table, which is the index of the
-/// value that it returns. The first table is for a domain on both sides of 0, the second for any other domain.
+/// [`Random::of_domain`] makes a list of seven values, and draws one of the 16 entries of a table: the index of the value that
+/// the function returns. The first table is for a domain on both sides of 0, the second table for any other domain.
 const AROUND_ZERO: [usize; 16] = [0, 1, 2, 3, 3, 6, 5, 6, 5, 6, 5, 6, 5, 6, 2, 2];
 const TO_ONE_SIDE: [usize; 16] = [0, 1, 2, 3, 3, 4, 4, 4, 4, 2, 2, 2, 2, 2, 2, 2];
 
@@ -78,8 +78,8 @@ impl Random {
         within(self.bits(), low, high)
     }
 
-    /// Returns a random raw value from `low` to `high`, both included. It is often one of these ends, or close to an end or to
-    /// 0, because errors often show there.
+    /// Returns a random raw value from `low` to `high`, both included. The value is often one of these ends, or close to an end
+    /// or to 0, because errors often show there.
     ///
     /// The function computes all seven candidates and takes one without a branch, because the processor could not predict the
     /// branch. The generator advances only by the draws that the taken value needs.
@@ -104,7 +104,7 @@ impl Random {
         values[place]
     }
 
-    /// Returns a random bit pattern for an operand. It is usually a value from the operand's domain, drawn by
+    /// Returns a random bit pattern for an operand. In 15 of 16 cases the pattern is a value from the operand's domain, drawn by
     /// [`Random::of_domain`], and in one of 16 cases arbitrary bits.
     pub fn pattern(&mut self, operand: &Operand) -> u64 {
         let raw =

@@ -1,4 +1,5 @@
-//! Replays recorded inputs of a design clock by clock. After the last recorded clock, it starts again with the first.
+//! Replays recorded inputs of a design clock by clock. After the last recorded clock, the replay starts again with the first
+//! recorded clock.
 
 use std::sync::Arc;
 
@@ -30,7 +31,7 @@ impl RecordedInputs {
         Self { recording: Arc::clone(recording), next: 0 }
     }
 
-    /// Returns the inputs of the next clock.
+    /// Returns the inputs of the next clock. After the last recorded clock, the recording begins again.
     #[inline]
     pub(super) fn next(&mut self) -> &[u64] {
         let Recording { words, inputs } = &*self.recording;

@@ -1,4 +1,4 @@
-//! Runs several streams in the lanes of one simulator. It compares every signal that the golden model predicts with the
+//! Runs several streams in the lanes of one simulator, and compares every signal that the golden model predicts with the
 //! simulated signal at every clock. A stream is a sequence of inputs from power-up on.
 
 use std::io::Write;
@@ -18,8 +18,8 @@ const AHEAD: usize = 4;
 
 /// Runs as many streams as there are lanes, or fewer.
 ///
-/// The random inputs of a stream react to the `busy` that its model predicts. The simulated `busy` is the same, unless model
-/// and hardware differ. If a stream whose clocks were computed ahead differs, it runs once more, alone, to find the first
+/// The random inputs of a stream react to the `busy` that its model predicts. The simulated `busy` is the same, unless model and
+/// hardware differ. If a stream whose clocks were computed ahead differs, this stream runs once more, alone, to find the first
 /// difference.
 pub(super) struct Runner<'a, const LANES: usize> {
     binding: &'a Binding<'a>,

@@ -2,9 +2,9 @@
 //!
 //! At a random point (one set of operands), the roundings rarely all err in the same direction. The search starts from random
 //! points and changes one operand, or a pair of operands with fraction bits, by powers of two while the error grows. For a
-//! highlight it first climbs the error of `f`, and then the error of an output, with the worst colour. Around the points with
-//! the largest errors it tries every value of each pair of operands, since rounding makes the last steps too irregular to
-//! climb. Its result is a lower bound of the true maximum, not a proof.
+//! highlight, the search first climbs the error of `f`, and then the error of an output, with the worst colour. Around the points
+//! with the largest errors, the search tries all nearby values of each pair of operands, since rounding makes the last steps too
+//! irregular to climb. The largest error that the search finds is a lower bound of the true maximum, not a proof.
 
 use rayon::prelude::*;
 
@@ -13,19 +13,19 @@ use super::random::Random;
 use glint_base::fixed::exp2;
 use glint_golden::{Contract, Highlight, nearer};
 
-/// The number of colours that are tried, counted down from the largest.
+/// The largest distance from the largest colour at which a colour is tried.
 const MOST_COLOURS: i64 = 256;
 
 /// Operands are moved by powers of two below 2 to this power.
 const MOST_BITS: u32 = 24;
 
-/// How many of the points with the largest errors are searched around, and about how many combinations of operands are tried
-/// around each.
+/// The number of points with the largest errors around which the search tries all neighbours, and about the number of
+/// combinations of operands that one round tries around each of these points.
 const HIGHEST: usize = 16;
 const AROUND: u64 = 1 << 18;
 
-/// The number of combinations that are tried around a point of a device without a highlight, for all pairs of operands
-/// together. Each runs the model clock by clock.
+/// The number of combinations that are tried around a point of a device without a highlight, for all pairs of operands together.
+/// For each combination, the model runs clock by clock.
 const MOST_AROUND: u64 = 1 << 16;
 
 /// The number of starts after which only the points with the largest errors are kept, so that memory does not grow with the
@@ -35,7 +35,7 @@ const BATCH: u64 = 1 << 10;
 /// An error that the search has found, with its operands and its output.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reached {
-    /// The absolute error in output units. It is infinite if the formula has no value at the operands.
+    /// The absolute error in output units; infinite if the formula has no value at the operands.
     pub units: f64,
     /// The raw operands, in the order of `Contract::operands`.
     pub operands: Vec<i64>,
@@ -47,8 +47,8 @@ pub struct Reached {
 }
 
 impl Reached {
-    /// Returns the largest error of an output at raw operands, in the order of `Contract::operands`. Returns `None` if the
-    /// contract has no output.
+    /// Returns the largest error of an output in the first result of a computation with raw operands, in the order of
+    /// `Contract::operands`. Returns `None` if the contract has no output.
     pub fn at(contract: &dyn Contract, operands: Vec<i64>) -> Option<Self> {
         let (mut raw, mut exact) = (Vec::new(), Vec::new());
         contract.results(&operands, 0, &mut raw);
@@ -71,7 +71,7 @@ impl Reached {
     }
 }
 
-/// Returns `a` or `b`: the one with the larger error, or `a` if the errors are equal.
+/// Returns `a` or `b`, whichever has the larger error; `a` if the errors are equal.
 fn larger(a: Reached, b: Reached) -> Reached {
     if b.units > a.units { b } else { a }
 }
@@ -82,8 +82,8 @@ pub fn steps(starts: u64) -> u64 {
 }
 
 /// Searches from `starts` random points and returns the largest error that it finds. Returns `None` if `starts` is 0, or if the
-/// contract has no output. The result depends on `seed` but not on the number of threads. The function calls `progress` after
-/// each start. It then tries the neighbours of the operands with the largest errors, and calls `progress` after each of these
+/// contract has no output. The result depends on `seed` but not on the number of threads. After the starts, the function tries
+/// the neighbours of the operands with the largest errors. The function calls `progress` after each start and after each of these
 /// searches.
 pub fn worst(
     contract: &dyn Contract,
@@ -188,8 +188,9 @@ impl<'a> Climber<'a> {
         control
     }
 
-    /// Tries all values of each pair of operands around the given control operands, moves to the largest error, and repeats
-    /// this there until the error no longer grows. Returns all operands of the largest error.
+    /// Tries all nearby values of each pair of operands around the given control operands, moves to the largest error, and
+    /// repeats this search there until the error no longer grows. For a device that is no highlight, the function stops after
+    /// about 65536 combinations. Returns all operands of the largest error.
     fn look_around(&self, mut operands: Vec<i64>) -> Vec<i64> {
         let highlight = self.contract.highlight();
         let terms = self.contract.bound().terms;
@@ -263,7 +264,7 @@ impl<'a> Climber<'a> {
         }
     }
 
-    /// Returns the largest error of an output for the given control operands, in units, and the colour that has it.
+    /// Returns the largest error of an output for the given control operands, in units, and the colour with this error.
     fn of_output(&self, highlight: &Highlight, control: &[i64]) -> (f64, i64) {
         let point = highlight.point(control, 0);
         let (f, right) = (highlight.f(&point), highlight.references(&point));

@@ -100,8 +100,9 @@ impl SequentialModel {
         self.model.values()
     }
 
-    /// Counts a result in `seen`, if the model predicts one in this clock, and measures its error. `accepted` has the raw
-    /// operands of the computation that started last. It is `None` if they are not known, and then no error is measured.
+    /// Counts a result in `seen`, if the model predicts a result in this clock, and measures its error. `accepted` has the raw
+    /// operands of the computation that started last. If `accepted` is `None`, the operands are not known, and no error is
+    /// measured.
     #[inline]
     pub(super) fn note(
         &mut self,

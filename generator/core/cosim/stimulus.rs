@@ -42,8 +42,8 @@ pub(super) struct Stimulus {
     idle: bool,
     /// The raw operands of the next point, in the order of `Contract::operands`.
     next: Vec<i64>,
-    /// The raw values that the device's operand registers or buffers hold: the last ones written when the device could accept
-    /// them.
+    /// The raw values in the device's operand registers or buffers. A value is written only in a clock in which the device
+    /// accepts writes.
     written: Vec<i64>,
     /// The raw operands that the latest `start` copied from the buffers. `None` if the core has no operand buffers.
     taken: Option<Vec<i64>>,

@@ -87,7 +87,8 @@ impl Stream {
     }
 
     /// Returns whether the stream has ended: because its course is complete, or because a signal differs. A pipeline goes on
-    /// after a difference until the combinations that it took earlier are finished, because an earlier one may differ too.
+    /// after a difference until the combinations that it took earlier are finished, because an earlier combination may differ
+    /// too.
     pub(super) fn ended(&self) -> bool {
         match (&self.course, &self.seen.mismatch) {
             (Course::Combinations { .. }, Some(found)) => {
@@ -106,8 +107,8 @@ impl Stream {
         }
     }
 
-    /// Continues the stream, from the present state of the device, with the given computations. Each is a list of raw operands
-    /// in the order of the contract.
+    /// Continues the stream, from the present state of the device, with the given computations. Each computation is a list of raw
+    /// operands in the order of the contract.
     pub(super) fn follow(&mut self, binding: &Binding, computations: &[Vec<i64>]) {
         let count = computations.len() as u64;
         self.course = Course::Combinations { first: 0, count };
@@ -119,8 +120,8 @@ impl Stream {
         }
     }
 
-    /// Computes the inputs of the next clock, and advances the model by this clock. Fails if a golden model does not finish a
-    /// computation.
+    /// Computes the inputs of the next clock, and advances the model by this clock. Fails if the golden model of a pipeline does
+    /// not finish a computation.
     #[inline]
     pub(super) fn clock(&mut self, binding: &Binding) -> Result<()> {
         let (deaf, taken) = match &self.host {
@@ -156,16 +157,16 @@ impl Stream {
         self.source.inputs()
     }
 
-    /// Returns whether the latest inputs neither start, write nor reset anything. It is known only for the random inputs of a
-    /// core, and false for all others.
+    /// Returns whether the latest inputs neither start, write nor reset anything. Returns false for inputs other than the random
+    /// inputs of a core with a microprogram.
     #[inline]
     pub(super) fn is_idle(&self) -> bool {
         matches!(&self.source, Source::Stimulus(stimulus) if stimulus.is_idle())
     }
 
-    /// Writes the predictions after the latest clock into lane `lane` of `expected`, in the order of the compared signals. For
-    /// a pipeline it also writes into `known`: all ones for a signal that is predicted, and otherwise 0. Every signal of a core
-    /// is predicted.
+    /// Writes the predictions after the latest clock into lane `lane` of `expected`, in the order of the compared signals. For a
+    /// pipeline, the function also writes into `known`: all ones for a signal that is predicted, and otherwise 0. Every signal of
+    /// a core is predicted.
     #[inline]
     pub(super) fn predict<const L: usize>(
         &self,
@@ -250,8 +251,8 @@ impl Stream {
         });
     }
 
-    /// Counts the result that the model of a core predicts after the latest clock, if there is one, and measures its error. It
-    /// does nothing for a pipeline.
+    /// Counts the result that the model of a core predicts after the latest clock, if there is one, and measures its error. The
+    /// function does nothing for a pipeline.
     #[inline]
     pub(super) fn note(&mut self, binding: &Binding) {
         if let Host::Core(core) = &mut self.host {

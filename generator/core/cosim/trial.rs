@@ -1,7 +1,7 @@
 //! Runs single computations of a design in the built-in simulator, and records facts for manifests and pages.
 //!
-//! The runs measure the clocks between `start`, `valid` and `done`. They also give a worked example, a recording of chosen nets,
-//! and a list of computations by which users can check the device without a model.
+//! The runs measure the clocks between `start`, `valid` and `done`. The runs also give a worked example, a recording of chosen
+//! nets, and a list of computations by which users can check the device without a model.
 
 use anyhow::{Context, Result, ensure};
 
@@ -15,7 +15,7 @@ use glint_golden::{Contract, Highlight, Operand};
 use glint_rtl::netlist::{self, Design, HandshakeTiming, NetId};
 use glint_rtl::sim::Simulator;
 
-/// The number of clocks after which a computation counts as one that never ends.
+/// The number of clocks after which a computation counts as a computation that never ends.
 const LIMIT: u32 = 1 << 16;
 
 /// The number of sample computations in [`computations`]. The first of them are corners of the domain.
@@ -24,7 +24,7 @@ const COMPUTATIONS: usize = 40;
 /// The largest length operand of a line among the sample computations.
 const SHORT: i64 = 9;
 
-/// The length of the longest line whose clocks are measured, counted from the shortest line.
+/// The number by which the largest length operand with a measured line exceeds the smallest length operand.
 const LONG: i64 = 1000;
 
 /// The number of points in a recording of a pipeline.
@@ -90,7 +90,8 @@ pub fn timing(design: &Design, contract: &dyn Contract) -> Result<HandshakeTimin
     })
 }
 
-/// Returns three sets of raw operands: all at their lowest value within `ends`, all at their highest, and all in the middle.
+/// Returns three sets of raw operands: all operands at the lowest value within `ends`, all at the highest value, and all in the
+/// middle.
 fn corners(contract: &dyn Contract, ends: fn(&Operand) -> (i128, i128)) -> [Vec<i64>; 3] {
     let mut corners = [Vec::new(), Vec::new(), Vec::new()];
     for operand in contract.operands() {
@@ -102,8 +103,9 @@ fn corners(contract: &dyn Contract, ends: fn(&Operand) -> (i128, i128)) -> [Vec<
     corners
 }
 
-/// Returns 40 sample computations with their results and clocks: corners of the domain, and random points. Users check the
-/// device with them, without a golden model. The contract computes the same results.
+/// Returns 40 sample computations with their results and clocks. In the first three computations, all operands are at the lowest,
+/// the highest or the middle value of their domains; the others are random points of the domain. A line has a length operand of
+/// at most 9. Users check the device with these computations, without a golden model. The contract computes the same results.
 ///
 /// # Errors
 /// Fails as [`timing`] does, or if the contract's results and the simulated results differ.
@@ -196,9 +198,9 @@ pub fn line(design: &Design, contract: &dyn Contract) -> Result<Option<LineClock
     Ok(Some(LineClocks { length: name, last_valid, done, next_start }))
 }
 
-/// Simulates one computation, and returns it as a worked example: the values of all operands and outputs. [`typical`] chooses
-/// the operands; for a highlight, `f` is mostly between 0.4 and 0.8. If the computation has several results, `outputs` has the
-/// outputs of the first one, and `results` has all.
+/// Simulates one computation, and returns it as a worked example: the values of all operands and outputs. [`typical`] chooses the
+/// operands; for a highlight, `f` is mostly between 0.4 and 0.8. If the computation has several results, `outputs` has the
+/// outputs of the first result, and `results` has the outputs of all results.
 ///
 /// # Errors
 /// Fails if the design cannot be simulated or does not belong to the contract. Fails if the computation does not end within
@@ -228,10 +230,10 @@ fn quantity(name: &str, format: Format, raw: i64) -> Quantity {
     Quantity { name: name.to_owned(), raw, value: format.to_f64(raw) }
 }
 
-/// Returns typical raw operands of a contract, for a worked example. An operand with a value in `given` keeps this value;
-/// `given` may be shorter than the operands. For a highlight, the function lowers the first control operand with fraction bits
-/// that can change `f`, such as a cosine or an angle, until `f` is between 0.4 and 0.8. For other devices it prefers operands
-/// from [`Contract::hint`].
+/// Returns typical raw operands of a contract, for a worked example. An operand with a value in `given` keeps this value; `given`
+/// may be shorter than the operands. For a highlight, the function lowers a control operand with fraction bits, such as a cosine
+/// or an angle, until `f` is between 0.4 and 0.8. The function takes the first operand with which `f` reaches this range, and
+/// lowers no operand if there is none. For other devices, the function prefers operands from [`Contract::hint`].
 pub fn typical(contract: &dyn Contract, given: &[Option<i64>]) -> Vec<i64> {
     let given = |at: usize| given.get(at).copied().flatten();
     let mut colour = 0;
@@ -277,9 +279,8 @@ pub fn typical(contract: &dyn Contract, given: &[Option<i64>]) -> Vec<i64> {
     values
 }
 
-/// Lowers the operands of a line that change `f` only after the first point, such as a step, until `f` in the middle of the
-/// line is large enough. It must be at least a quarter of `f` at the first point. The function does nothing if the device
-/// computes no lines.
+/// Lowers the operands of a line that change `f` only after the first point, such as a step, until `f` in the middle of the line
+/// is at least a quarter of `f` at the first point. The function does nothing if the device computes no lines.
 fn slow_down(
     contract: &dyn Contract,
     highlight: &Highlight,
@@ -359,6 +360,11 @@ pub fn record_points(
 type Watch<'a> = &'a mut dyn FnMut(&mut Simulator) -> Result<()>;
 
 /// Runs one computation with the given raw operands from reset to its end. For a pipeline, the end is the clock of the result.
+/// `watch` sees the simulator before each rising edge.
+///
+/// # Errors
+/// Fails if the design cannot be simulated, if the computation takes [`LIMIT`] clocks or more, if it ends without `valid`, or if
+/// `watch` fails.
 fn run(
     design: &Design,
     contract: &dyn Contract,

@@ -23,8 +23,8 @@ pub struct Bus {
     pub protocol: &'static [Protocol],
     /// The Python expression that makes this bus in LiteX.
     pub litex: &'static str,
-    /// Makes the Verilog of the bus module and of its proof. Its parameters are the name of the core, the configuration that
-    /// makes it, and the highest bit of an address.
+    /// Makes the Verilog of the bus module and of its proof. The parameters of the function are the name of the core, the command
+    /// that generates the core again, and the highest bit of an address. Fails if a template fails.
     pub module: fn(&str, &str, u32) -> Result<[String; 2]>,
 }
 

@@ -21,7 +21,7 @@ const SEQUENTIAL: [&str; 5] = [
     "writes_and_starts_while_busy_are_ignored",
 ];
 
-/// The test that replaces the last one of [`SEQUENTIAL`] if the operands have buffers.
+/// The test that replaces the last test of [`SEQUENTIAL`] if the operands have buffers.
 const BUFFERED: &str = "writes_while_busy_are_for_the_next_computation";
 
 /// The names of the driver's tests for a pipeline. The first test needs the formula as a Python expression.

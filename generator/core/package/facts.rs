@@ -72,7 +72,7 @@ pub struct MicroinstructionFacts<'a> {
     pub sequence: SequenceFacts<'a>,
 }
 
-/// The rule for the microinstruction that follows another one.
+/// The rule for the microinstruction that follows another microinstruction.
 #[derive(Serialize)]
 #[serde(untagged)]
 pub enum SequenceFacts<'a> {
@@ -248,8 +248,8 @@ pub fn microprogram(design: &Design) -> Vec<MicroinstructionFacts<'_>> {
     facts
 }
 
-/// Returns the ROMs of a design, including the control ROM. It leaves out a ROM that is only the second read port of another
-/// ROM.
+/// Returns the ROMs of a design, including the control ROM. The function leaves out a ROM that is only the second read port of
+/// another ROM.
 pub fn roms<'a>(design: &'a Design, naming: &'a Naming) -> Vec<RomFacts<'a>> {
     let in_file = !naming.style.inline;
     let mut facts = Vec::new();

@@ -54,7 +54,7 @@ pub enum FileKind {
     BenchPackage,
     /// The model in C, and the other files for software. For example, `rough_model.c`.
     Software,
-    /// The program in C that recomputes every operand. For example, `rough_recompute.c`.
+    /// The program in C that recomputes the results of every combination of operands. For example, `rough_recompute.c`.
     Recomputation,
     /// The manifest, which has the digests of all files above. For example, `rough.json`.
     Manifest,
@@ -76,8 +76,9 @@ impl FileKind {
     pub const SIMULATED: &[Self] =
         &[CoreVerilog, StreamWrapper, BusWrapper, Memory, Bench, BenchVectors];
 
-    /// Returns the folder in the output directory that contains the files of this kind. For example, the files of kind
-    /// [`FileKind::Memory`] of `rough` are in `rtl_out/rough/`.
+    /// Returns the folder in the output directory that contains the files of this kind, in a folder for each configuration. For
+    /// example, [`FileKind::Memory`] gives `rtl_out`, and the memories of `rough` are in `rtl_out/rough/`. Only the driver that
+    /// all configurations share, [`FileKind::CocotbDriver`], is in the folder itself.
     pub fn folder(self) -> &'static str {
         match self {
             CoreVerilog | TargetVerilog | StreamWrapper | BusWrapper | Memory | CorePackage

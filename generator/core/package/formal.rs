@@ -41,8 +41,8 @@ struct AgeView {
     one: String,
 }
 
-/// The clocks in which `valid` and `done` are high, counted from the clock of `start`, and the largest age of a computation
-/// (its clocks since `start`), as Verilog literals. Only a core whose clocks do not depend on the data has them.
+/// The clocks in which `valid` and `done` are high, counted from the clock of `start`, and the largest age of a computation (its
+/// clocks since `start`), as Verilog literals. Only a core whose clocks do not depend on the data has such clocks.
 struct EventClocks {
     valid: String,
     done: String,
@@ -84,6 +84,9 @@ pub(super) struct Script<'a> {
 impl Script<'_> {
     /// Adds the files of a formal proof: the Verilog `wrapper`, the script for Yosys, and the task for SymbiYosys. `depth` is the
     /// depth of the induction in clocks.
+    ///
+    /// # Errors
+    /// Fails if a template fails.
     pub(super) fn files(
         &self,
         wrapper: String,
@@ -281,8 +284,8 @@ fn bounded_view(
     }
 }
 
-/// Returns the clocks of `valid` and `done`, and the number of clocks from one start to the next. The latter is at least one
-/// more than the clock of `done`. Returns `None` if one of these numbers depends on the data.
+/// Returns the clocks of `valid` and `done`, and the number of clocks from one start to the next. This last number is at least
+/// one more than the clock of `done`. Returns `None` if one of these numbers depends on the data.
 fn exact(timing: &HandshakeTiming) -> Option<([u32; 2], u32)> {
     let (valid, done) = (timing.start_to_valid?, timing.start_to_done?);
     // The next computation may start in the clock of `done`, but the age counts every computation to its last clock.

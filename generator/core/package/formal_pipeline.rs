@@ -1,7 +1,7 @@
 //! Generates formal properties of a pipeline, which Yosys and an SMT solver prove by k-induction.
 //!
-//! The generated wrapper has a reference queue: it moves points from stage to stage as the pipeline should. The proof shows that
-//! the pipeline holds points in exactly the same stages as the queue. If the pipeline has a side channel, the wrapper also
+//! The generated wrapper has a reference queue, which moves points from stage to stage as the pipeline should. The proof shows
+//! that the pipeline holds points in exactly the same stages as the queue. If the pipeline has a side channel, the wrapper also
 //! follows one arbitrary point, and asserts that the point's side value arrives with it. Multipliers and ROMs are replaced by
 //! free values, since no property depends on them.
 

@@ -9,7 +9,7 @@ use glint_rtl::verilog::header::Origin;
 /// The data that Glint needs in addition to the netlist to generate the files of a core.
 #[derive(Clone, Debug, Default)]
 pub struct EmitInputs {
-    /// The command that generates the files again. It names the configuration by its [`glint_base::input::label`].
+    /// The command that generates the files again. The command names the configuration by its [`glint_base::input::label`].
     pub regenerate: String,
     /// A digest that identifies the configuration: SHA-256 in hexadecimal.
     pub configuration: String,

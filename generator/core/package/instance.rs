@@ -1,5 +1,5 @@
-//! Writes example instances of a core and its wrappers in Verilog, with a wire for each port, for the user to copy.
-//! Datasheets show them.
+//! Writes example instances of a core and its wrappers in Verilog, with a wire for each port, for the user to copy. Datasheets
+//! show these examples.
 
 use anyhow::Result;
 
@@ -23,7 +23,7 @@ pub struct InstanceExample {
 }
 
 /// Returns an example instance of each module that a system can instantiate: the bus wrapper and the stream wrapper, if the
-/// configuration asks for them, and the core as the last.
+/// configuration asks for these wrappers, and then the core.
 ///
 /// # Errors
 /// Fails if the core cannot have a wrapper that the configuration asks for. For example, streams need operands and results,

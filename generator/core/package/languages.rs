@@ -21,7 +21,8 @@ use glint_rtl::verilog::text::{Names, ascii, comment, constant_name, literal};
 /// Adds the VHDL file and the SystemVerilog file, if the configuration asks for them.
 ///
 /// # Errors
-/// Fails if a template fails.
+/// Fails if a template fails, or if the configuration asks for streams and a package of SystemVerilog, and the core has no
+/// operands or no results.
 pub fn files(job: &EmitJob, tops: &[Top], files: &mut OutputFiles) -> Result<()> {
     if job.inputs.around.vhdl {
         let text = vhdl(job, tops)?;
@@ -58,6 +59,9 @@ fn component<'a>(top: &'a Top, of_core: &[String]) -> VhdlComponent<'a> {
 }
 
 /// Returns the VHDL file: components of all modules, and an entity around the core whose ports have fixed-point types.
+///
+/// # Errors
+/// Fails if the template fails.
 fn vhdl(job: &EmitJob, tops: &[Top]) -> Result<String> {
     let (name, design, naming) = (job.name(), job.design, job.naming);
     let (mut generics, mut passed) = (Vec::new(), Vec::new());
@@ -115,7 +119,7 @@ fn vhdl(job: &EmitJob, tops: &[Top]) -> Result<String> {
     })
 }
 
-/// Returns the declarations with a semicolon behind each except the last, as VHDL separates ports and generics.
+/// Returns the declarations with a semicolon behind each declaration except the last, as VHDL separates ports and generics.
 fn listed(mut declarations: Vec<String>) -> Vec<String> {
     let last = declarations.len().saturating_sub(1);
     declarations.iter_mut().take(last).for_each(|line| line.push(';'));
@@ -127,7 +131,8 @@ fn plain(port: &TopPort) -> String {
     format!("{} : {direction} {}", vhdl_name(&port.name), std_logic(port.width, port.vector))
 }
 
-/// Returns the VHDL type of a port. For example, `std_logic_vector(7 downto 0)` for 8 bits.
+/// Returns the VHDL type of a port of `width` bits: a vector such as `std_logic_vector(7 downto 0)` if `vector` is true, and
+/// otherwise `std_logic`.
 fn std_logic(width: u32, vector: bool) -> String {
     match vector {
         false => "std_logic".to_owned(),
@@ -142,8 +147,9 @@ fn fixed(format: Format) -> String {
     format!("{kind}({} downto {low})", low + format.width() as i32 - 1)
 }
 
-/// Returns a name for VHDL. A name that VHDL does not accept, or in which upper and lower case matter, becomes an extended
-/// identifier between backslashes. For example, the reserved word `signal` becomes `\signal\`.
+/// Returns a name for VHDL. A name that VHDL does not accept, or that has an upper-case letter, becomes an extended identifier
+/// between backslashes. Generics, whose names are all upper case, are an exception. For example, the reserved word `signal`
+/// becomes `\signal\`.
 fn vhdl_name(name: &str) -> String {
     let reserved = VHDL_2008.split_ascii_whitespace().any(|word| word == name.to_ascii_lowercase());
     let plain = !name.starts_with('_') && !name.ends_with('_') && !name.contains("__");

@@ -19,8 +19,8 @@ use crate::observation::{Computation, ContractFacts, Quantity};
 use glint_rtl::netlist::HandshakeTiming;
 use glint_rtl::netlist::{Design, Pipeline, RegId};
 
-/// The version of the manifest's structure, for programs that read it. It is increased when a name is renamed, moved, or gets
-/// another meaning, and not when a name is added.
+/// The version of the manifest's structure, for programs that read it. The version is increased when a name is renamed, moved, or
+/// gets another meaning, and not when a name is added.
 const SCHEMA: u32 = 1;
 
 #[derive(Serialize)]
@@ -108,7 +108,8 @@ fn file_names(files: &OutputFiles) -> serde_json::Map<String, Value> {
 /// Returns the text of the manifest, with the digests of all `others`: the files of the configuration except the manifest.
 ///
 /// # Errors
-/// Fails if a number is not finite, because JSON cannot represent it.
+/// Fails if the configuration asks for streams and the core has no operands or no results. Fails if an operand or a result of the
+/// contract has no port.
 pub fn contents(job: &EmitJob, others: &OutputFiles) -> Result<String> {
     let EmitJob { design, inputs, naming, .. } = *job;
     let about = &design.about;
@@ -255,6 +256,9 @@ fn positions(ordered: &[(usize, &str)]) -> Vec<usize> {
 
 /// Returns a computation as JSON on a single line. `operands` and `results` give the order of the raw values: the indices into
 /// the values of `computation`.
+///
+/// # Errors
+/// Fails if the computation cannot be written as JSON.
 fn line(computation: &Computation, operands: &[usize], results: &[usize]) -> Result<Box<RawValue>> {
     let (mut valid, mut outputs) = (Vec::new(), Vec::new());
     for result in &computation.results {

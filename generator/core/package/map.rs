@@ -17,7 +17,7 @@ use glint_rtl::verilog::text::ascii;
 /// The number of bits of a register.
 const WORD: u32 = 32;
 
-/// The number of bus registers with constant contents. They have the lowest addresses of a core's register map.
+/// The number of bus registers with constant contents. These registers have the lowest addresses of a core's register map.
 pub const CONSTANTS: u32 = 4;
 
 /// The word address of the control register, the first that software can write. [`INTERRUPT_ENABLE`] and [`INTERRUPT_PENDING`]
@@ -37,13 +37,13 @@ const FIRST_OPERAND: u32 = 8;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Access {
-    /// Software can read the bits.
+    /// Software can read the bits, and writes have no effect.
     Read,
     /// Software can write and read the bits.
     Write,
     /// Writing 1 triggers an action, such as a start. The bits read as 0.
     Trigger,
-    /// Writing 1 clears the bits.
+    /// Software can read the bits, and writing 1 to a bit clears it.
     Clear,
 }
 
@@ -87,8 +87,8 @@ impl BusRegister {
     }
 }
 
-/// The placement of a port of the core (an operand or a result) in bus registers, the lowest bits first. For example, an
-/// operand of 40 bits takes two registers, the first with 32 bits and the second with 8.
+/// The placement of a port of the core (an operand or a result) in bus registers, the lowest bits first. For example, an operand
+/// of 40 bits takes two registers, the first register with 32 bits and the second register with 8 bits.
 #[derive(Clone, Debug)]
 pub struct PortPlacement {
     /// The name of the port.
@@ -194,6 +194,9 @@ impl Map {
     }
 
     /// Checks that no two registers have the same name, because software refers to registers by their names.
+    ///
+    /// # Errors
+    /// Fails if two registers have the same name. The error is a [`KeyError`] of the key `interface.registers`.
     fn check(&self, core: &str) -> Result<()> {
         let mut names = BTreeSet::new();
         for register in &self.registers {
@@ -218,8 +221,8 @@ fn last_place(ports: &[PortPlacement]) -> u32 {
     parts.map(|part| part.place).max().unwrap_or_default()
 }
 
-/// Places a port in as many registers as it needs, which no other port uses, from the word address `place` on. Then `place`
-/// is the word address behind them. `strobe` is the name of the port that writes an operand; empty for a result.
+/// Places a port in as many registers as it needs, which no other port uses, from the word address `place` on. Afterwards `place`
+/// is the word address behind these registers. `strobe` is the name of the port that writes an operand; empty for a result.
 fn placed(design: &Design, port: &Port, strobe: String, place: &mut u32) -> PortPlacement {
     let net = design.net(port.net);
     let width = net.format.width();
@@ -233,9 +236,9 @@ fn placed(design: &Design, port: &Port, strobe: String, place: &mut u32) -> Port
     PortPlacement { name: net.name.clone(), format: net.format, strobe, parts }
 }
 
-/// Returns the placements of the results, from the word address `place` on. Then `place` is the word address behind them. If
-/// all results fit into one register, each in whole bytes, they share it; otherwise each result has its own registers. For
-/// example, three colours of 8 bits share a register, from bits 0, 8 and 16 on.
+/// Returns the placements of the results, from the word address `place` on. Afterwards `place` is the word address behind their
+/// registers. If all results fit into one register, each in whole bytes, they share this register; otherwise each result has its
+/// own registers. For example, three colours of 8 bits share a register, from bits 0, 8 and 16 on.
 fn results(design: &Design, place: &mut u32) -> Vec<PortPlacement> {
     let ports: Vec<&Port> = design.outputs().filter(|port| port.role == Role::Result).collect();
     let padded = |port: &Port| design.width(port.net).next_multiple_of(8);
@@ -265,8 +268,12 @@ struct CommonRegisters {
     register: Vec<BusRegister>,
 }
 
-/// Returns the registers that every core has. Their constants are the version of Glint, the digest of the configuration, and
-/// the numbers of operands and results of this core. The last operand and the last register are given as word addresses.
+/// Returns the registers that every core has. The constant registers have an identification, the version of Glint, the digest of
+/// the configuration, and the numbers of operands and results of this core. The last operand and the last register are given as
+/// word addresses.
+///
+/// # Errors
+/// Fails if `registers.toml`, which is part of the program, is not valid.
 fn fixed(
     inputs: &EmitInputs,
     (operands, results): (usize, usize),
@@ -337,9 +344,9 @@ fn of_results(results: &[PortPlacement], design: &Design) -> Vec<BusRegister> {
     }]
 }
 
-/// Returns the bus registers of a port that shares no register with another port. `access` says how software can access
-/// them. A port of more than 32 bits has several registers, named `<port>_0`, `<port>_1` and so on, with the lowest bits in
-/// the first.
+/// Returns the bus registers of a port that shares no register with another port. `access` says how software can access these
+/// registers. A port of more than 32 bits has several registers, named `<port>_0`, `<port>_1` and so on, with the lowest bits in
+/// the first register.
 fn own(port: &PortPlacement, access: Access, doc: &str) -> Vec<BusRegister> {
     let mut registers = Vec::new();
     for (number, part) in port.parts.iter().enumerate() {

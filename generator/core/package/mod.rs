@@ -2,8 +2,9 @@
 //! wrappers and the model in C.
 //!
 //! `hdl::verilog` turns names and expressions of the netlist into strings. Each module here collects such strings in a view, a
-//! plain struct, and a template in `templates/` prints the view. Templates make no decisions. Emission returns the files and
-//! writes nothing to disk, and the same design always gives the same bytes.
+//! plain struct, and a template in `templates/` prints the view. A template can repeat lines or leave out lines, but the view has
+//! the data that decides this. Emission returns the files and writes nothing to disk, and the same design always gives the same
+//! bytes.
 
 /// Declares a struct with the names that a test bench uses for its own variables. Its function `new` chooses names that no port
 /// has.
@@ -97,6 +98,9 @@ pub fn emit_core(design: &Design, inputs: &EmitInputs) -> Result<OutputFiles> {
 }
 
 /// Returns the Verilog of a design and the contents of its ROMs. Names of modules are not checked yet.
+///
+/// # Errors
+/// Fails if a net is named `clk`, if [`Design::verify_structure`] finds mistakes, or if a template fails.
 fn core_files(job: &EmitJob) -> Result<OutputFiles> {
     let EmitJob { design, inputs, naming, .. } = *job;
     ensure!(design.find("clk").is_none(), "`clk` is the clock; no other net can have that name");

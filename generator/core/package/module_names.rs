@@ -41,8 +41,8 @@ pub fn check(files: &[OutputFile]) -> Result<()> {
     Ok(())
 }
 
-/// Makes sure that no two configurations define a module of the same name. `configurations` gives each with its name for
-/// messages.
+/// Makes sure that no two configurations define a module of the same name. `configurations` gives each configuration as its name
+/// for messages and its files.
 ///
 /// # Errors
 /// Fails if two configurations define the same module. The error names the module and both configurations.

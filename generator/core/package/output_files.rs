@@ -29,14 +29,14 @@ impl OutputFiles {
         self.insert(OutputFile::new(kind, path, contents));
     }
 
-    /// Adds a file in Verilog that defines `modules`, and has the name of the first. For example, a file that defines
+    /// Adds a file in Verilog that defines `modules`, and has the name of the first module. For example, a file that defines
     /// `shading_pipelined` and `shading_pipelined_delay` is `shading_pipelined.v`.
     pub(super) fn add_verilog(&mut self, kind: FileKind, modules: Vec<String>, contents: String) {
         self.add_modules(kind, "v", modules, contents);
     }
 
-    /// Adds a file in SystemVerilog that defines `modules`, and has the name of the first. For example, `rough_formal` is in
-    /// `rough_formal.sv`.
+    /// Adds a file in SystemVerilog that defines `modules`, and has the name of the first module. For example, `rough_formal` is
+    /// in `rough_formal.sv`.
     pub(super) fn add_system_verilog(
         &mut self,
         kind: FileKind,

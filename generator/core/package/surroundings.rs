@@ -1,7 +1,7 @@
 //! Reads the configuration keys that ask for files around a core, for example bus wrappers, a C model or constraints.
 //!
-//! It also checks that the core allows them. For example, `package.rom_style` is an error if the core has no ROM that the key can
-//! affect.
+//! The module also checks that the core allows these keys. For example, `package.rom_style` is an error if the core has no ROM
+//! that the key can affect.
 
 use super::bus::{BUSES, Bus};
 use glint_base::key_error::KeyError;
@@ -90,7 +90,8 @@ pub struct Surroundings {
     pub registers: Option<&'static Bus>,
     /// Whether to emit a C model, in `software/<name>/`.
     pub software: bool,
-    /// Whether to emit a C program that computes every operand and compares the results with the formula.
+    /// Whether to emit a C program that computes the results of every combination of operands, and compares them with the
+    /// formulas.
     pub recomputation: bool,
     /// How the Verilog declares memories and registers. For example, whether a ROM's words are in the Verilog or in a file.
     pub style: Style,

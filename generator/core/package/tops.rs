@@ -18,7 +18,7 @@ use glint_rtl::verilog::text::ascii;
 pub enum Face {
     /// The module is the core itself, with its own handshake.
     Core,
-    /// The module has an AXI4-Stream for operands and one for results.
+    /// The module has an AXI4-Stream for operands and another AXI4-Stream for results.
     Stream,
     /// The module has registers on a bus.
     Registers(&'static Bus),
@@ -33,7 +33,7 @@ pub struct TopPort {
     pub input: bool,
     /// The number of bits of the port.
     pub width: u32,
-    /// Whether the port is declared with a range, such as `[0:0]`; a port of one bit need not be.
+    /// Whether the port is declared with a range, such as `[0:0]`. A port of one bit may have no range.
     pub vector: bool,
     /// The signal of the LiteX bus that connects to the port; empty if there is no such signal.
     pub signal: String,
@@ -47,7 +47,8 @@ pub struct TopPort {
 pub struct Top {
     /// The name of the module.
     pub module: String,
-    /// The end of the module's name, after the name of the core and `_`. For example, `axis`; it is empty for the core itself.
+    /// The end of the module's name, after the name of the core and `_`. For example, `axis`; the end is empty for the core
+    /// itself.
     pub suffix: &'static str,
     /// The kind of interface that the module has to the system.
     pub face: Face,

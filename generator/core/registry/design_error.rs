@@ -8,7 +8,7 @@ use glint_base::key_error::KeyError;
 /// The reason why no netlist can be built from a configuration.
 #[derive(Clone, Debug)]
 pub enum DesignError {
-    /// The hardware description has mistakes. Every architecture of the device has them.
+    /// The hardware description has mistakes. Every architecture of the device has these mistakes.
     Description(Diagnostics),
     /// A pipeline with the values of the configuration cannot be made. The error names the key to change.
     Key(KeyError),

@@ -1,8 +1,8 @@
-//! Builds the colour operands of a device, and its outputs: the products of the colours with the reflectance f, rounded to
-//! integers.
+//! Builds the colour operands of a device, and the outputs of the device: the products of the colours with the reflectance f,
+//! rounded to integers.
 //!
 //! Each colour has its own multiplier, or one multiplier makes all products one after the other. For example, `red_out` is f
-//! times the operand `red`.
+//! times the operand `red`, rounded and saturated to the width of `red`.
 
 use crate::dsl::{Designer, InputOperand, Signal, Step, step};
 use glint_base::fixed::{Format, Overflow, Rounding};
@@ -37,7 +37,7 @@ struct Channel<'d> {
 
 impl<'d> Colours<'d> {
     /// Adds the operands `red`, `green` and `blue` of `bits` bits, unsigned integers. `blocks` are the numbers of their blocks in
-    /// the block diagram of the document that describes the device; `None` if it does not number them.
+    /// the block diagram of the document that describes the device; `None` if the diagram does not number these blocks.
     #[track_caller]
     pub fn new(designer: &'d Designer, bits: i32, blocks: Option<[ChannelBlocks; 3]>) -> Self {
         let format = Format::unsigned(bits, 0);
@@ -56,7 +56,8 @@ impl<'d> Colours<'d> {
     }
 
     /// Adds a single operand `amplitude` of `bits` bits, an unsigned integer, for the output `intensity_out`. A device has this
-    /// operand if it computes one colour channel, or light without a colour.
+    /// operand if it computes one colour channel, or light without a colour. `blocks` are the numbers of the operand's blocks in
+    /// the block diagram, or `None`.
     #[track_caller]
     pub fn amplitude(designer: &'d Designer, bits: i32, blocks: Option<ChannelBlocks>) -> Self {
         let format = Format::unsigned(bits, 0);
@@ -69,9 +70,10 @@ impl<'d> Colours<'d> {
         Self { designer, format, channels: vec![Channel { name: "intensity", operand, blocks }] }
     }
 
-    /// Adds outputs that one multiplier computes one after the other, and returns the microinstructions for that, one for each
-    /// output. Each output is a register `<colour>_intensity` with `f` times the operand, rounded by `rounding` and saturated to
-    /// the operand's width. `f` must not change meanwhile.
+    /// Adds outputs that one multiplier computes one after the other, and returns the microinstructions that compute them, one
+    /// for each output. Each output is a register with `f` times the operand, rounded by `rounding` and saturated to the
+    /// operand's width. The register is named `<colour>_intensity`, or `intensity_rounded` for the operand `amplitude`. `f` must
+    /// not change until the last output is loaded.
     #[must_use]
     #[track_caller]
     pub fn outputs_in_turn(&self, f: Signal<'d>, rounding: Rounding) -> Vec<Step> {
@@ -96,8 +98,8 @@ impl<'d> Colours<'d> {
         steps
     }
 
-    /// Adds the outputs `<colour>_out` or `intensity_out`. Each is `f` times its operand, rounded by `rounding` to an integer and
-    /// saturated to the operand's width.
+    /// Adds the outputs `<colour>_out` or `intensity_out`. Each output is `f` times its operand, rounded by `rounding` to an
+    /// integer and saturated to the operand's width.
     #[track_caller]
     pub fn outputs(&self, f: Signal<'d>, rounding: Rounding) {
         self.outputs_of(f, rounding, false);

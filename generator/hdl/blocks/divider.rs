@@ -47,7 +47,7 @@ pub struct Divider<'d> {
 }
 
 impl<'d> Divider<'d> {
-    /// Makes a divider of `bits` quotient bits. The register of the quotient is `name`; the others are `<name>_divisor`,
+    /// Makes a divider of `bits` quotient bits. The register of the quotient is `name`; the other registers are `<name>_divisor`,
     /// `<name>_remainder` and the counter `<name>_remaining`. Reports a mistake if `bits` is less than 2, or if an operand can be
     /// negative.
     #[track_caller]
@@ -122,7 +122,7 @@ impl<'d> Divider<'d> {
         }
     }
 
-    /// Returns the output of the quotient register in the format `u0.Q`. It is the quotient after all Q steps.
+    /// Returns the output of the quotient register in the format `u0.Q`. The register has the quotient after all Q steps.
     pub fn quotient(&self) -> Signal<'d> {
         self.quotient.q()
     }

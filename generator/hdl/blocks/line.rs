@@ -1,5 +1,5 @@
-//! Builds the accumulator for the angles of the points along a scan line. Its register `angle` starts at the operand `zeta_start`
-//! and grows by the operand `delta_zeta` every clock.
+//! Builds the accumulator for the angles of the points along a scan line. The register `angle` starts at the operand
+//! `zeta_start`, and the operand `delta_zeta`, which may be negative, is added to it every clock.
 //!
 //! A line is a row of neighbouring points that the device computes after one `start`. The devices `quad-cosine` and
 //! `cosine-squared` use the accumulator. [`Line`] makes the operands, the adder, the mux, the register and the counter of
@@ -121,9 +121,9 @@ impl<'d> Line<'d> {
         self.angle.q()
     }
 
-    /// Sets the microprogram of a device that only computes lines. `clocks` is the number of clocks from a microinstruction that
-    /// loads an angle to its results on the outputs. It is one for the register of the angle, and one more for every further
-    /// register up to the outputs. A value of 0 counts as 1.
+    /// Sets the microprogram of a device that only computes lines, and makes `valid` high `clocks` clocks after each load of an
+    /// angle. `clocks` is the number of clocks from a microinstruction that loads an angle to its results on the outputs. Count
+    /// one for the register of the angle, and one for every further register up to the outputs. A value of 0 counts as 1.
     #[track_caller]
     pub fn microprogram(&self, clocks: u32) {
         let delay = clocks.max(1);

@@ -1,4 +1,5 @@
-//! Hardware blocks that several devices share, such as a divider, shifters and tables. A user's own device can use them too.
+//! Hardware blocks that several devices share, such as a divider, shifters and tables. A device that a user describes can use
+//! these blocks too.
 
 pub mod angle;
 pub mod colour;

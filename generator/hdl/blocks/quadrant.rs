@@ -9,8 +9,8 @@ use glint_base::fixed::Format;
 /// An angle, mapped to the first quadrant: |sin| of the angle is the sine of `way`, and the sine is negative if `negative` is 1.
 #[derive(Clone, Copy)]
 pub struct Quadrant<'d> {
-    /// The distance of the angle from the nearer zero of the sine, in steps of the angle's format. It is less than a quarter
-    /// turn.
+    /// The distance of the angle from the nearer zero of the sine, in steps of the angle's format. The distance is less than a
+    /// quarter turn.
     pub way: Signal<'d>,
     /// A bit that is 1 if the sine is negative.
     pub negative: Signal<'d>,
@@ -38,8 +38,8 @@ pub fn quadrant<'d>(d: &'d Designer, name: &str, turn: Signal<'d>, ahead: u32) -
     Quadrant { way, negative: number.bit(1) }
 }
 
-/// Returns 2^w − `way` for the w bits of the unsigned integer `way`. If `way` is 0, it returns the largest number 2^w − 1.
-/// For example, with 4 bits 5 gives 11, and 0 gives 15.
+/// Returns 2^w − `way` for the w bits of the unsigned integer `way`. If `way` is 0, the function returns the largest number 2^w −
+/// 1. For example, with 4 bits 5 gives 11, and 0 gives 15.
 #[track_caller]
 pub fn mirrored<'d>(d: &'d Designer, name: &str, way: Signal<'d>) -> Signal<'d> {
     let format = way.format();

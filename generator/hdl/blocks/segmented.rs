@@ -13,8 +13,8 @@ use glint_base::fixed::{Format, Overflow, Rounding, exp2};
 pub struct Segmentation {
     /// The number C of bits of the operand.
     pub operand_bits: u32,
-    /// For each range j, the number k_j of bits that select a segment. A range with k_j = 6 has 48 segments: three quarters of
-    /// 2^6, because the lowest quarter belongs to the next ranges.
+    /// For each range j, the number k_j of bits that select a segment. This number must be from 2 to C−2j. A range with k_j = 6
+    /// has 48 segments: three quarters of 2^6, because the lowest quarter belongs to the next ranges.
     pub segments: Vec<u32>,
 }
 
@@ -29,8 +29,8 @@ struct EntryBlock {
     base: u32,
 }
 
-/// One entry of the table: the value at the start of its segment, and the rise over the segment. Both are raw values in the
-/// formats of [`SegmentedFormats`]. For example, with 8 fraction bits a base of 128 is 0.5.
+/// One entry of the table: the value at the start of its segment, and the rise over the segment. Both numbers are raw values in
+/// the formats of [`SegmentedFormats`]. For example, with 8 fraction bits a base of 128 is 0.5.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Entry {
     /// The value at the start of the segment, as a raw value with S fraction bits.
@@ -40,8 +40,9 @@ pub struct Entry {
 }
 
 /// Returns the entry whose straight line approximates a concave, rising function with the smallest error over a segment. The
-/// slope is the slope of the chord, and the base makes the largest errors above and below equal. A segment of one value gives the
-/// exact value and the slope 0. `function` maps a value of u to a result from 0 to 1.
+/// slope is the slope of the chord, and the base makes the largest errors above and below equal. For a segment of one value, the
+/// base is the value of the function, and the slope is 0. The base is rounded to S fraction bits and saturated to `u0.S`.
+/// `function` maps a value of u to a result from 0 to 1.
 pub fn chord(segment: Segment, shape: SegmentedFormats, function: impl Fn(f64) -> f64) -> Entry {
     let value = Format::unsigned(0, shape.fraction);
     let (from, length) = (segment.from as f64, segment.length as f64);
@@ -112,8 +113,8 @@ impl Segmentation {
         blocks
     }
 
-    /// Returns the number of lower bits of u that the slope multiplies, in the range with the most. It is at least 1, even if
-    /// every segment has one value.
+    /// Returns the number of lower bits of u that the slope multiplies, in the range with the most such bits. Returns at least 1,
+    /// even if every segment has one value.
     fn rest_bits(&self) -> u32 {
         self.blocks().iter().map(|block| block.bits - block.prefix).max().unwrap_or(0).max(1)
     }
@@ -148,9 +149,9 @@ impl Segmentation {
     }
 }
 
-/// Makes the table as hardware, and returns its result in `u0.S`. `u` must be an integer from 0 to 2^C. `cut` divides its values
-/// into segments, and `entry` gives the table's entry for a segment. `block` is the number of the ROM in the block diagram of the
-/// document that describes the device.
+/// Makes the table and its interpolation as hardware, and returns the interpolated value in `u0.S`, truncated. `u` must be an
+/// integer from 0 to 2^C. `cut` divides the values of `u` into segments, and `entry` gives the table's entry for a segment.
+/// `block` is the number of the ROM in the block diagram of the document that describes the device.
 ///
 /// With `shape.synchronous` the ROM reads at the rising edge, so that the result belongs to the `u` of the clock before.
 #[track_caller]

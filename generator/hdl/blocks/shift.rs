@@ -5,8 +5,8 @@
 use crate::dsl::{Designer, Signal};
 use glint_base::fixed::Format;
 
-/// Divides `x` by 2^`places`, and rounds down to the fraction bits that `x` has. This is a barrel shifter, with one row of muxes
-/// for each bit of `places`.
+/// Divides `x` by 2^`places`, and rounds down to the fraction bits that `x` has. The hardware is a barrel shifter, with one row
+/// of muxes for each bit of `places`.
 ///
 /// `x` must be unsigned, and `places` an unsigned integer. For example, 13 in `u4.0` by 2 places gives 3.
 #[track_caller]
@@ -39,21 +39,24 @@ pub struct Normalised<'d> {
 /// Shifts `x` to the left until its top bit is 1, and returns the shifted bits and the number of places.
 ///
 /// Each row of muxes gives one bit of the number, so the number needs no encoder. If `x` is 0, the shifted bits are zeros, and
-/// all bits of the number are 1. For example, 22 in 8 bits has 3 leading zeros and becomes 176.
+/// all bits of the number are 1. A signal of one bit is not shifted, and the number is always 0. For example, 22 in 8 bits has 3
+/// leading zeros and becomes 176.
 #[track_caller]
 pub fn normalise<'d>(d: &'d Designer, name: &str, x: Signal<'d>) -> Normalised<'d> {
     normalise_in_steps(d, name, x, 1)
 }
 
 /// Shifts `x` to the left by pairs of places until one of its two top bits is 1. Returns the shifted bits and the number of
-/// pairs. For example, 22 in 8 bits has one pair of leading zeros and becomes 88. If `x` is 0, all bits of the number are 1.
+/// pairs. For example, 22 in 8 bits has one pair of leading zeros and becomes 88. If `x` is 0, all bits of the number are 1. A
+/// signal of one or two bits is not shifted, and the number is always 0.
 #[track_caller]
 pub fn normalise_by_pairs<'d>(d: &'d Designer, name: &str, x: Signal<'d>) -> Normalised<'d> {
     normalise_in_steps(d, name, x, 2)
 }
 
 /// Shifts `x` to the left by multiples of `least` places until one of its `least` top bits is 1. `least` must be a power of two.
-/// The number of places is in units of `least`.
+/// Returns the shifted bits and the number of places, in units of `least`. If `x` is 0, all bits of the number are 1. A signal of
+/// at most `least` bits is not shifted, and the number is 0.
 #[track_caller]
 fn normalise_in_steps<'d>(
     d: &'d Designer,

@@ -1,8 +1,9 @@
 //! Writes the microinstructions that raise a register to a power of two by repeated squaring. The devices `lyon` and
-//! `cosine-power` use it.
+//! `cosine-power` use these microinstructions.
 //!
-//! The first squaring has its own microinstruction, since its operand is the base and not the register. One more microinstruction
-//! squares the register itself; a counter repeats it. The device provides the multiplier and the muxes in front of it.
+//! The first squaring has its own microinstruction, since its operand is the base and not the register. If there is more than one
+//! squaring, another microinstruction squares the register itself, and a counter repeats this microinstruction. The device
+//! provides the multiplier, and the muxes in front of the multiplier.
 
 use crate::dsl::{Counter, Designer, Mux, Register, Signal, Step, StepSetting, loop_while, step};
 use glint_base::fixed::Format;
@@ -12,7 +13,8 @@ use glint_base::fixed::Format;
 pub struct Squarings<'d> {
     designer: &'d Designer,
     counter: Option<Counter<'d>>,
-    /// The mux for the start value of the counter, and its input for the squarings; `None` if the counter counts only squarings.
+    /// The mux for the start value of the counter, and its input for the squarings; `None` if the counter counts only squarings,
+    /// or if there is only one squaring.
     start: Option<(Mux<'d>, Signal<'d>)>,
 }
 
@@ -49,8 +51,8 @@ impl<'d> Squarings<'d> {
         (squarings, counter, load_other)
     }
 
-    /// Returns the settings that load the number of squarings after the first into the counter. A microinstruction before the
-    /// second squaring must have them. The list is empty for a single squaring.
+    /// Returns the settings that load the number of squarings after the first squaring into the counter. A microinstruction
+    /// before the second squaring must have these settings. The list is empty for a single squaring.
     #[track_caller]
     pub fn load(&self) -> Vec<StepSetting> {
         let pick = self.start.map(|(mux, squarings)| mux.pick(squarings));
@@ -91,7 +93,7 @@ impl<'d> Squarings<'d> {
     }
 }
 
-/// Returns a constant with the number of squarings after the first.
+/// Returns a constant with the number of squarings after the first squaring.
 #[track_caller]
 fn start(designer: &Designer, count: u32) -> Signal<'_> {
     designer.raw_constant("squarings", i128::from(count) - 1, Format::unsigned(2, 0))

@@ -4,7 +4,7 @@ use super::{Designer, Step, end, step, valid};
 use crate::netlist::Design;
 
 /// Returns a design whose microprogram consists of an idle microinstruction, the microinstructions that `describe` returns, and a
-/// last one that raises `valid`.
+/// last microinstruction that raises `valid`.
 ///
 /// # Panics
 /// Panics if the description has a mistake.

@@ -1,5 +1,5 @@
-//! Instantiates a hardware description within another one, as a *part* whose operands are signals of the surrounding description.
-//! For example, `shading` instantiates `dot-product`.
+//! Instantiates a hardware description within another description, as a *part* whose operands are signals of the surrounding
+//! description. For example, `shading` instantiates `dot-product`.
 //!
 //! The nets, registers and memories of the part are added to the surrounding design, with the name of the instance in front. The
 //! parts run one after the other, in the order of their instances. A part has no ports, sequencer or handshake of its own.
@@ -31,8 +31,9 @@ pub struct Instance<'d> {
 }
 
 impl<'d> Instance<'d> {
-    /// Returns the result of the part with the name `output`. A register stores the result until the part computes again. Reports
-    /// a mistake if the part has no such result, and returns a constant 0 of one bit.
+    /// Returns the result of the part with the name `output`. A register stores the result until the part computes again. If the
+    /// part has no such result, reports a mistake and returns a constant 0 of one bit. Returns the same constant if the part
+    /// itself had mistakes, which have been reported already.
     #[track_caller]
     pub fn out(&self, output: &str) -> Signal<'d> {
         let outputs = self.outputs.as_deref().unwrap_or_default();
@@ -51,12 +52,13 @@ impl<'d> Instance<'d> {
 
 impl Designer {
     /// Instantiates the description `describe` as a part called `name`, with a signal for each of its operands. The part's
-    /// operand registers are loaded in the microinstruction before the part's first one. The results of the part are in
-    /// registers. A description with parts calls [`Designer::dataflow`] instead of writing a microprogram.
+    /// operand registers are loaded in the microinstruction before the part's first microinstruction. The results of the part are
+    /// in registers. A description with parts calls [`Designer::dataflow`] instead of writing a microprogram.
     ///
     /// Reports a mistake if the names in `operands` differ from the part's operands, or if a signal does not fit its operand's
-    /// format. Reports a mistake if another part has the same name. Reports the mistakes of the part itself. A part must raise
-    /// `valid` by a microinstruction, for one result, and must not wait for `start`.
+    /// format. Reports a mistake if another part has the same name, or if parts are nested more than 8 deep. Reports the mistakes
+    /// of the part itself. A part must raise `valid` by a microinstruction, for one result, and must not wait for `start`;
+    /// otherwise this function reports a mistake.
     ///
     /// ```
     /// use glint_rtl::dsl::{Designer, end, step, valid};
@@ -153,8 +155,9 @@ impl Designer {
         )
     }
 
-    /// Makes the microprogram from the parts: it executes them in the order of their instances, and then loads the outputs into
-    /// registers. All logic between the parts must be combinational.
+    /// Makes the microprogram from the parts. The microprogram executes the parts in the order of their instances, and then loads
+    /// the outputs into registers. All logic between the parts must be combinational: [`Designer::finish`] reports a mistake for
+    /// a register or a synchronous ROM outside the parts that loads on every clock.
     #[track_caller]
     pub fn dataflow(&self) {
         self.register_outputs();
@@ -180,8 +183,8 @@ impl Designer {
     }
 }
 
-/// Returns a mistake for each register and synchronous memory outside the parts. Such a register takes a clock for which the
-/// microprogram of a dataflow does not wait.
+/// Returns a mistake for each synchronous memory outside the parts, and for each register outside the parts that loads on every
+/// clock. The microprogram of a dataflow does not wait for the clock that such a register or memory takes.
 fn delayed(inner: &mut Inner) -> Vec<Diagnostic> {
     let Inner { design, placed, .. } = inner;
     let mut delayed: Vec<NetId> = Vec::new();
@@ -230,7 +233,7 @@ fn unfit(design: &Design) -> Option<String> {
     None
 }
 
-/// Adds a finished design to another one as a part.
+/// Adds a finished design to another design as a part.
 struct InstanceBuilder<'d, 'p> {
     designer: &'d Designer,
     name: &'p str,
@@ -292,8 +295,8 @@ impl<'d> InstanceBuilder<'d, '_> {
         Instance { designer: d, name: self.name.to_owned(), outputs: Some(outputs.collect()) }
     }
 
-    /// Returns the driver of a net in the surrounding design, given its driver in the part. Nets of registers and memories get
-    /// their drivers when these are added.
+    /// Returns the driver of a net in the surrounding design, given its driver in the part (the instantiated design). Nets of
+    /// registers and memories get their drivers when the registers and memories are added.
     fn placed_driver(&self, driver: &Driver) -> Driver {
         match driver {
             Driver::Op(op) => Driver::Op(op.map(|id| self.nets[id])),
@@ -332,8 +335,8 @@ impl<'d> InstanceBuilder<'d, '_> {
         }
     }
 
-    /// Appends the microinstructions of this part. The last microinstruction of the previous part (or of the idle device) gets
-    /// the setting that loads the operands.
+    /// Appends the microinstructions of this part. The last microinstruction of the previous part gets the setting that loads
+    /// this part's operands. For the first part, this is the microinstruction `operands`, which follows `idle`.
     fn program(&self, load: FieldId, location: SourceLocation) {
         let (d, control) = (self.designer, &self.design.control);
         let named = |at: usize| format!("{}: {}", self.name, control.microprogram[at].name);

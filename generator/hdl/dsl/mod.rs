@@ -2,9 +2,10 @@
 //!
 //! A description is a function that builds with a [`Designer`], by handles such as [`Signal`], [`Register`] and [`Mux`]. Every
 //! signal has a fixed-point format *and* the interval of values that it can take. The sums and products of [`Designer::add`] and
-//! [`Designer::mul`] are exact, so that they cannot overflow. Only [`Designer::narrow`] rounds or saturates, in a stated way.
-//! [`Signal::bits`] takes some bits of a signal, and [`Designer::add_modulo`] drops the carry. A microinstruction ([`step`]) is a
-//! list of settings, such as [`Register::load`] and [`Mux::pick`].
+//! [`Designer::mul`] are exact, so that they cannot overflow. Only [`Designer::narrow`] rounds, in a stated way. Only
+//! [`Designer::narrow`] and [`Designer::operand_clamped`] saturate. [`Signal::bits`] takes some bits of a signal, and
+//! [`Designer::add_modulo`] drops the carry. A microinstruction ([`step`]) is a list of settings, such as [`Register::load`] and
+//! [`Mux::pick`].
 //!
 //! ```
 //! use glint_rtl::dsl::{Designer, end, step, valid};
@@ -25,8 +26,8 @@
 //! assert_eq!(design.control.microprogram.len(), 3);
 //! ```
 //!
-//! The functions report mistakes of a description: they collect them, and continue with a substitute value. [`Designer::finish`]
-//! returns all of them, each with the names of the signals and the Rust source line.
+//! A function that finds a mistake in a description stores the mistake, and continues with a substitute value.
+//! [`Designer::finish`] returns all stored mistakes, each with the names of the signals and the Rust source line.
 
 /// Adds methods to a handle by which a description documents the net of the handle.
 macro_rules! described {
@@ -119,7 +120,7 @@ pub struct Designer {
     inner: RefCell<Inner>,
     /// The number of this designer, which distinguishes its handles from the handles of another designer.
     serial: u64,
-    /// The number of descriptions that contain this one as a part, one inside the other; 0 for a whole device.
+    /// The number of descriptions that contain this description as a part, one inside the other; 0 for a whole device.
     depth: u32,
     start: NetId,
     idle: NetId,
@@ -235,8 +236,8 @@ impl Designer {
         self.signal(id)
     }
 
-    /// Returns the constant with the raw value `raw` in the given format. For example, 192 in `u0.8` is 0.75. Reports a mistake
-    /// if `raw` does not fit.
+    /// Returns the constant with the raw value `raw` in the given format. For example, 192 in `u0.8` is 0.75. If `raw` does not
+    /// fit, reports a mistake and returns the constant 0.
     #[track_caller]
     pub fn raw_constant(&self, name: &str, mut raw: i128, format: Format) -> Signal<'_> {
         let format = self.sound(name, format);
@@ -275,9 +276,9 @@ impl Designer {
 
     /// Adds a read-only memory. Its words are raw values of `format`; `address` selects the word that it reads.
     ///
-    /// The address must be an integer that stays within the words; otherwise, and if a word does not fit `format`, a mistake is
-    /// reported. A `synchronous` ROM reads on the rising edge, as block RAM does: its output is the word at the address of the
-    /// clock before.
+    /// The address must be an integer whose range lies within the words. Reports a mistake if the address has fraction bits or
+    /// can exceed the words, or if a word does not fit `format`. A `synchronous` ROM reads on the rising edge, as block RAM does:
+    /// its output is the word at the address of the clock before, and 0 at power-up.
     #[track_caller]
     pub fn rom(
         &self,
@@ -352,8 +353,8 @@ impl Designer {
 
     /// Makes `valid` follow the one-bit `signal` with a delay of `clocks` clocks.
     ///
-    /// This serves a datapath with registers between the operation that a microinstruction starts and the outputs, so that a
-    /// result may come in every clock. No microinstruction may raise [`valid`] in this case. The microprogram must end with
+    /// This method serves a datapath with registers between the operation that a microinstruction starts and the outputs, so that
+    /// a result may come in every clock. No microinstruction may raise [`valid`] in this case. The microprogram must end with
     /// enough microinstructions that the device is busy until the last result is on the outputs. A reset drops the results on
     /// their way. Reports a mistake if `signal` has several bits, or if `valid` already follows a signal.
     #[track_caller]
@@ -375,14 +376,15 @@ impl Designer {
     }
 
     /// Requests a register behind every output that is combinational logic. A microinstruction that raises `valid` in the
-    /// description loads these registers instead, and [`Designer::finish`] adds one after it that raises `valid`. Other outputs
-    /// do not change.
+    /// description loads these registers instead, and [`Designer::finish`] adds a microinstruction after it that raises `valid`.
+    /// If `valid` follows a signal, these registers load on every clock instead, and `valid` comes one clock later. Outputs that
+    /// already are registers do not change.
     pub fn register_outputs(&self) {
         self.inner.borrow_mut().registers_outputs = true;
     }
 
-    /// Forbids [`Designer::finish`] to insert registers into logic that depends on operands alone. Without this call, it inserts
-    /// them if there are spare clocks.
+    /// Forbids [`Designer::finish`] to insert registers into logic that depends on operands alone. Without this call,
+    /// [`Designer::finish`] inserts registers where a value is first used some clocks after `start`.
     pub fn keep_operand_logic(&self) {
         self.inner.borrow_mut().registers_operand_logic = false;
     }
@@ -420,8 +422,9 @@ impl Designer {
     /// Returns the finished and checked design. [`Design::warnings`] lists the logic on which no output depends.
     ///
     /// # Errors
-    /// Fails if the description has mistakes. The error lists every mistake, with the names of the signals and the Rust source
-    /// line.
+    /// Fails if the description has mistakes. The error lists the mistakes that the functions of the description have reported.
+    /// Only if there are no such mistakes, the whole design is checked, and the error lists the mistakes of this check. Each
+    /// mistake has the names of the signals and the Rust source line.
     pub fn finish(self) -> Result<Design, Diagnostics> {
         let program = self.inner.borrow_mut().program.take();
         if let Some(mut program) = program {

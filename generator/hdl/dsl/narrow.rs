@@ -1,5 +1,5 @@
 //! Converts a signal to a narrower format, with stated rounding and overflow. No other operation of the description language
-//! rounds or saturates.
+//! rounds. Only operands with limits (`operand_clamped`) saturate as well.
 
 use std::panic::Location;
 
@@ -9,8 +9,8 @@ use glint_base::fixed::{Format, Overflow, Rounding};
 use glint_base::interval;
 
 impl Designer {
-    /// Converts `a` to `format`. For example, it rounds a product `u0.16` to `u0.8`. `rounding` treats the dropped fraction bits,
-    /// `overflow` the values outside `format`.
+    /// Converts `a` to `format`. For example, a product in `u0.16` is rounded to `u0.8`. `rounding` treats the dropped fraction
+    /// bits, `overflow` the values outside `format`.
     ///
     /// Only necessary logic is made. Truncation is wiring. Rounding to nearest is an incrementer. Saturation tests only those
     /// upper bits that can differ within the range of `a`. With [`Overflow::Wrap`] the upper bits are dropped. If `format` has

@@ -27,7 +27,7 @@ described!(OperandMux, out);
 
 impl Designer {
     /// Returns a mux whose inputs may have different formats, controlled by the select lines `select`. Reports a mistake unless
-    /// it has one input for each choice of the select lines.
+    /// the mux has one input for each choice of the select lines.
     #[track_caller]
     pub fn bus<'d>(
         &'d self,
@@ -62,9 +62,9 @@ impl Designer {
     /// differ in select lines, number of inputs or registers behind them.
     ///
     /// If only one of the muxes has negative inputs, the multiplier takes the bits of that mux below its sign as an unsigned
-    /// number. Each factor then has one bit less than in a product of signed numbers, which may save DSP blocks. For example, 18
-    /// bits fit and 19 do not. For a negative operand, this product is too large by the other operand at the weight of the sign.
-    /// [`SharedProduct::of`] subtracts that amount.
+    /// number. Each factor then has one bit less than in a product of signed numbers, which may save DSP blocks. For example, a
+    /// factor of 18 bits fits a DSP block of ECP5, and a factor of 19 bits does not. For a negative operand, this product is too
+    /// large by the other operand at the weight of the sign. [`SharedProduct::of`] subtracts that amount.
     #[track_caller]
     pub fn shared_mul<'d>(
         &'d self,
@@ -137,8 +137,8 @@ impl<'d> OperandMux<'d> {
         StepSetting::pick_of(self.designer, self.field, &self.name, input, &self.inputs)
     }
 
-    /// Adds a register `<name>_held` behind the mux, which loads on every clock. It has the operand that the previous
-    /// microinstruction selected.
+    /// Adds a register `<name>_held` behind the mux, which loads on every clock. The register contains the operand that the
+    /// previous microinstruction selected.
     ///
     /// A microprogram selects the operands in one microinstruction, and loads the product in the next one under the same
     /// selection ([`hold`](super::hold)). The mux then takes time of the first clock, and the multiplier has the second clock to
@@ -186,7 +186,8 @@ impl<'d> SharedProduct<'d> {
 
     /// Returns the product of any of the `pairs`, in one format that can represent all of these products. For example, a register
     /// that loads a different product in each of several microinstructions loads this signal. Reports a mistake if the products
-    /// have different binary points, or if a pair is never multiplied.
+    /// have different binary points, or if a pair is never multiplied. Without any multiplied pair, returns the output of the
+    /// multiplier unchanged.
     #[track_caller]
     pub fn of_any(&self, pairs: &[(Signal<'d>, Signal<'d>)]) -> Signal<'d> {
         let d = self.out.designer();

@@ -72,8 +72,8 @@ fn behind(d: &Designer, port: NetId, kind: RegisterKind, enable: Option<NetId>) 
     });
 }
 
-/// Changes every microinstruction that raises `valid`: it gets the setting `load` instead, and a new microinstruction after it
-/// raises `valid`. Reports a mistake if such a microinstruction has a loop or a jump.
+/// Changes every microinstruction that raises `valid`. The microinstruction gets the setting `load` instead, and a new
+/// microinstruction behind it raises `valid`. Reports a mistake if such a microinstruction has a loop or a jump.
 fn loaded(d: &Designer, steps: &mut Vec<Step>, load: &StepSetting) {
     let mut at = 0;
     while at < steps.len() {

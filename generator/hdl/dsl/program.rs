@@ -107,34 +107,37 @@ impl StepSetting {
 }
 
 /// Returns the setting that keeps all selections (values of select lines) of the previous microinstruction, except those which
-/// this microinstruction states itself. In microinstruction 0 it has no effect.
+/// this microinstruction states itself. In microinstruction 0 this setting has no effect.
 #[track_caller]
 pub fn hold() -> StepSetting {
     StepSetting::sequence(SettingKind::Hold)
 }
 
 /// Returns the setting that raises `valid`, which means that the results are on the outputs. A microinstruction that loads a
-/// result register must not raise it; the next one may.
+/// result register must not raise `valid`, unless every path to this microinstruction has loaded the register before; the next
+/// microinstruction may raise `valid`.
 #[track_caller]
 pub fn valid() -> StepSetting {
     StepSetting::sequence(SettingKind::Valid)
 }
 
-/// Returns the setting that continues with the microinstruction at the next address. It is the default.
+/// Returns the setting that continues with the microinstruction at the next address. Every microinstruction except
+/// microinstruction 0, which waits for `start`, continues in this way without such a setting.
 #[track_caller]
 pub fn next() -> StepSetting {
     StepSetting::sequence(SettingKind::Next)
 }
 
 /// Returns the setting that repeats this microinstruction until `start` is high. The device is not busy meanwhile.
-/// Microinstruction 0 always waits, with or without this setting.
+/// Microinstruction 0 always waits, with or without this setting. [`Designer::finish`] reports a mistake if another
+/// microinstruction has this setting and the operands have buffers.
 #[track_caller]
 pub fn wait_for_start() -> StepSetting {
     StepSetting::sequence(SettingKind::WaitForStart)
 }
 
 /// Returns the setting that jumps back to the microinstruction named `to` while the bit `condition` is 1, and otherwise continues
-/// with the next one. A microinstruction of the loop must be able to change the condition, so that the loop ends.
+/// with the next microinstruction. A microinstruction of the loop must be able to change the condition, so that the loop ends.
 #[track_caller]
 pub fn loop_while(condition: Signal<'_>, to: &str) -> StepSetting {
     let kind = SettingKind::LoopWhile { condition: condition.id(), to: to.to_owned() };
@@ -142,14 +145,15 @@ pub fn loop_while(condition: Signal<'_>, to: &str) -> StepSetting {
 }
 
 /// Returns the setting that jumps ahead to the microinstruction named `to` if the bit `condition` is 1, and otherwise continues
-/// with the next one. For example, a jump skips a loop that may run zero times.
+/// with the next microinstruction. For example, a jump skips a loop that may run zero times.
 #[track_caller]
 pub fn jump_if(condition: Signal<'_>, to: &str) -> StepSetting {
     // The sequencer treats a jump ahead like a jump back.
     loop_while(condition, to)
 }
 
-/// Returns the setting that ends the computation. The device raises `done` in this microinstruction, and is idle after it.
+/// Returns the setting that ends the computation. The device raises `done` in this microinstruction, and is idle after it. If the
+/// operands have buffers and `start` is high in this clock, the next computation begins at once instead.
 #[track_caller]
 pub fn end() -> StepSetting {
     StepSetting::sequence(SettingKind::End)
@@ -163,8 +167,9 @@ pub struct Step {
     pub(super) location: SourceLocation,
 }
 
-/// Makes a microinstruction with a name and settings. Muxes without a setting pass their first input; registers without a setting
-/// keep their value. For example, `step("load", [y.load()])` loads the register `y`.
+/// Makes a microinstruction with a name and settings. Muxes without a setting pass their first input, or with [`hold`] the input
+/// that the previous microinstruction selected. Registers without a setting keep their value. For example, `step("load",
+/// [y.load()])` loads the register `y`.
 #[track_caller]
 pub fn step(name: &str, settings: impl IntoIterator<Item = StepSetting>) -> Step {
     Step {
@@ -246,8 +251,8 @@ pub(crate) fn assemble(d: &Designer, program: &MicroprogramSource) {
     sequencer.build(d, microinstructions, program.location);
 }
 
-/// Returns whether a setting belongs to another designer, and reports each such setting. The numbers in it would mean other nets
-/// and fields in this designer.
+/// Returns whether a setting belongs to another designer, and reports each such setting. The numbers of nets and fields in such a
+/// setting would mean other nets and fields in this designer.
 fn foreign(d: &Designer, steps: &[Step]) -> bool {
     let own = origin(d);
     let settings = steps.iter().flat_map(|step| step.settings.iter().map(move |it| (step, it)));
@@ -271,8 +276,9 @@ fn foreign(d: &Designer, steps: &[Step]) -> bool {
     any
 }
 
-/// Returns the rule for the microinstruction after `step`. Reports a mistake if its settings state two different rules. Reports a
-/// mistake if a jump leads to an unknown name or has a condition of several bits.
+/// Returns the rule for the microinstruction after `step`. Reports a mistake if the settings of `step` state two different rules.
+/// Reports a mistake if a jump leads to an unknown name or has a condition of several bits, or if `step` waits for `start`
+/// although the operands have buffers.
 fn sequence(d: &Designer, steps: &[Step], step: &Step) -> Sequence {
     let mut found: Option<(Sequence, SourceLocation)> = None;
     let own = &step.name;

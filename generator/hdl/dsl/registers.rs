@@ -1,5 +1,5 @@
-//! Builds registers, operands, flags, counters and select lines. Their methods return the settings by which microinstructions
-//! control them.
+//! Adds registers, operands, flags, counters and select lines to a description. A method such as [`Register::load`] returns the
+//! setting by which a microinstruction controls the register.
 
 use super::{Designer, Signal, StepSetting};
 use crate::netlist::{self, Driver, FieldId, FieldKind, NetId, Op, RegisterKind, Role};
@@ -9,7 +9,8 @@ use glint_base::interval::Interval;
 
 impl Designer {
     /// Adds an operand: the input port `name`, its write strobe `<name>_write` and the register `<name>_reg`. A write while the
-    /// device is busy is ignored. After [`Designer::buffer_operands`], a write loads a buffer instead, at any time.
+    /// device is busy is ignored. After [`Designer::buffer_operands`], a write at any time loads a buffer `<name>_buffer`
+    /// instead.
     #[track_caller]
     pub fn operand(&self, name: &str, format: Format) -> InputOperand<'_> {
         self.operand_port(name, format, |port| port)
@@ -56,7 +57,7 @@ impl Designer {
         })
     }
 
-    /// Makes a two-input mux whose result stays within `range`, as the caller knows.
+    /// Makes a two-input mux whose result is declared to stay within `range`. The caller must guarantee this.
     #[track_caller]
     fn chosen_within<'d>(
         &'d self,
@@ -109,7 +110,7 @@ impl Designer {
     /// Adds a register that certain microinstructions load; its field is `<name>_load`. For example, the register `reg11_cos_cos`
     /// of `rough` has the field `reg11_cos_cos_load`. The description must connect its input by [`Register::takes`].
     ///
-    /// The register has no reset. It must not have the name of an operand, because both would have a net `<name>_load`.
+    /// The register has no reset. The register must not have the name of an operand, because both would have a net `<name>_load`.
     #[track_caller]
     pub fn register(&self, name: &str, format: Format) -> Register<'_> {
         let field = self.add_field(&format!("{name}_load"), 1, FieldKind::Enable);
@@ -143,7 +144,7 @@ impl Designer {
         Select { designer: self, field }
     }
 
-    /// Returns `select`. If it belongs to another designer, reports a mistake and returns new lines with the same choices.
+    /// Returns `select`. If `select` belongs to another designer, reports a mistake and returns new lines with the same choices.
     #[track_caller]
     pub(crate) fn own_select<'d>(&'d self, select: Select<'d>) -> Select<'d> {
         if self.serial == select.designer.serial {
@@ -166,8 +167,8 @@ impl Designer {
 
     /// Adds a counter that counts down, with the fields `<name>_load` and `<name>_count`. Its format is the format of `start`.
     ///
-    /// A microinstruction that sets the first field loads the value of `start`; one that sets the second subtracts one. If a
-    /// microinstruction sets both, the counter is loaded. Below 0 the counter wraps around.
+    /// A microinstruction that sets `<name>_load` loads the value of `start`; a microinstruction that sets `<name>_count`
+    /// subtracts one. If a microinstruction sets both fields, the counter is loaded. Below 0 the counter wraps around.
     #[track_caller]
     pub fn down_counter<'d>(&'d self, name: &str, start: Signal<'d>) -> Counter<'d> {
         let start = self.own(start);
@@ -191,7 +192,7 @@ impl Designer {
         self.change(q, |it| (it.data, it.enable) = (Some(data), enable));
     }
 
-    /// Calls `change` with the register that drives the net `q`. Does nothing if no register drives it.
+    /// Calls `change` with the register that drives the net `q`. Does nothing if no register drives the net.
     pub(crate) fn change(&self, q: NetId, change: impl FnOnce(&mut netlist::NetlistRegister)) {
         self.with(|inner| {
             if let Driver::Register(id) = inner.design.net(q).driver {
@@ -201,8 +202,8 @@ impl Designer {
     }
 }
 
-/// An operand of a device: a value that the user writes before a computation. It consists of an input port, a write strobe and a
-/// register.
+/// An operand of a device: a value that the user writes before a computation. An operand consists of an input port, a write
+/// strobe and a register.
 #[derive(Clone, Copy)]
 pub struct InputOperand<'d> {
     port: Signal<'d>,
@@ -211,7 +212,8 @@ pub struct InputOperand<'d> {
 }
 
 impl<'d> InputOperand<'d> {
-    /// Returns the output of the operand register: the value that the user has written.
+    /// Returns the output of the operand register: the value that the user has written, limited if [`Designer::operand_clamped`]
+    /// made the operand. If the operands have buffers, the output is the value at the latest accepted `start`.
     pub fn q(self) -> Signal<'d> {
         self.q
     }
@@ -267,7 +269,8 @@ impl<'d> Register<'d> {
     }
 
     /// Connects the data input. The format of the register must have the binary point of `data` and represent its range;
-    /// [`Designer::narrow`] converts a signal first. Reports a mistake if it does not, or if the input is already connected.
+    /// [`Designer::narrow`] converts a signal first. Reports a mistake if the format does not fit `data`, or if the input is
+    /// already connected.
     #[track_caller]
     pub fn takes(self, data: Signal<'d>) {
         let d = self.q.designer();

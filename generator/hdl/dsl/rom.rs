@@ -32,8 +32,8 @@ impl<'d> Rom<'d> {
         self
     }
 
-    /// Sets a comment for each word of the ROM, from address 0. The memory file shows them.
-    /// [`Designer::finish`](super::Designer::finish) reports a mistake if their number differs from the number of words.
+    /// Sets a comment for each word of the ROM, from address 0. The memory file shows these comments.
+    /// [`Designer::finish`](super::Designer::finish) reports a mistake if there are comments, but not as many as words.
     #[must_use]
     pub fn comments(self, comments: Vec<String>) -> Self {
         self.designer.with(|inner| inner.design.roms[self.id.index()].comments = comments);

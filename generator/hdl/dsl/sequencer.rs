@@ -155,8 +155,9 @@ fn valid_line(d: &Designer) -> NetId {
     source
 }
 
-/// Limits the control word to 64 bits. While the fields are wider, moves fields of parts, the last field first, into additional
-/// ROMs with the same address. Fields of the description itself stay in the control word.
+/// Limits the control word to 64 bits. While the fields are wider, moves fields of parts (instances of other descriptions), the
+/// last field first, into additional ROMs with the same address. Fields of the description itself stay in the control word, even
+/// if these fields alone have more than 64 bits.
 fn moved_beside(d: &Designer, microinstructions: &mut [Microinstruction], address: NetId) {
     let width_of = |field: &Field| d.net(field.net).format.width();
     let mut fields = d.with(|inner| inner.design.control.fields.clone());

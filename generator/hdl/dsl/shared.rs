@@ -59,7 +59,7 @@ impl Designer {
         self.add_net(&name, format, range, driver, false)
     }
 
-    /// Runs `act`, and gives all nets and ROMs that it adds the source location `location`.
+    /// Runs `act`, and gives all nets and ROMs that `act` adds the source location `location`. Returns the result of `act`.
     pub(crate) fn located<T>(&self, location: SourceLocation, act: impl FnOnce() -> T) -> T {
         let own = self.with(|inner| (inner.design.nets.len(), inner.design.roms.len()));
         let made = act();
@@ -164,8 +164,8 @@ impl Designer {
         self.signal(net)
     }
 
-    /// Returns `signal`. If it belongs to another designer, reports a mistake and returns a constant with the same format. The
-    /// rest of the description can then be checked too.
+    /// Returns `signal`. If `signal` belongs to another designer, reports a mistake and returns a constant with the same format.
+    /// The rest of the description can then be checked too.
     #[track_caller]
     pub(crate) fn own(&self, signal: Signal<'_>) -> Signal<'_> {
         let other = signal.designer();

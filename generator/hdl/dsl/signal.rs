@@ -354,7 +354,8 @@ impl Designer {
     }
 
     /// Returns the constant `high` whose low bits are replaced by `low`, in `format`. These low bits of `high` must be 0. For
-    /// example, `high` = 0b1000 and a `low` of three bits give the addresses 8 to 15, without logic.
+    /// example, `high` = 0b1000 and a `low` of three bits give the addresses 8 to 15, without logic. `low` must not be wider than
+    /// `format`. If `low` is as wide, the function returns `low` itself.
     #[track_caller]
     pub fn beside<'d>(&'d self, high: Signal<'d>, low: Signal<'d>, format: Format) -> Signal<'d> {
         let low_bits = low.format().width();
@@ -441,8 +442,9 @@ impl Designer {
         self.signal(self.add_named(name, Format::BIT, Driver::Op(Op::All(self.own(a).id()))))
     }
 
-    /// Returns input 0 if the bit `select` is 0, and input 1 if it is 1. `select` is a signal of the datapath. Reports a mistake
-    /// if the inputs have different binary points. The format of the result can represent both inputs.
+    /// Returns input 0 if the bit `select` is 0, and input 1 if the bit is 1. `select` is a signal of the datapath. Reports a
+    /// mistake if `select` has several bits, or if the inputs have different binary points. The format of the result can
+    /// represent both inputs.
     #[track_caller]
     pub fn choose<'d>(
         &'d self,
@@ -456,8 +458,8 @@ impl Designer {
 
     /// Returns a mux that the microprogram controls by its own select field, `<name>_select`.
     ///
-    /// Integer bits and signs of the inputs may differ. Reports a mistake if the inputs have different binary points;
-    /// [`Signal::with_fraction`] aligns them, and [`Designer::bus`] takes inputs with different binary points.
+    /// Integer bits and signs of the inputs may differ. Reports a mistake if there is no input, or if the inputs have different
+    /// binary points; [`Signal::with_fraction`] aligns them, and [`Designer::bus`] takes inputs with different binary points.
     #[track_caller]
     pub fn mux<'d>(&'d self, name: &str, inputs: impl IntoIterator<Item = Signal<'d>>) -> Mux<'d> {
         let inputs: Vec<_> = inputs.into_iter().collect();
@@ -527,7 +529,8 @@ impl Designer {
     }
 
     /// Returns `a` as a net of exactly `format`, which must have the same binary point. If the format cannot represent the range
-    /// of `a`, the upper bits are dropped. This is harmless for an operand of a sum whose result fits the format.
+    /// of `a`, the upper bits are dropped. The loss of these bits is harmless for an operand of a sum whose result fits the
+    /// format.
     #[track_caller]
     pub(crate) fn resized(&self, a: Signal<'_>, format: Format) -> NetId {
         let a = self.own(a);

@@ -1,4 +1,4 @@
-//! Adds nets, registers and ROMs to a design. The description language and the pipeline builder use it.
+//! Adds nets, registers and ROMs to a design. The description language and the pipeline builder call these functions.
 
 use super::{
     About, Control, Design, Driver, Net, NetId, NetlistRegister, NetlistRom, Partition, RegId,
@@ -30,7 +30,7 @@ impl Design {
     }
 
     /// Makes a new register the driver of the net `q`, and returns the register. The register has no data input yet; the caller
-    /// must connect one.
+    /// must connect a data input.
     pub fn add_register(&mut self, q: NetId, kind: RegisterKind) -> &mut NetlistRegister {
         let at = self.registers.len();
         self.nets[q.index()].driver = Driver::Register(RegId(at as u32));

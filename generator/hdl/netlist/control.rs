@@ -27,7 +27,7 @@ pub struct Control {
 /// field `operand_select` of two bits, which chooses among four pairs of factors.
 #[derive(Clone, Debug)]
 pub struct Field {
-    /// The name of this field of the control word, such as `operand_select`. It must be a legal Verilog identifier.
+    /// The name of this field of the control word, such as `operand_select`. The name must be a legal Verilog identifier.
     pub name: String,
     /// The net that the field drives.
     pub net: NetId,
@@ -69,10 +69,11 @@ pub struct Microinstruction {
 pub enum Sequence {
     /// The microinstruction at the next address follows.
     Next,
-    /// The same microinstruction follows until `start` is high, and then the next one. The device is not busy here.
+    /// The same microinstruction follows until `start` is high, and then the next microinstruction follows. The device is not
+    /// busy in this microinstruction.
     WaitStart,
     /// Microinstruction `to` follows if `condition` is 1, otherwise the microinstruction at the next address. `to` may be a lower
-    /// address (a loop), the same one, or a higher one (a jump).
+    /// or the same address (a loop), or a higher address (a jump).
     LoopWhile {
         /// The condition of the jump, a net of one bit in the datapath.
         condition: NetId,

@@ -1,7 +1,7 @@
 //! Finds the microinstructions whose successor depends on an operand, and the delay from the control word to `valid`.
 //!
 //! Up to the first such microinstruction, every computation executes the same microinstructions in the same clocks, whatever the
-//! operands are. This follows by induction over the clocks. The module assumes that a computation loads a register before the
+//! operands are. The proof is an induction over the clocks. The module assumes that a computation loads a register before the
 //! register affects a successor. For example, the operand `shift` of `lyon` determines how often a loop runs.
 
 use std::collections::HashSet;

@@ -1,11 +1,11 @@
 //! Finds the delay lines of a pipeline: chains of registers that only pass a value on to a later stage. The Verilog may replace
-//! them by memories.
+//! delay lines by memories.
 
 use std::collections::BTreeMap;
 
 use super::{Design, Driver, NetId, Op, Pipeline, RegId};
 
-/// A delay line of a pipeline: registers that carry values from one stage to a later one, with no reader in between. All its
+/// A delay line of a pipeline: registers that carry values from one stage to a later stage, with no reader in between. All its
 /// values travel between the same two stages.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DelayLine {
@@ -24,7 +24,7 @@ pub struct DelayLine {
 pub struct Delayed {
     /// The net with the value that enters the delay line, the data input of its first register.
     pub data: NetId,
-    /// The registers that the value passes, one for each stage. Only the last one has a reader besides the next register.
+    /// The registers that the value passes, one for each stage. Only the last register has a reader besides the next register.
     pub registers: Vec<RegId>,
 }
 
@@ -37,7 +37,8 @@ impl DelayLine {
 }
 
 impl Delayed {
-    /// Returns the registers that a memory replaces: all that the value passes except the last one, from which the value is read.
+    /// Returns the registers that a memory replaces: all registers that the value passes except the last register, from which the
+    /// value is read.
     pub fn passed(&self) -> &[RegId] {
         &self.registers[..self.registers.len() - 1]
     }
@@ -54,7 +55,9 @@ impl Design {
     ///
     /// A memory returns the same value for each point as the registers would, however often the enable stops the pipeline. After
     /// a reset, which drops all points, a memory begins with its first word again. The side channel stays in registers, because
-    /// the proof by induction follows its value from stage to stage. Registers inside a multiplier stay registers too.
+    /// the proof by induction follows its value from stage to stage. Registers inside a multiplier stay registers too. Among
+    /// values that travel between the same two stages, a value also stays in registers if its registers have another enable than
+    /// the registers of the first value.
     pub fn delay_lines(&self) -> Vec<DelayLine> {
         let Some(pipeline) = &self.pipeline else { return Vec::new() };
         let Some(memory) = pipeline.delay_memory else { return Vec::new() };
@@ -92,9 +95,9 @@ impl Design {
         lines
     }
 
-    /// Returns the number of the register that follows register `at` in a delay line. It is the only reader of register `at`,
-    /// with the same enable. Returns `None` if another net reads register `at`, or if one of the registers has a reset. Returns
-    /// `None` if register `at` belongs to the side channel or is inside a multiplier.
+    /// Returns the number of the register that follows register `at` in a delay line. This next register is the only reader of
+    /// register `at`, and has the same enable. Returns `None` if another net reads register `at`, or if one of the registers has
+    /// a reset. Returns `None` if register `at` belongs to the side channel or is inside a multiplier.
     fn next_of_line(
         &self,
         pipeline: &Pipeline,

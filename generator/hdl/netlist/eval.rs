@@ -1,7 +1,7 @@
 //! Evaluates a netlist: each cell as [`Op`] defines it, and a whole design clock by clock.
 //!
 //! This interpreter defines the meaning of a netlist, and is written to be read. The simulator ([`crate::sim`]) is written for
-//! speed. Both share no code, and tests compare them.
+//! speed. The interpreter and the simulator share no code that evaluates cells, and tests compare both.
 
 use super::{Design, Driver, NetId, Op, RomId};
 use glint_base::fixed::{Format, mask};
@@ -86,7 +86,7 @@ pub fn cell<'a, Operand: Copy, const N: usize>(
     }
 }
 
-/// A simple simulator of a design. It stores the state of registers and ROMs, and evaluates one net after another.
+/// A simple simulator of a design. The interpreter stores the state of registers and ROMs, and evaluates one net after another.
 pub struct Interpreter<'a> {
     design: &'a Design,
     order: Vec<NetId>,
@@ -102,8 +102,8 @@ impl<'a> Interpreter<'a> {
         Ok(Self { design, order: design.levelise()?, values: vec![[0]; design.nets.len()] })
     }
 
-    /// Applies the bit patterns of all input ports, in the order of the ports, and evaluates every net. Registers and synchronous
-    /// ROMs keep their outputs.
+    /// Applies the bit patterns of all input ports, in the order of the ports, and evaluates every net. Bits above the width of a
+    /// port are ignored. Registers and synchronous ROMs keep their outputs.
     pub fn settle(&mut self, inputs: &[u64]) {
         let design = self.design;
         for (port, &bits) in design.inputs().zip(inputs) {

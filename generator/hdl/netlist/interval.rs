@@ -5,9 +5,9 @@ use super::Op;
 use glint_base::fixed::{Format, mask};
 use glint_base::interval::{Interval, hull, product, wrap};
 
-/// Returns the interval of raw values that a cell with the result `format` can produce. If no narrower interval is known, it is
-/// the whole range of the format. `of` gives the interval of an operand, `format_of` its format. For example, a product of a net
-/// with itself is a square, whose interval begins at 0 or above.
+/// Returns the interval of raw values that a cell with the result `format` can produce. If no narrower interval is known, the
+/// returned interval is the whole range of the format. `of` gives the interval of an operand, `format_of` its format. For
+/// example, a product of a net with itself is a square, whose interval begins at 0 or above.
 pub fn of_cell<N: Copy + PartialEq>(
     op: &Op<N>,
     format: Format,

@@ -3,7 +3,8 @@
 //!
 //! A [`Design`] is a list of *nets*. Every net has a [`Format`], the interval of its raw values, and exactly one [`Driver`], such
 //! as a register or a combinational [`Op`]. [`Design::verify`] checks widths, names and drivers, and [`Design::levelise`] finds
-//! combinational loops. There is one clock; only registers and synchronous ROMs have state, and they change on its rising edge.
+//! combinational loops. There is one clock. Only registers and synchronous ROMs have state, which changes on the rising edge of
+//! the clock.
 
 mod builder;
 mod cell;
@@ -91,14 +92,14 @@ pub struct Net {
     /// The one thing that drives the net, such as an input port, a register or a cell.
     pub driver: Driver,
     /// The number of the block that drives this net, in the block diagram of the document that describes the device. `None` if
-    /// the diagram does not number it.
+    /// the diagram does not number this block.
     pub block: Option<u16>,
     /// A comment of one line on the net, which the Verilog shows, or an empty text.
     pub doc: String,
     /// The topic of the net's comment `doc`. A pipeline shows only comments on the device itself.
     pub doc_topic: Topic,
     /// Whether the author of the description named the net, so that waveforms and Verilog show it. All other nets are wiring that
-    /// the description language adds (extensions, slices, rounding); they are named after the signal that they serve.
+    /// the description language adds (extensions, slices, rounding). Such a net is named after the signal that it serves.
     pub named: bool,
     /// The Verilog module to which the net belongs.
     pub partition: Partition,
@@ -132,10 +133,10 @@ pub struct NetlistRegister {
     pub q: NetId,
     /// The data input; `None` is an error that [`Design::verify`] reports.
     pub data: Option<NetId>,
-    /// The load enable, one bit. If it is `None`, the register loads on every rising edge.
+    /// The load enable, one bit. If this field is `None`, the register loads on every rising edge.
     pub enable: Option<NetId>,
-    /// The bit pattern that the register loads on a rising edge with `rst_n` low. If it is `None`, a reset does not affect the
-    /// register.
+    /// The bit pattern that the register loads on a rising edge with `rst_n` low. If this field is `None`, a reset does not
+    /// affect the register.
     pub reset: Option<u64>,
     /// The purpose of the register.
     pub kind: RegisterKind,
@@ -144,8 +145,8 @@ pub struct NetlistRegister {
 /// The purpose of a register in a design. For example, checks compare the architectural registers with the golden model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RegisterKind {
-    /// An operand register. The write strobe loads it from an input port, or `start` loads it from its buffer. It does not change
-    /// during a computation. For example, `cos_gamma_reg` of `rough`.
+    /// An operand register. The write strobe loads it from an input port, or `start` loads it from its buffer. The register does
+    /// not change during a computation. For example, `cos_gamma_reg` of `rough`.
     Operand,
     /// A buffer in front of an operand register, which accepts the next operand at any time.
     Buffer,
@@ -165,15 +166,15 @@ pub struct NetlistRom {
     pub name: String,
     /// The net with the address of the word to read. Its interval must lie between 0 and the number of words less one.
     pub address: NetId,
-    /// The net with the word that was read. It must be wide enough for every word.
+    /// The net with the word that was read. The net must be wide enough for every word.
     pub data: NetId,
     /// Whether the ROM is read at the rising edge (block RAM) rather than without a clock (logic).
     pub synchronous: bool,
-    /// The read enable of a synchronous ROM, one bit. The ROM keeps its output while the enable is 0. If it is `None`, the ROM
-    /// reads at every rising edge.
+    /// The read enable of a synchronous ROM, one bit. The ROM keeps its output while the enable is 0. If this field is `None`,
+    /// the ROM reads at every rising edge.
     pub enable: Option<NetId>,
-    /// The first read port of this ROM's memory, if this ROM is the second read port; it must have the same words. Otherwise
-    /// `None`.
+    /// The first read port of this ROM's memory, if this ROM is the second read port; both ROMs must have the same words.
+    /// Otherwise `None`.
     pub shares: Option<RomId>,
     /// The contents of the ROM: its words as bit patterns, from address 0.
     pub words: Vec<u64>,
@@ -182,7 +183,7 @@ pub struct NetlistRom {
     /// A comment for each word of the ROM, or an empty list.
     pub comments: Vec<String>,
     /// The number of the ROM in the block diagram of the document that describes the device. `None` if the diagram does not
-    /// number it.
+    /// number the ROM.
     pub block: Option<u16>,
     /// The place in the Rust source where the device's description makes the ROM.
     pub location: SourceLocation,
@@ -202,8 +203,8 @@ pub struct Port {
 pub enum Role {
     /// Input `rst_n`, the reset: active low, synchronous.
     Reset,
-    /// Input `start`, which begins a computation if the device is not busy. If operands have buffers, it also does so in the last
-    /// clock of a computation.
+    /// Input `start`, which begins a computation if the device is not busy. If operands have buffers, `start` also begins a
+    /// computation in the last clock of the computation before.
     Start,
     /// Input for the value of an operand, which the write strobe loads.
     Operand {
@@ -220,7 +221,7 @@ pub enum Role {
     SideIn,
     /// Input `out_ready` of a pipeline: the environment takes the results in this clock.
     OutReady,
-    /// Output `in_ready` of a pipeline: it would accept a point in this clock.
+    /// Output `in_ready` of a pipeline: 1 if the pipeline would accept a point in this clock.
     InReady,
     /// Output `side_out` of a pipeline: the value of `side_in` that came with the point whose results are on the outputs.
     SideOut,
@@ -332,7 +333,8 @@ pub struct Design {
     pub control: Control,
     /// The facts about the stages of a pipeline; `None` for any other design.
     pub pipeline: Option<Pipeline>,
-    /// Warnings about logic on which no output depends, and about choices that no microinstruction makes.
+    /// Warnings about logic on which no output depends, about muxes that always pass the same input, and about choices that no
+    /// microinstruction makes.
     pub warnings: Vec<Diagnostic>,
 }
 
@@ -352,8 +354,8 @@ impl Design {
         &self.registers[id.index()]
     }
 
-    /// Returns whether `rom` stores control words. It does if it is the control ROM, or another ROM at the same address, for
-    /// fields that do not fit into the control ROM.
+    /// Returns whether `rom` stores control words. Returns true for the control ROM, and for another ROM at the same address,
+    /// which has the fields that do not fit into the control ROM.
     pub fn is_control_memory(&self, rom: &NetlistRom) -> bool {
         self.roms.get(self.control.rom.index()).is_some_and(|it| it.address == rom.address)
     }
@@ -415,8 +417,8 @@ impl Design {
     /// Returns all nets of the design in an order in which each net follows the nets on which it depends within one clock.
     ///
     /// # Errors
-    /// Fails if there is a combinational loop. The error is the nets along the loop: each net depends on the next one, and the
-    /// last on the first.
+    /// Fails if there is a combinational loop. The error is the nets along the loop: each net depends on the next net, and the
+    /// last net depends on the first net.
     pub fn levelise(&self) -> Result<Vec<NetId>, Vec<NetId>> {
         #[derive(Clone, Copy, PartialEq)]
         enum VisitMark {

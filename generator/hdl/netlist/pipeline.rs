@@ -20,7 +20,8 @@ pub struct Pipeline {
     /// the pipeline accepts a point in slot 0. A point is in stage s while the slot is s modulo the interval. For example, with
     /// an interval of 4 a point is in stage 6 while the slot is 2.
     pub interval: usize,
-    /// The counter of slots, or `None` if the interval is 1. It counts one further whenever the points move to the next stage.
+    /// The counter of slots, or `None` if the interval is 1. The counter increases by one whenever the points move to the next
+    /// stage.
     pub slot: Option<NetId>,
     /// For each slot in which registers load a value that they must keep for a whole interval, the net that enables these
     /// registers.
@@ -45,7 +46,7 @@ pub struct Pipeline {
     pub handshake: Vec<NetId>,
     /// For each stage from 1 on, including the results, the net that is 1 if the stage has a point.
     pub valid: Vec<NetId>,
-    /// For each stage from 1 on, the net that carries the side channel's data. It is empty if there is no side channel.
+    /// For each stage from 1 on, the net that carries the side channel's data. The list is empty if there is no side channel.
     pub side_values: Vec<NetId>,
     /// The registers that become output registers of multipliers, inside a DSP block of the FPGA.
     pub registered: Vec<RegId>,
@@ -62,8 +63,8 @@ pub struct Unit {
     pub name: String,
     /// The nets of the multiplier: its muxes if it has any, its two operand registers, its product, and the register behind it.
     pub nets: Vec<NetId>,
-    /// For each slot (clock modulo the interval), the name of the product that the multiplier computes in this slot; `None` if it
-    /// computes none.
+    /// For each slot (clock modulo the interval), the name of the product that the multiplier computes in this slot; `None` for a
+    /// slot without a product.
     pub serves: Vec<Option<String>>,
 }
 
@@ -110,7 +111,7 @@ impl Pipeline {
     }
 
     /// Returns the named nets whose logic is in stage number `stage`, each with the name of its value, in the order of the
-    /// design. It leaves out nets of the handshake.
+    /// design. The function leaves out nets of the handshake.
     pub fn computed<'a>(
         &'a self,
         design: &'a Design,

@@ -5,8 +5,9 @@
 use super::{Design, Driver, Microinstruction, NetId, Op};
 use glint_base::fixed::mask;
 
-/// Returns the value of a control line, such as the select of a mux, while `microinstruction` is executed. Returns `None` if the
-/// value depends on anything but fields of the control word and constants.
+/// Returns the value of a control line, such as the select of a mux, while `microinstruction` is executed. Follows fields of the
+/// control word and constants through renaming, slices, inverters, and bitwise `and` and `or`. Returns `None` if the value
+/// depends on anything else; but an `and` with an operand 0 is 0 whatever its other operand is.
 pub fn setting_of(
     design: &Design,
     microinstruction: &Microinstruction,

@@ -19,8 +19,9 @@ pub struct Left {
 
 /// Returns for each microinstruction of a design an upper limit of the clocks from its execution to the clock with `done`.
 ///
-/// Returns `None` if a microinstruction waits for `start`, or if a loop has several microinstructions. Returns `None` if the
-/// condition of a loop depends on anything but one register. A jump forward has no such restriction.
+/// Returns `None` if a microinstruction waits for `start`, if the last microinstruction does not end the computation, or if a
+/// loop has several microinstructions. Returns `None` if the condition of a loop depends on anything but one register. A jump
+/// forward has no such restriction.
 pub fn remaining(design: &Design) -> Option<Vec<Left>> {
     let microprogram = &design.control.microprogram;
     let mut left: Vec<Left> = Vec::with_capacity(microprogram.len());

@@ -26,9 +26,9 @@ pub struct HandshakeTiming {
 }
 
 impl HandshakeTiming {
-    /// Returns the number of clocks for each point when the device works without a pause, or `None` if it depends on the
-    /// operands. For a device with several results a computation, it is the number of clocks from one result to the next.
-    /// Otherwise it is the number of clocks from one `start` to the next. For example, `rough` gives 11.
+    /// Returns the number of clocks for each point when the device works without a pause, or `None` if this number depends on the
+    /// operands. For a device with several results a computation, this is the number of clocks from one result to the next.
+    /// Otherwise this is the number of clocks from one `start` to the next. For example, `rough` gives 11.
     pub fn clocks_per_point(&self) -> Option<u32> {
         self.valid_to_valid.or(self.start_to_start)
     }

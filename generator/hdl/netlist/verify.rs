@@ -1,9 +1,9 @@
 //! Checks the structure of a [`Design`]: its names, drivers, widths, combinational loops and microprogram.
 //!
 //! The description language runs these checks on every design that a user describes; tests run them on generated pipelines. For
-//! example, they report a net without a driver, and a product that is narrower than both factors together. rust_hdl's own
-//! `check_all` only finds unconnected pins and writes to inputs. No check here notices a wrong formula: co-simulation with the
-//! golden model does.
+//! example, the checks report a net without a driver, and a product that is narrower than both factors together. rust_hdl's own
+//! `check_all` only finds unconnected pins and writes to inputs. No check of this module notices a wrong formula; only
+//! co-simulation with the golden model finds such a mistake.
 
 use std::collections::HashMap;
 
@@ -25,8 +25,8 @@ impl Design {
         found
     }
 
-    /// Returns the mistakes that make a design meaningless: references to missing parts, nets without a driver or with two, wrong
-    /// widths, and combinational loops. It does not check the names and the microprogram.
+    /// Returns the mistakes that make a design meaningless: references to missing parts, nets without a driver or with two
+    /// drivers, wrong widths, and combinational loops. The function does not check the names and the microprogram.
     pub fn verify_structure(&self) -> Vec<Diagnostic> {
         let mut found = Vec::new();
         // The later checks must not index parts that do not exist, or ask for an impossible width.

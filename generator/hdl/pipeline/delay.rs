@@ -51,8 +51,8 @@ pub fn node_delay(timing: &Timing, graph: &Graph, id: NodeId) -> f64 {
     }
 }
 
-/// Returns the additional setup time, in nanoseconds, of the register behind a node of the computation's graph. It is the delay
-/// of one look-up table for a mux with a constant input and more than one bit, and otherwise 0.
+/// Returns the additional setup time, in nanoseconds, of the register behind a node of the computation's graph: the delay of one
+/// look-up table for a mux with a constant input and more than one bit, and otherwise 0.
 ///
 /// Synthesis turns such a mux into the set or the reset of the register. The select of the mux then passes through a look-up
 /// table with the clock enable. From this table, it takes a longer path to the register.

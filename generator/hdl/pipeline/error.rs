@@ -1,6 +1,6 @@
 //! Defines the error for a pipeline that cannot be made as requested. In most cases the error states the nearest possible value.
-//! For example, the error for a request of 900 MHz may state that 130 MHz is possible. An error about the microprogram, or about
-//! a rate without a clock frequency, states no such value.
+//! For example, the error for a request of 900 MHz may state that 130 MHz is possible. An error about the microprogram, about a
+//! rate without a clock frequency, or about a failure of the solver states no such value.
 
 use std::fmt;
 

@@ -45,10 +45,10 @@ pub enum Cell {
 pub struct Label {
     /// The name of the net or register in the sequential design that has the value. For example, `product`.
     pub name: String,
-    /// A comment of one line, taken from the sequential design.
+    /// A comment of one line, taken from the sequential design, or an empty text.
     pub doc: String,
     /// The number of the block that computes the value, in the block diagram of the document that describes the device. `None` if
-    /// the diagram does not number it.
+    /// the diagram does not number this block.
     pub block: Option<u16>,
     /// Whether the author of the device's description chose the name. Glint generates all other names.
     pub named: bool,
@@ -244,8 +244,8 @@ impl Graph {
         }
     }
 
-    /// Returns whether the mux `select ? limit : value` is superfluous because `value` never exceeds the constant `limit`. This
-    /// is so if `limit` is a power of two, and `select` is the bit of `value` with this weight.
+    /// Returns whether the mux `select ? limit : value` is superfluous because `value` never exceeds the constant `limit`.
+    /// Returns true if `limit` is a power of two, and `select` is the bit of `value` with this weight.
     fn is_kept(&self, value: NodeId, select: NodeId, limit: u64) -> bool {
         let (low, high) = self.node(value).range;
         let Cell::Op(NodeOp::Slice { of, low: bit }) = self.node(select).cell else { return false };

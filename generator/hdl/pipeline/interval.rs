@@ -13,23 +13,24 @@ use crate::netlist::Design;
 pub enum IntervalGoal {
     /// The interval itself, in clocks.
     Clocks(usize),
-    /// The largest interval with at least this rate, in million points a second, at the requested clock. For example, 26 million
-    /// points a second at 130 MHz allow an interval of 5 clocks.
+    /// The largest interval with at least this rate, in million points a second, at the requested clock. The interval is never
+    /// larger than the number of clocks that the sequential core takes for a point. For example, 26 million points a second at
+    /// 130 MHz allow an interval of 5 clocks.
     Rate(f64),
-    /// The smallest interval that needs at most this number of multipliers.
+    /// The smallest interval that reaches the requested clock with at most this number of multipliers.
     Multipliers(usize),
 }
 
 /// Returns the interval of a pipeline in clocks, from one point to the next, as `options.interval` requests it. `most` is the
 /// number of clocks in which the sequential core computes a point. `problems` makes the scheduling problem for an interval.
 ///
-/// For a rate, the function returns the longest interval that reaches the rate and the clock. For a number of multipliers, it
-/// returns the shortest interval that needs no more. If no interval reaches the clock, it returns 1, and the scheduler reports
-/// the error.
+/// For a rate, the function returns the longest interval up to `most` that reaches the rate and the clock. For a number of
+/// multipliers, the function returns the shortest interval that reaches the clock and needs no more multipliers. If no interval
+/// reaches the clock, the function returns 1 for both goals, and the scheduler reports the error.
 ///
 /// # Errors
 /// Fails if the requested interval exceeds `most`. Fails if the rate exceeds one point a clock, or if the options give a rate
-/// without a clock frequency. Fails if every interval needs more multipliers than the options allow.
+/// without a clock frequency. Fails if every interval that reaches the clock needs more multipliers than the options allow.
 pub fn clocks<'a>(
     sequential: &Design,
     options: &Options,

@@ -1,8 +1,9 @@
 //! Turns a design with a microprogram into a pipeline, which accepts a point (a set of operands) every clock or every few clocks.
 //!
-//! `unroll` turns the design into a graph of values. `passes` rewrite the graph, for example to split products that are too wide
-//! for the multipliers of the FPGA target. `request` finds a schedule (`schedule`), which assigns every value to a stage.
-//! `stages` builds the pipeline, which has no microprogram, and a register wherever a value passes from one stage to the next.
+//! `unroll` turns the design into a graph of values. The passes in `passes` rewrite the graph, for example to split products that
+//! are too wide for the multipliers of the FPGA target. `request` finds a schedule (`schedule`), which assigns every value to a
+//! stage. `stages` builds the pipeline, which has no microprogram, and a register wherever a value passes from one stage to the
+//! next.
 
 mod delay;
 mod error;
@@ -43,7 +44,8 @@ pub use unroll::{
 /// The goal with which Glint divides a computation into pipeline stages: a clock frequency or a number of stages.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Goal {
-    /// The pipeline must reach this clock frequency in MHz, with as few register bits as possible.
+    /// The pipeline must reach this clock frequency in MHz, with as few stages as possible, and then with as few register bits as
+    /// possible.
     ClockMhz(f64),
     /// The pipeline must have this number of stages, with as high a clock frequency as possible.
     Stages(usize),
@@ -79,8 +81,8 @@ pub struct Options {
     pub delays: Delays,
 }
 
-/// Returns the computation of a pipeline before the passes and after each of them, in the order of the passes. The first entry
-/// is the unrolled microprogram, and Glint schedules the last one.
+/// Returns the computation of a pipeline before the passes and after each of them, in the order of the passes. The first entry is
+/// the unrolled microprogram, and Glint schedules the last entry.
 ///
 /// # Errors
 /// Fails if the microprogram cannot be unrolled; the error has its source line.
@@ -98,7 +100,8 @@ pub fn pass_results(
 /// # Errors
 /// Fails if the microprogram cannot be unrolled into a computation without loops; the error has the source line. Fails if the
 /// requested clock, number of stages, interval, rate or number of multipliers cannot be reached. The error then states the
-/// nearest value that can be reached.
+/// nearest value that can be reached. Fails if the options give a rate without a clock frequency, or if the solver finds no
+/// schedule; these errors state no nearest value.
 pub fn pipeline(sequential: &Design, options: &Options) -> Result<Design, PipelineError> {
     let mut results = pass_results(sequential, options)?;
     let Some(PassResult { computation, .. }) = results.pop() else {

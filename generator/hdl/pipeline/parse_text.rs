@@ -1,6 +1,7 @@
 //! Parses computations from the notation of `text`, and evaluates them, for tests of the passes.
 //!
-//! A line may leave out its range if the format allows no other values. Lines that begin with `#` are comments.
+//! A line may leave out its range if the format allows no other values. The operation `read` of a ROM cannot be parsed. Lines
+//! that begin with `#` are comments.
 
 use std::collections::HashMap;
 use std::panic::Location;

@@ -43,7 +43,7 @@ pub static PASSES: [Pass; 2] = [
     },
 ];
 
-/// A computation that a pass has rewritten.
+/// A computation after a pass, or before all passes.
 pub struct PassResult {
     /// The name of the pass, or `unroll` for the computation before all passes.
     pub name: &'static str,
@@ -59,7 +59,8 @@ impl PassResult {
         printed(&self.computation)
     }
 
-    /// Returns the number of operations on which the results depend, wiring included. Operands and constants do not count.
+    /// Returns the number of operations on which the results depend, wiring included. Operands, constants and unknown values do
+    /// not count.
     pub fn operations(&self) -> usize {
         self.count(|cell| matches!(cell, Cell::Op(_) | Cell::Read { .. }))
     }

@@ -12,9 +12,10 @@ const MOST_BITS: u32 = 16;
 /// The largest width in bits of the node for which [`count`] returns a list. With 6 bits, the list has 64 entries.
 const MOST_SELECTED: u32 = 6;
 
-/// Returns whether `condition`, a node of one bit, is 1 for any values of the leaves on which it depends. Leaves are operands,
-/// unknown values, ROM words and the nodes `free`; each may have any value in its range. Returns `None` if `condition` depends on
-/// more than 16 bits. For example, `count > 3` can be 1 if `count` is a leaf of 3 bits, and cannot if it has 2.
+/// Returns whether `condition`, a node of one bit, is 1 for at least one combination of values of the leaves on which it depends.
+/// Leaves are operands, unknown values, ROM words and the nodes `free`; each may have any value in its range. Returns `None` if
+/// `condition` depends on more than 16 bits. For example, `count > 3` can be 1 if `count` is a leaf of 3 bits, and never if the
+/// leaf has 2 bits.
 pub fn ever(graph: &Graph, condition: NodeId, free: &[NodeId]) -> Option<bool> {
     let cone = Cone::of(graph, &[condition], free);
     if cone.bits > MOST_BITS {

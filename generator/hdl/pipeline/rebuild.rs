@@ -5,7 +5,7 @@ use super::unroll::Unrolled;
 
 /// Returns a copy of a computation in which `replace` may substitute the nodes of combinational cells. Operands, constants,
 /// unknown values and reads of ROMs are copied. `replace` gets the new graph, a cell whose operands are nodes of the new graph,
-/// and the original node. It returns the substitute, or `None` to copy the cell.
+/// and the original node. `replace` returns the substitute, or `None` to copy the cell.
 pub fn rebuilt(
     unrolled: &Unrolled,
     mut replace: impl FnMut(&mut Graph, &NodeOp, &Node) -> Option<NodeId>,

@@ -37,8 +37,8 @@ impl<'a> Request<'a> {
     ///
     /// # Errors
     /// Fails if the requested interval is longer than the sequential core takes for a point. Fails if the rate exceeds one point
-    /// a clock, or if the options give a rate without a clock frequency. Fails if every interval needs more multipliers than the
-    /// options allow.
+    /// a clock, or if the options give a rate without a clock frequency. Fails if every interval that reaches the clock needs
+    /// more multipliers than the options allow.
     pub fn interval(&self) -> Result<usize, PipelineError> {
         // The sequential core takes one clock for each microinstruction, plus the clock of `start`, which writes the operands. If
         // operands decide the number of iterations, the largest number counts.
@@ -76,7 +76,8 @@ impl<'a> Request<'a> {
         }
     }
 
-    /// Returns the schedule with exactly `stages` stages.
+    /// Returns the schedule with exactly `stages` stages. Fails if `stages` is more than useful, or fewer than memories and
+    /// multipliers need, or if the solver finds no schedule.
     fn in_stages(
         &self,
         problems: &ScheduleProblem<'_>,

@@ -1,9 +1,9 @@
 //! Assigns each node of a computation to a stage of the pipeline, with the fewest register bits.
 //!
-//! The node must be in a later stage than an operand if a block memory lies between them, or if the logic between them is too
-//! slow for the clock. A value takes one register bit for each of its bits and for each boundary between stages up to its last
-//! use. All constraints are on differences of two stages, so a linear program finds an integer solution. (The method is from Cong
-//! and Zhang, "An efficient and versatile scheduling algorithm based on SDC formulation", 2006.) Products that share multipliers
+//! A node must be in a later stage than its operand if a block memory lies between them, or if the logic between them is too slow
+//! for the clock. A value takes one register bit for each of its bits and for each boundary between stages up to its last use.
+//! All constraints are on differences of two stages, so a linear program finds an integer solution. (The method is from Cong and
+//! Zhang, "An efficient and versatile scheduling algorithm based on SDC formulation", 2006.) Products that share multipliers
 //! (`sharing`) get their stages before the linear program runs.
 
 use std::cmp::Reverse;
@@ -19,8 +19,8 @@ use glint_base::target::{Registered, Timing};
 /// A schedule for a pipeline: the stage of every node of the computation's graph, and the clock period that the stages reach.
 #[derive(Clone, Debug)]
 pub struct Schedule {
-    /// The stage of each node of the computation's graph. It is meaningless for constants and for nodes on which no result
-    /// depends.
+    /// The stage of each node of the computation's graph. An entry is meaningless for constants, for extensions that are no
+    /// results, and for nodes on which no result depends.
     pub stage: Vec<usize>,
     /// The number of register rows from the operands to the results, which is the latency in clocks.
     pub latency: usize,
@@ -74,27 +74,27 @@ pub struct ScheduleProblem<'a> {
     kinds: Vec<ProductGroup>,
 }
 
-/// The timing of a node that gets its value at a rising edge. It is a word of a block memory, a product in the register of a
-/// multiplier, or a product of a shared multiplier.
+/// The timing of a node that gets its value at a rising edge. Such a node is a word of a block memory, a product in the register
+/// of a multiplier, or a product of a shared multiplier.
 #[derive(Clone, Copy, Debug)]
 struct ClockedNode {
     /// The time from the operands to the rising edge in nanoseconds, as far as it exceeds the path to an ordinary register.
     operands: f64,
     /// The delay of the logic between two registers that the operands pass afterwards, in nanoseconds: the multiplier behind its
-    /// operand registers. It is 0 without such logic.
+    /// operand registers. The delay is 0 without such logic.
     inside: f64,
     /// The number of stage boundaries from the operands to the node: 2 for a shared multiplier, otherwise 1.
     apart: usize,
 }
 
-/// Returns the clock frequency for a `period` in nanoseconds, in MHz to one decimal. It is rounded down, so that the stated clock
-/// can be reached. For example, 7 ns give 142.8 MHz.
+/// Returns the clock frequency for a `period` in nanoseconds, in MHz to one decimal. The frequency is rounded down, so that the
+/// stated clock can be reached. For example, 7 ns give 142.8 MHz.
 pub fn megahertz(period: f64) -> f64 {
     (10_000.0 / period).floor() / 10.0
 }
 
 /// Returns whether an operation is a carry chain or a product. The look-up tables of any other operation can include a mux in
-/// front of it.
+/// front of the operation.
 fn takes_no_logic(cell: &Cell) -> bool {
     matches!(
         cell,
@@ -133,8 +133,8 @@ pub fn is_extension(graph: &Graph, id: NodeId) -> bool {
     matches!(graph.node(id).cell, Cell::Op(NodeOp::Extend(_) | NodeOp::Relabel(_)))
 }
 
-/// Returns the node that registers store for the readers of `id`. For an extension that is no result, this is the node that it
-/// extends; for any other node, `id` itself.
+/// Returns the node that registers store for the readers of `id`. For an extension that is no result, this is the node below the
+/// extensions; for any other node, `id` itself.
 fn held(graph: &Graph, results: &[NodeId], mut id: NodeId) -> NodeId {
     while is_extension(graph, id) && !results.contains(&id) {
         id = graph.node(id).cell.operands()[0];
@@ -142,8 +142,8 @@ fn held(graph: &Graph, results: &[NodeId], mut id: NodeId) -> NodeId {
     id
 }
 
-/// Returns the delay of a node in nanoseconds, and its timing if a rising edge computes it. `shares` says whether the node is a
-/// product of a multiplier that several products share.
+/// Returns the delay of a node in nanoseconds, and the node's timing at a rising edge. The timing is `None` if no rising edge
+/// computes the node. `shares` says whether the node is a product of a multiplier that several products share.
 fn node_timing(
     graph: &Graph,
     target: &Timing,
@@ -178,7 +178,7 @@ fn node_timing(
 
 impl<'a> ScheduleProblem<'a> {
     /// Makes the scheduling problem for the nodes of `graph` on which `results` depend. `interval` is the number of clocks from
-    /// one point to the next. `registered` has the delays of multipliers with output registers; it is `None` if products do not
+    /// one point to the next. `registered` has the delays of multipliers with output registers, or is `None` if products do not
     /// use these registers.
     pub fn new(
         graph: &'a Graph,
@@ -285,8 +285,9 @@ impl<'a> ScheduleProblem<'a> {
         }
     }
 
-    /// Returns the schedule that reaches a clock period in nanoseconds. It has as few stages as possible, and among these
-    /// schedules the fewest register bits.
+    /// Returns the schedule that reaches a clock period in nanoseconds. The schedule has as few stages as possible, and among all
+    /// such schedules the fewest register bits. If products share multipliers, Glint chooses the stages of these products first.
+    /// The schedule may then have more stages or bits than necessary.
     ///
     /// # Errors
     /// Fails if an operation takes longer than the period, or if the solver fails.
@@ -344,8 +345,8 @@ impl<'a> ScheduleProblem<'a> {
         self.latency(&differences, &self.taken(&differences))
     }
 
-    /// Returns the number of rows of pipeline registers that must lie between the operands of node `user` and its value. It is 0
-    /// for combinational logic, 1 for a word of a block memory or a product with a register, and 2 for a product of a shared
+    /// Returns the number of rows of pipeline registers that must lie between the operands of node `user` and its value. Returns
+    /// 0 for combinational logic, 1 for a word of a block memory or a product with a register, and 2 for a product of a shared
     /// multiplier.
     pub fn apart(&self, user: NodeId) -> usize {
         match self.clocked[user.index()] {
@@ -374,7 +375,7 @@ impl<'a> ScheduleProblem<'a> {
     }
 
     /// Returns the constraints of a clock period in nanoseconds: for each pair of dependent nodes the least difference of their
-    /// stages. They are sorted, and each pair occurs once.
+    /// stages. The constraints are sorted, and each pair occurs once.
     fn differences(&self, period: f64) -> Vec<StageDifference> {
         let most = period - self.target.register + 1e-9;
         let mut differences = Vec::new();
@@ -477,8 +478,8 @@ impl<'a> ScheduleProblem<'a> {
         taken
     }
 
-    /// Returns the last stage that a node may have. It is 0 for an operand, because operands are available from the beginning. It
-    /// is `latency` − 1 for any other node, because a register row follows the results.
+    /// Returns the last stage that a node may have. Returns 0 for an operand, because operands are available from the beginning.
+    /// Returns `latency` − 1 for any other node, because a register row follows the results.
     fn last_stage(&self, id: usize, latency: usize) -> usize {
         if matches!(self.graph.nodes[id].cell, Cell::Operand(_)) { 0 } else { latency - 1 }
     }
@@ -532,8 +533,9 @@ impl<'a> ScheduleProblem<'a> {
         Ok(())
     }
 
-    /// Returns the schedule with the fewest register bits for a period in nanoseconds, with at least `least` stages. Fails if the
-    /// solver finds no solution, or one that violates a constraint.
+    /// Returns the schedule with the fewest register bits for a period in nanoseconds, with at least `least` stages. A mux that
+    /// takes look-up tables, because its register cannot choose by a reset, counts as many additional bits as its width. Fails if
+    /// the solver finds no solution, or a solution that violates a constraint.
     fn solve(&self, period: f64, least: usize) -> Result<Schedule, ScheduleRefusal> {
         let differences = self.differences(period);
         let taken = self.taken(&differences);
@@ -668,7 +670,7 @@ impl<'a> ScheduleProblem<'a> {
     }
 
     /// Returns the nodes to which the schedule must assign a stage, each after its operands: all nodes on which a result depends,
-    /// except constants and extensions.
+    /// except constants, and except extensions that are no results.
     pub fn live(&self) -> &[NodeId] {
         &self.live
     }

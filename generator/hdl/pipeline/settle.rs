@@ -8,8 +8,8 @@ use super::graph::{Cell, Graph, Label, NodeId, NodeOp};
 use glint_base::fixed::Format;
 
 /// Returns a node with the value of node `id`. If `id` is a mux `over ? most : rest` with a constant `most`, the returned mux
-/// bypasses inner muxes of this kind in `rest`. It bypasses those whose condition must be 0 if the new condition is 0. Returns
-/// `id` itself if the node is no mux of this kind.
+/// bypasses those inner muxes of this kind in `rest` whose condition must be 0 if the new condition is 0. Returns `id` itself if
+/// the node is no mux of this kind.
 pub fn settled(graph: &mut Graph, id: NodeId) -> NodeId {
     let node = graph.node(id).clone();
     let Some((over, rest, most)) = limit(graph, id) else { return id };
@@ -29,7 +29,8 @@ fn limit(graph: &Graph, id: NodeId) -> Option<(NodeId, NodeId, NodeId)> {
 }
 
 /// Rewrites the condition `id` if it is one bit of a mux `over ? most : rest` whose constant `most` has a 1 at this bit. The
-/// returned condition is `over`, or the same bit of `rest`, and does not read the mux. Returns `id` for any other condition.
+/// returned condition is 1 if `over` is 1 or if the same bit of `rest` is 1, and does not read the mux. Returns `id` for any
+/// other condition.
 fn flag(graph: &mut Graph, id: NodeId) -> NodeId {
     let node = graph.node(id).clone();
     let Cell::Op(NodeOp::Slice { of, low }) = node.cell else { return id };
@@ -68,7 +69,7 @@ fn run(graph: &Graph, id: NodeId) -> Option<(NodeId, u32, u32)> {
 }
 
 /// Returns a node that equals `id` whenever the condition `over` is 0. The search passes through wiring to an inner choice
-/// between a value and a constant. If its condition must be 0 when `over` is 0, the value replaces the choice.
+/// between a value and a constant. If the condition of this choice must be 0 whenever `over` is 0, the value replaces the choice.
 fn below(graph: &mut Graph, id: NodeId, over: NodeId) -> NodeId {
     let node = graph.node(id).clone();
     if let Some((inner, rest, _)) = limit(graph, id) {

@@ -1,8 +1,8 @@
 //! Assigns products to multipliers, so that one multiplier serves several products of a pipeline, each in its own slot.
 //!
-//! A pipeline that accepts a point every k clocks counts slots from 0 to k − 1. A point is in stage s while the slot is s
-//! modulo k. A product in a known stage therefore needs a multiplier in one slot of k, and products of different slots can
-//! share one. Muxes in front of the multiplier select the factors for its operand registers, and a register behind the
+//! A pipeline that accepts a point every k clocks counts slots from 0 to k − 1. A point is in stage s while the slot is s modulo
+//! k. A product in a known stage therefore needs a multiplier in one slot of k, and products of different slots can share a
+//! multiplier. Muxes in front of the multiplier select the factors for its operand registers, and a register behind the
 //! multiplier takes the product.
 
 use std::cmp::Reverse;
@@ -29,7 +29,7 @@ pub struct MultiplierUnit {
     /// Whether the multiplier takes signed factors.
     pub signed: bool,
     /// For each slot (clock modulo the interval), the product that the multiplier computes in it, and the two factors in the
-    /// order of the multiplier's operands. `None` if it computes no product.
+    /// order of the multiplier's operands. `None` for a slot without a product.
     pub serves: Vec<Option<(NodeId, [NodeId; 2])>>,
 }
 
@@ -41,8 +41,9 @@ fn factors(graph: &Graph, id: NodeId) -> Option<[NodeId; 2]> {
     }
 }
 
-/// Returns the products among the nodes `live` for which synthesis uses multipliers of the target. It leaves out narrow products,
-/// which become look-up tables. For example, it leaves out a product of 5 by 5 bits on iCE40.
+/// Returns the products among the nodes `live` for which synthesis uses multipliers of the target. The function leaves out narrow
+/// products, which become look-up tables. For example, a product of 5 by 5 bits is left out on iCE40. For the generic target, the
+/// function leaves out no product.
 pub fn products(graph: &Graph, target: &Timing, live: &[NodeId]) -> Vec<NodeId> {
     let least = match FAMILIES.iter().find(|family| family.name() == target.name) {
         Some(family) => family.estimate.least_product,

@@ -1,9 +1,9 @@
 //! Splits products that are too wide for the multipliers of an FPGA target into sums of narrower products.
 //!
 //! A factor that is too wide is divided into as many upper bits as a multiplier takes, and the remaining lower bits. A few lower
-//! bits are multiplied row by row in look-up tables; more lower bits become a product of their own. In the square
-//! `(u·2^r + l)² = u²·4^r + l·(u·2^(r+1) + l)`, both partial products with the lower bits l share one factor. If a factor's
-//! highest bit is 1 only if all other bits are 0, the product is either the other factor, shifted, or a product without this bit.
+//! bits are multiplied row by row in look-up tables; more lower bits become a product of their own. In a square, the two partial
+//! products with the lower bits l become one product: `(u·2^r + l)² = u²·4^r + l·(u·2^(r+1) + l)`. If a factor's highest bit is 1
+//! only if all other bits are 0, the product is either the other factor, shifted, or a product without this bit.
 
 use super::graph::{Graph, Label, NodeId, NodeOp};
 use super::rebuild::rebuilt;
@@ -43,8 +43,8 @@ fn product(
     }
 }
 
-/// Returns terms whose sum is the product of `a` and `b`. It is one term if the target's multipliers take the factors or if a
-/// special case applies.
+/// Returns terms whose sum is the product of `a` and `b`. There is only one term if the target's multipliers take the factors or
+/// if a special case applies.
 fn parts(
     graph: &mut Graph,
     target: &Timing,
@@ -76,7 +76,7 @@ fn reaches_a_power_of_two(graph: &Graph, factor: NodeId) -> bool {
 }
 
 /// Returns a product with a factor `wide` whose highest bit is 1 only if all its other bits are 0. If the highest bit is 1, the
-/// product is the factor `narrow`, shifted. Otherwise it is the product of the other bits of `wide` and `narrow`.
+/// product is the factor `narrow`, shifted. Otherwise the product has the factors `narrow` and the other bits of `wide`.
 fn below_the_highest(
     graph: &mut Graph,
     target: &Timing,
@@ -106,8 +106,8 @@ fn below_the_highest(
     graph.op(NodeOp::Extend(whole), format, label)
 }
 
-/// Returns `a` and `b` in an order in which the first factor is signed and never negative, and the second has bits besides its
-/// sign. Returns `None` if no order of `a` and `b` has this form.
+/// Returns `a` and `b` in an order in which the first factor is signed and never negative, and the second factor has bits besides
+/// its sign. Returns `None` if no order of `a` and `b` has this form.
 fn with_a_sign(graph: &Graph, [a, b]: [NodeId; 2]) -> Option<[NodeId; 2]> {
     let positive = |id: NodeId| graph.node(id).format.signed && graph.node(id).range.0 >= 0;
     let factors = if positive(a) { [a, b] } else { [b, a] };

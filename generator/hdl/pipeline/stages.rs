@@ -349,9 +349,9 @@ impl StageBuilder<'_> {
         self.inner("slot_is", Format::BIT, Driver::Op(Op::Equal(slot, number)))
     }
 
-    /// Returns the enable of the registers behind `stage`, which store its values until the next point arrives there. It is 1 in
-    /// the one slot in which a point leaves `stage`. With an interval of 1, it is the net `advance`, or `None` if points always
-    /// move.
+    /// Returns the enable of the registers behind `stage`, which store its values until the next point arrives there. This enable
+    /// is 1 only in the slot in which a point leaves `stage`. With an interval of 1, the enable is the net `advance`, or `None`
+    /// if points always move.
     fn load(&mut self, stage: usize) -> Option<NetId> {
         let Some(slot) = self.pipeline.slot else { return self.advance };
         let number = stage % self.pipeline.interval;
@@ -654,15 +654,15 @@ impl StageBuilder<'_> {
         bits
     }
 
-    /// Returns the stage whose logic computes a node. It is the node's own stage, or for a product with a register behind it the
-    /// stage before.
+    /// Returns the stage whose logic computes a node: the node's own stage, or, for a product with a register behind the product,
+    /// the stage before.
     fn computed_in(&self, id: NodeId) -> usize {
         let product = matches!(self.graph.node(id).cell, Cell::Op(_));
         self.schedule.stage[id.index()] - usize::from(product && self.problems.is_clocked(id))
     }
 
-    /// Returns the nets that have the values of architectural registers, each with the executed microinstruction at which the
-    /// register has this value.
+    /// Returns the nets that have the values of operand registers and architectural registers. Each net comes with the first
+    /// executed microinstruction at which the register has this value. Constants and nets with generated names are left out.
     fn checkpoints(&self, unrolled: &Unrolled) -> Vec<Checkpoint> {
         let mut before: HashMap<RegId, NodeId> = HashMap::new();
         let mut checkpoints = Vec::new();

@@ -1,8 +1,9 @@
 //! Rewrites sums and differences so that they take fewer look-up tables. For example, `a + ~b + 1` becomes `a - b`.
 //!
 //! If an operand of a sum has zeros in its lowest bits, the lowest bits of the other operand bypass the adder. A choice between a
-//! value and a constant moves behind a sum with a constant, where a register can make the choice by its reset. For example,
-//! `(s ? 5 : x) + 3` becomes `s ? 8 : x + 3`.
+//! value and a constant moves behind a subtraction from a constant, where a register can make the choice by its reset. For
+//! example, `7 - (s ? 5 : x)` becomes `s ? 2 : 7 - x`. A choice moves behind a sum with a constant only if its value is such a
+//! choice too.
 
 use super::graph::{Cell, Graph, Label, NodeId, NodeOp};
 use crate::netlist::interval::of_cell;
@@ -11,7 +12,8 @@ use glint_base::interval::Interval;
 
 /// Returns the node for the combinational cell `op`, and adds it to the graph unless it exists. In a sum or a difference, low
 /// bits that need no carry bypass the adder, so that its carry chain is short. For example, the lowest two bits of `x + 4` are
-/// the lowest two bits of `x`.
+/// the lowest two bits of `x`. A sum of `a`, `~b` and the carry 1 becomes the difference `a - b`. Any other cell is added
+/// unchanged.
 pub fn shortened(
     graph: &mut Graph,
     op: NodeOp,
@@ -29,7 +31,7 @@ pub fn shortened(
 }
 
 /// Returns a node with the value of the cell `op`, in which low bits bypass an adder as [`shortened`] describes. If `behind` is
-/// true, a choice between a value and a constant moves behind a sum with a constant.
+/// true, a choice between a value and a constant moves behind a sum with a constant, or behind a subtraction from a constant.
 fn within(
     graph: &mut Graph,
     op: NodeOp,

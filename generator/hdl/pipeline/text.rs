@@ -1,8 +1,8 @@
 //! Prints computations as text, as the tests of the passes and `glint schedule --after` show them.
 //!
 //! Each value is a line, `name format [low, high] = operation operands`. For example, `sum u6.0 = add a b` is a sum of 6 bits.
-//! The range `[low, high]` of raw values is left out if the format allows no other values. An operand of the computation is a
-//! line without an operation. The last lines are `result name`.
+//! The range `[low, high]` of raw values is left out if the format allows no other values. An operand of the computation, or an
+//! unknown value, is a line without an operation. The last lines are `result name`.
 //!
 //! `constant` is followed by a bit pattern, `read` by the number of a ROM and its address, `slice` by its value and its lowest
 //! bit, `mux` by its select and its inputs. `add` has a third operand if it has a carry input.

@@ -32,7 +32,8 @@ pub struct Unrolled {
     pub graph: Graph,
     /// The nets of the design's operand ports, in the order of the ports. `Cell::Operand` has positions in this list.
     pub operands: Vec<NetId>,
-    /// The results: the net of each output port, with the node of its value in the graph.
+    /// The results: the nets of output ports, each with the node of its value in the graph. The outputs of the handshake are not
+    /// among them, except in the graph of a `Cycle`, which has all outputs.
     pub results: Vec<(NetId, NodeId)>,
     /// The microinstructions in the order in which the computation executes them.
     pub steps: Vec<UnrolledStep>,
@@ -45,8 +46,9 @@ pub struct UnrolledStep {
     pub address: usize,
     /// The number of earlier executions of the same microinstruction in this computation.
     pub visit: usize,
-    /// The values of the architectural registers while the microinstruction is executed, each as a node of the computation's
-    /// graph. (The golden model predicts these registers.) A register without a known value is left out.
+    /// The values of the operand registers and the architectural registers while the microinstruction is executed, each as a node
+    /// of the computation's graph. (The golden model predicts these registers.) A register that no earlier microinstruction has
+    /// loaded has a node with an unknown value.
     pub registers: Vec<(RegId, NodeId)>,
 }
 
@@ -61,7 +63,8 @@ struct Executor<'a> {
     iterations: Iterations,
     unrolled: Unrolled,
     visits: Vec<usize>,
-    /// The results, each as the net of an output port and the node of its value. `None` until a microinstruction sets `valid`.
+    /// The results, each as the net of a result or status port and the node of its value. `None` until a microinstruction sets
+    /// `valid`.
     shown: Option<Vec<(NetId, NodeId)>>,
 }
 
@@ -69,21 +72,23 @@ struct Executor<'a> {
 /// loops. The description language must have accepted the design.
 ///
 /// # Errors
-/// Fails if a loop has no bound, or one that depends on more than 16 bits, or if the computation takes more than 4096 clocks.
-/// Fails if the microprogram ends or waits for `start` before it sets `valid`, or if `valid` depends on a signal. Fails if a
-/// microinstruction under a condition sets `valid`. Fails if a result depends on a value that an earlier computation has left in
-/// a register.
+/// Fails if no bound of a loop is found because its condition depends on more than 16 bits, or if the computation takes more than
+/// 4096 clocks. Fails if the microprogram ends or waits for `start` before it sets `valid`, or if `valid` depends on a signal.
+/// Fails if a microinstruction under a condition sets `valid`. Fails if a result depends on a value that an earlier computation
+/// has left in a register.
 pub fn unroll(design: &Design) -> Result<Unrolled, Diagnostics> {
     run(design, Iterations::OneByOne).map_err(|diagnostic| Diagnostics(vec![diagnostic]))
 }
 
 /// Unrolls the microprogram of a design as [`unroll`] does, but with fewer muxes for loops whose number of iterations depends on
-/// an operand. Such iterations become blocks of 8, 4, 2 and 1 iterations, each enabled by one bit of the number. The condition
-/// for this is that the iterations are alike and that a few bits determine their number.
+/// an operand. Such iterations become blocks of 8, 4, 2 and 1 iterations, each enabled by one bit of the number. A loop is
+/// unrolled as by [`unroll`] if it has at most four iterations or if its iterations are not alike. The same holds if the number
+/// of iterations depends on several values or on more than 6 bits.
 ///
 /// # Errors
-/// Fails if a loop has no bound, or one that depends on more than 16 bits, or if the computation takes more than 4096 clocks.
-/// Fails if the microprogram does not set `valid` at a fixed place, or if a result depends on an earlier computation.
+/// Fails if no bound of a loop is found because its condition depends on more than 16 bits, or if the computation takes more than
+/// 4096 clocks. Fails if the microprogram does not set `valid` at a fixed place, or if a result depends on an earlier
+/// computation.
 pub fn unroll_in_powers(design: &Design) -> Result<Unrolled, Diagnostics> {
     unroll_for_pipeline(design).map_err(|diagnostic| Diagnostics(vec![diagnostic]))
 }
@@ -102,8 +107,9 @@ pub(super) fn unroll_for_pipeline(design: &Design) -> Result<Unrolled, Diagnosti
 enum Iterations {
     /// Each iteration is executed under the condition that all iterations up to it take place.
     OneByOne,
-    /// Blocks of 8, 4, 2 and 1 iterations are executed, each under one bit of the number of iterations. The condition for this is
-    /// that few bits determine the number and that the iterations are alike. Otherwise the loop is executed as with `OneByOne`.
+    /// Blocks of 8, 4, 2 and 1 iterations are executed, each under one bit of the number of iterations. A loop is executed as
+    /// with `OneByOne` if it has at most four iterations, if its iterations are not alike, or if more than 6 bits determine their
+    /// number.
     InPowers,
 }
 
@@ -115,6 +121,9 @@ pub fn carried(design: &Design) -> Option<Diagnostic> {
 }
 
 /// Unrolls the microprogram of a design, and checks that no result depends on a value of an earlier computation.
+///
+/// # Errors
+/// Fails as [`unroll`] does.
 fn run(design: &Design, iterations: Iterations) -> Result<Unrolled, Diagnostic> {
     let (mut executor, results) = executed(design, iterations)?;
     executor.determined(&results, "cannot be a pipeline")?;
@@ -122,8 +131,11 @@ fn run(design: &Design, iterations: Iterations) -> Result<Unrolled, Diagnostic> 
     Ok(executor.unrolled)
 }
 
-/// Executes the microprogram of a design up to the clock with the results. Returns the execution, and for each output port its
-/// net and the node of its value.
+/// Executes the microprogram of a design up to the clock with the results. Returns the execution, and the net of each result or
+/// status port with the node of its value.
+///
+/// # Errors
+/// Fails if the microprogram cannot be executed, as [`unroll`] describes, or if no microinstruction sets `valid`.
 fn executed(
     design: &Design,
     iterations: Iterations,
@@ -180,6 +192,10 @@ impl<'a> Executor<'a> {
 
     /// Executes microinstructions from `at` on, up to the clock with the results, or until the microinstruction with the address
     /// `stop` comes next. Returns the state at `stop`, or `None` if the results came first. `self.shown` then has the results.
+    ///
+    /// # Errors
+    /// Fails if the microprogram ends or waits for `start` before `valid`, or if `valid` depends on a signal or is set under a
+    /// condition. Fails if a loop has no bound, or if the computation takes more than 4096 clocks.
     fn follow(&mut self, mut at: At, stop: Option<usize>) -> Result<Option<State>, Diagnostic> {
         let design = self.design;
         loop {
@@ -230,13 +246,17 @@ impl<'a> Executor<'a> {
         }
     }
 
-    /// Executes every iteration but the first of the loop from address `to` to address `last`, and returns the state after them.
-    /// `condition` says whether the second iteration takes place; `state` is the state after the first one. The number of
-    /// iterations must have a bound for any values of `free`, the register contents before the last microinstruction of the first
-    /// iteration.
+    /// Executes every iteration but the first of the loop from address `to` to address `last`, and returns the state after these
+    /// iterations. `condition` says whether the second iteration takes place; `state` is the state after the first iteration. The
+    /// number of iterations must have a bound for any values of `free`, the register contents before the last microinstruction of
+    /// the first iteration.
     ///
-    /// Registers on which the loop's condition depends go from iteration to iteration as if every iteration took place. This does
-    /// no harm, because an iteration counts only if all iterations before it took place, and it saves muxes for a counter.
+    /// Registers on which the loop's condition depends go from iteration to iteration as if every iteration took place. This
+    /// simplification saves muxes for a counter, and does no harm, because an iteration counts only if all iterations before it
+    /// took place.
+    ///
+    /// # Errors
+    /// Fails if the condition depends on more than 16 bits, if an iteration sets `valid`, or as [`Executor::follow`] does.
     fn iterations(
         &mut self,
         mut state: State,
@@ -286,13 +306,14 @@ impl<'a> Executor<'a> {
         }
     }
 
-    /// Unrolls a loop whose number of iterations depends on an operand. It becomes blocks of 8, 4, 2 and 1 iterations, with fewer
-    /// or more blocks for other numbers. The number of `conditions` that are 1 is the number of further iterations after `first`,
-    /// the state behind the first iteration. One bit of this number enables each block. `counters` marks the registers that count
-    /// iterations; their values in the returned state are wrong.
+    /// Unrolls a loop whose number of iterations depends on an operand. The loop becomes blocks of 8, 4, 2 and 1 iterations, or
+    /// fewer or more blocks if the largest number of iterations is smaller or larger. The number of `conditions` that are 1 is
+    /// the number of further iterations after `first`, the state behind the first iteration. One bit of this number enables each
+    /// block. `counters` marks the registers that count iterations; their values in the returned state are wrong.
     ///
     /// Returns `None` if an iteration depends on these registers or changes a memory's output, or if there are fewer than four
-    /// conditions. Returns `None` if the number depends on several nodes or on more than 6 bits.
+    /// conditions. Returns `None` if the number depends on several nodes or on more than 6 bits, or if an iteration cannot be
+    /// executed.
     fn in_powers(
         &mut self,
         first: &State,
@@ -360,6 +381,9 @@ impl<'a> Executor<'a> {
 
     /// Executes the microinstruction at `at`. Returns the state after it and, for a loop or a jump, the node of its condition. If
     /// the microinstruction sets `valid`, `self.shown` gets the results, and the state stays as it was.
+    ///
+    /// # Errors
+    /// Fails if `valid` depends on a signal, or if the computation takes more than 4096 clocks.
     fn execute(&mut self, at: &At) -> Result<(State, Option<NodeId>), Diagnostic> {
         let design = self.design;
         if self.unrolled.steps.len() == MOST_CLOCKS {
@@ -434,6 +458,9 @@ impl<'a> Executor<'a> {
 
     /// Checks that no result depends on a value that an earlier computation has left. `what` is the predicate of the message,
     /// such as "cannot be a pipeline".
+    ///
+    /// # Errors
+    /// Fails if a result depends on such a value. The error names the result and the register.
     fn determined(&self, results: &[(NetId, NodeId)], what: &str) -> Result<(), Diagnostic> {
         let graph = &self.unrolled.graph;
         for &(port, value) in results {

@@ -88,7 +88,8 @@ impl UseSearch<'_> {
     }
 }
 
-/// Returns the smallest number of clocks from microinstruction 0 to each microinstruction, or `usize::MAX` if none leads there.
+/// Returns the smallest number of clocks from microinstruction 0 to each microinstruction, or `usize::MAX` for a microinstruction
+/// that no path reaches.
 fn clocks_to(design: &Design) -> Vec<usize> {
     let mut clocks = vec![usize::MAX; design.control.microprogram.len()];
     let mut pending = VecDeque::from([(0, 0)]);

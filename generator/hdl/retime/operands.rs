@@ -9,9 +9,9 @@ use std::collections::{BTreeMap, BTreeSet, HashSet};
 use super::first_use::needed;
 use crate::netlist::{Design, Driver, Net, NetId, Op, RegId, RegisterKind, Sequence};
 
-/// Inserts registers, named `<name>_held`, into steady logic so that the longest path from an operand becomes as short as
-/// possible. Among positions with an equally short path, it chooses nets with the fewest bits. At most two registers lie on a
-/// path.
+/// Inserts registers, named `<name>_held`, into steady logic so that the longest path from an operand becomes as short as the
+/// search finds. Among positions with an equally short path, the function chooses nets with the fewest bits. At most two
+/// registers lie on a path.
 ///
 /// A device that waits for `start` in the middle of its microprogram is not changed, because its operands may change there.
 pub fn register_held(design: &mut Design) {
@@ -88,15 +88,15 @@ struct Steady<'a> {
     design: &'a Design,
     /// All cells, each after the cells on which it depends within a clock.
     cells: Vec<OperandCell>,
-    /// The thresholds of each net, which determine the clock in which it is computed.
+    /// The thresholds of each net, which determine the clock in which the net is computed.
     thresholds: Vec<Thresholds>,
     /// For each net, whether a register may follow it: the net is steady, and more than wiring lies between it and the operand
     /// registers.
     holds: Vec<bool>,
     /// The registers, each with the net that it loads and the thresholds of its load.
     registers: Vec<(RegId, NetId, Thresholds)>,
-    /// The estimated delays from the operand registers to the steady nets that may be computed later than in clock 0. They are in
-    /// hundredths of a nanosecond, in ascending order, and include 0.
+    /// The estimated delays from the operand registers to the steady nets that may be computed later than in clock 0. The delays
+    /// are in hundredths of a nanosecond, in ascending order, and include 0.
     places: Vec<u32>,
 }
 
@@ -179,8 +179,8 @@ impl<'a> Steady<'a> {
     }
 
     /// Returns the pair of limits with the shortest longest path, and among several the fewest register bits. The function tries
-    /// all pairs if there are few. Otherwise it tries pairs that are evenly spread, and then again pairs between the
-    /// neighbours of the best one.
+    /// all pairs if there are few. Otherwise the function tries pairs that are evenly spread, and then again pairs between the
+    /// neighbours of the best pair, so that it may miss a better pair.
     fn best(&self) -> CutPlaces {
         let mut windows = [(0, self.places.len() - 1); 2];
         loop {
@@ -209,13 +209,13 @@ impl<'a> Steady<'a> {
         }
     }
 
-    /// Returns the limits at two positions in `self.places`.
+    /// Returns the two limits at the positions `first` and `second` in `self.places`, and 0 as the third entry.
     fn at(&self, [first, second]: [usize; 2]) -> CutPlaces {
         [self.places[first], self.places[second], 0]
     }
 
-    /// Returns whether a register follows `net` for a reader in clock `by`. It does if a register may follow the net, and if the
-    /// net is computed in an earlier clock than `by`.
+    /// Returns whether a register follows `net` for a reader in clock `by`. Returns true if a register may follow the net, and if
+    /// the net is computed in an earlier clock than `by`.
     fn is_cut(&self, net: NetId, by: usize, places: CutPlaces) -> bool {
         self.holds[net.index()] && by > clock(self.thresholds[net.index()], places)
     }
@@ -255,8 +255,8 @@ impl<'a> Steady<'a> {
         (longest, bits)
     }
 
-    /// Returns the nets behind which registers are inserted. Each has a list of the readers that take the output of the register
-    /// instead of the net, because they compute in a later clock.
+    /// Returns the nets behind which registers are inserted. Each net has a list of the readers that take the output of the
+    /// register instead of the net, because they compute in a later clock.
     fn cut(&self, places: CutPlaces) -> BTreeMap<NetId, Vec<OperandReader>> {
         let cells = self.cells.iter().flat_map(|cell| {
             let own = self.thresholds[cell.net.index()];
@@ -274,8 +274,8 @@ impl<'a> Steady<'a> {
     }
 }
 
-/// Notes a reader with the thresholds `by`. `earliest` becomes the smaller of both for each entry; it is `None` before the first
-/// reader.
+/// Notes a reader with the thresholds `by`. For each entry, `earliest` becomes the smaller of its number and the number in `by`.
+/// `earliest` is `None` before the first reader.
 fn note_reader(earliest: &mut Option<Thresholds>, by: Thresholds) {
     let known = earliest.unwrap_or([u32::MAX; 3]);
     *earliest = Some(std::array::from_fn(|at| known[at].min(by[at])));

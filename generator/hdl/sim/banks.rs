@@ -1,5 +1,6 @@
 //! Distributes the values of a compiled design over two banks of memory with slots of 32 and of 64 bits, and inserts conversions
-//! between the banks. Most values fit into 32 bits, and a vector of the processor holds twice as many of them.
+//! between the banks. Most values fit into 32 bits, and a vector of the processor holds twice as many 32-bit values as 64-bit
+//! values.
 
 use crate::sim::compiler::{Compiler, Ordered};
 use crate::sim::program::{
@@ -10,8 +11,8 @@ use crate::sim::program::{
 /// The width of a narrow slot in bits.
 const NARROW: u32 = u32::BITS;
 
-/// Gives every value of the compiler, which has a slot of 64 bits there, a slot in one of the two banks. Inserts conversions
-/// before instructions that work on slots of both banks.
+/// Gives every value a slot in one of the two banks; in `compiler`, every value has a slot of 64 bits. Inserts conversions before
+/// instructions that work on slots of both banks.
 ///
 /// Within a bank, slots are numbered in the order in which they are computed.
 pub(super) fn divide(
@@ -84,7 +85,7 @@ struct BankSplitter<'a> {
     is_wide: Vec<bool>,
     narrow: Bank,
     wide: Bank,
-    /// For each slot of the compiler, its slot in the narrow bank (32 bits); `None` as long as it has none.
+    /// For each slot of the compiler, its slot in the narrow bank (32 bits); `None` as long as the value has no narrow slot.
     narrow_of: Vec<Option<Slot>>,
     wide_of: Vec<Option<Slot>>,
     steps: Vec<(Sources, SettlingStep)>,
@@ -129,10 +130,13 @@ impl BankSplitter<'_> {
     }
 
     /// Returns the slot that has the value of the compiler's slot `slot`, in the wide bank if `wide`, otherwise in the narrow
-    /// one.
+    /// bank.
     ///
-    /// Constants, registers and ROMs get their slots at the first call. If a conversion to the wide bank is necessary, it becomes
-    /// a step with these `sources`, and later calls use its result too.
+    /// Constants, registers and ROMs get their slots at the first call. If a conversion to the wide bank is necessary, the
+    /// conversion becomes a step with these `sources`, and later calls use its result too.
+    ///
+    /// # Panics
+    /// Panics if a wide value is requested in the narrow bank.
     fn operand(&mut self, slot: Slot, wide: bool, sources: Sources) -> Slot {
         let of = if wide { &self.wide_of } else { &self.narrow_of };
         if let Some(there) = of[slot as usize] {

@@ -34,8 +34,9 @@ impl CompiledDesign {
 }
 
 impl<'a> Compiler<'a> {
-    /// Returns a slot with a field of the control word, the `width` bits from bit `low` of the net `word`. The field is a source
-    /// of its own, so that a change of another field does not evaluate its readers again.
+    /// Returns a slot with a field of the control word, the `width` bits from bit `low` of the net `word`. The field becomes a
+    /// source of its own, so that a change of another field does not evaluate its readers again. If the control word is a
+    /// constant, or if no source is left, the field becomes an ordinary slice.
     fn field(&mut self, word: NetId, low: u32, width: u32) -> Slot {
         let a = self.of_net[word.index()];
         if self.known_value(a).is_some() || self.next_field == Sources::BITS {
@@ -117,7 +118,7 @@ impl<'a> Compiler<'a> {
         banks::divide(&self, &reads, &registers)
     }
 
-    /// Returns the registers in an order in which a register that reads another register comes before it, except in circles. A
+    /// Returns the registers in an order in which each register comes before the registers that it reads, except in circles. A
     /// value that is read before it is overwritten need not be copied by [`Compiler::stable`].
     fn readers_first(&self) -> Vec<&'a NetlistRegister> {
         let registers = &self.design.registers;
@@ -218,9 +219,9 @@ impl<'a> Compiler<'a> {
         Some(self.stable(slot, written))
     }
 
-    /// Returns a slot that has the value of `a` from before the edge. This is a copy if the edge has already written `a`, which
-    /// is then in `written`. All registers of a design change at the same time, but the simulator writes them one after the
-    /// other.
+    /// Returns a slot that has the value of `a` from before the edge. The returned slot is a copy if the edge has already written
+    /// `a`, which is then in `written`. All registers of a design change at the same time, but the simulator writes them one
+    /// after the other.
     fn stable(&mut self, a: Slot, written: &HashSet<Slot>) -> Slot {
         if written.contains(&a) { self.emit(&[a], |to| Instruction::Copy { to, a }) } else { a }
     }

@@ -28,7 +28,7 @@ pub(super) struct Ordered {
 /// The compiler's state. All slots are 64 bits wide here; `banks` divides them into two banks later.
 pub(super) struct Compiler<'a> {
     pub(super) design: &'a Design,
-    /// For each slot, the set of [`Sources`] on which it depends within one clock. It is empty for constants.
+    /// For each slot, the set of [`Sources`] on which the slot depends within one clock. The set is empty for constants.
     pub(super) sources: Vec<Sources>,
     /// The number of sources that are input ports.
     input_sources: u32,
@@ -44,7 +44,8 @@ pub(super) struct Compiler<'a> {
     /// The instructions so far, each with the slot of its result. In the key, the result is slot 0, so that equal instructions
     /// are found.
     known: HashMap<Instruction, Slot>,
-    /// The instruction that writes each slot, unless it is a field of the control word.
+    /// The instruction that writes each slot. Slots of fields of the control word, and slots that no instruction writes, have no
+    /// entry.
     made_by: HashMap<Slot, Instruction>,
     /// The instructions in an order in which each follows the instructions that compute its operands.
     pub(super) steps: Vec<Ordered>,

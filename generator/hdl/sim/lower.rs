@@ -113,7 +113,7 @@ impl Compiler<'_> {
     }
 
     /// Returns the width of the value in a slot: the width of the narrowest net that has this slot. All other nets with this slot
-    /// extend this net by zeros.
+    /// extend this net by zeros. The width is 64 if no net has this slot.
     fn held(&self, slot: Slot) -> u32 {
         let nets = self.of_net.iter().zip(&self.design.nets);
         let widths = nets.filter(|(own, _)| **own == slot).map(|(_, net)| net.format.width());
@@ -162,8 +162,9 @@ impl Compiler<'_> {
         })
     }
 
-    /// Returns the slot with `a` if `select` is 0, and with `b` otherwise. If `select` tests bits for any 1, or `b` is placed
-    /// from the same slot, one instruction does this too. Chains of such muxes find the range of a value.
+    /// Returns the slot with `a` if `select` is 0, and with `b` otherwise. If `select` tests bits of a slot for any 1, the same
+    /// instruction makes this test. If `b` is also made by placing bits of that slot, the same instruction places them too.
+    /// Chains of such muxes find the range of a value.
     fn choose(&mut self, select: Slot, a: Slot, b: Slot) -> Slot {
         let Some((of, low, drop)) = self.any(select) else {
             return self.emit(&[select, a, b], |to| Instruction::Choose { to, select, a, b });

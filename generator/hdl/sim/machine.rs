@@ -315,8 +315,8 @@ fn clock<W: LaneWord, const LANES: usize>(
     news
 }
 
-/// Loads a register in the lanes whose `enable` is 1. Returns `source` if its value changes in any lane, and otherwise 0. Returns
-/// 0 if `source` is already in `news`.
+/// Loads a register in the lanes whose `enable` is 1. Returns `source` if the register's value changes in any lane, and otherwise
+/// 0. Returns 0 if `source` is already in `news`.
 #[inline(always)]
 fn load<W: LaneWord, const LANES: usize>(
     q: &mut [W; LANES],
@@ -335,7 +335,7 @@ fn load<W: LaneWord, const LANES: usize>(
 }
 
 /// Returns the value of `slot` after the edge: `new` in the lanes whose enable is 1, and the old value in all others. Without an
-/// enable, it is `new` in all lanes.
+/// enable, the value is `new` in all lanes.
 #[inline(always)]
 fn enabled<W: LaneWord, const LANES: usize>(
     slots: &[[W; LANES]],
@@ -483,7 +483,7 @@ fn read(words: &[u64], span: Span, address: u64) -> u64 {
 }
 
 /// Stores the chosen slot's value in each lane of `to`. The number in `select` chooses among `choices`; a number beyond the last
-/// choice selects the last one.
+/// choice selects the last choice.
 #[inline(always)]
 fn mux<W: LaneWord, const LANES: usize>(
     slots: &mut [[W; LANES]],

@@ -149,7 +149,7 @@ impl<const LANES: usize> Simulator<LANES> {
     /// the next clock on, the inputs have their earlier values again.
     ///
     /// # Errors
-    /// Fails if the waveform cannot be written.
+    /// Fails if the waveform cannot be written, or if the circuit still changes after all updates.
     ///
     /// # Panics
     /// Panics unless `inputs` has exactly one entry for each input port.
@@ -166,7 +166,7 @@ impl<const LANES: usize> Simulator<LANES> {
     /// whether this method was called.
     ///
     /// # Errors
-    /// Fails if the waveform cannot be written.
+    /// Fails if the waveform cannot be written, or if the circuit still changes after all updates.
     pub fn settle(&mut self) -> Result<()> {
         self.half(false)
     }
@@ -184,7 +184,8 @@ impl<const LANES: usize> Simulator<LANES> {
         }
     }
 
-    /// Writes the waveform of lane 0 from this call on, as VCD. A clock takes 10 ns, and the waveform starts at time 0.
+    /// Writes the waveform of lane 0 from this call on, as VCD. A clock takes 10 ns, and the waveform starts at time 0. The new
+    /// waveform replaces an earlier waveform that the caller has not ended.
     ///
     /// # Errors
     /// Fails if the file cannot be written.

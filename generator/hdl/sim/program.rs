@@ -1,7 +1,7 @@
 //! Defines the compiled form of a design for the simulator: slots, instructions, and the operations of a clock edge.
 //!
 //! All values are in *slots*, bit patterns with zeros above their width. A clock has two phases. *Settling* runs the steps in
-//! order; each step computes one slot from earlier ones. The *edge* writes the outputs of synchronous ROMs and then the
+//! order; each step computes one slot from earlier slots. The *edge* writes the outputs of synchronous ROMs and then the
 //! registers.
 
 use crate::netlist::NetId;
@@ -13,7 +13,8 @@ pub(super) type Slot = u32;
 
 /// A set of sources, with one bit for each source. A *source* is a value that changes outside settling: an input port, or a value
 /// that the edge writes. Each field of the control word is a source too, because most fields stay the same from one control word
-/// to the next. If there are more than 64 sources, several share a bit.
+/// to the next. If there are too many input ports, or too many values that the edge writes, several share a bit. A field for
+/// which no bit is left is no source.
 pub(super) type Sources = u64;
 
 /// A computation within one bank: the slot `to` from the slots `a`, `b` and so on, which have smaller numbers.
@@ -36,12 +37,12 @@ pub(super) enum Instruction {
     And { to: Slot, a: Slot, b: Slot },
     /// Bitwise or.
     Or { to: Slot, a: Slot, b: Slot },
-    /// Bitwise exclusive or. With a mask of ones as `b`, it inverts `a`.
+    /// Bitwise exclusive or. With a mask of ones as `b`, the result is the inverse of `a`.
     Xor { to: Slot, a: Slot, b: Slot },
     /// Sum modulo 2^width, with the width given by `drop`.
     Add { to: Slot, a: Slot, b: Slot, drop: u8 },
     /// Sum of bits of `a` and bits of `b`, each from its `low` up with the width that its `drop` gives, modulo 2^width of the
-    /// result. For example, it adds to a value the bit by which rounding increases it.
+    /// result. For example, the instruction adds the rounding bit to a truncated value.
     AddSlices { to: Slot, a: Slot, b: Slot, low_a: u8, drop_a: u8, low_b: u8, drop_b: u8, drop: u8 },
     /// Sum of `a`, `b` and the bit `carry`, modulo 2^width.
     AddCarry { to: Slot, a: Slot, b: Slot, carry: Slot, drop: u8 },
@@ -51,7 +52,7 @@ pub(super) enum Instruction {
     MulUnsigned { to: Slot, a: Slot, b: Slot },
     /// Product of signed factors, whose widths are given by `drop_a` and `drop_b`.
     MulSigned { to: Slot, a: Slot, b: Slot, drop_a: u8, drop_b: u8, drop: u8 },
-    /// 1 if `a == b`, otherwise 0. With a mask of ones as `b`, it tests whether all bits of `a` are 1.
+    /// 1 if `a == b`, otherwise 0. With a mask of ones as `b`, the instruction tests whether all bits of `a` are 1.
     Equal { to: Slot, a: Slot, b: Slot },
     /// 1 if any bit of `a` from `low` up is 1, otherwise 0.
     Any { to: Slot, a: Slot, low: u8, drop: u8 },
@@ -192,7 +193,7 @@ pub(super) struct RegisterEdge {
 pub(super) struct Bank {
     pub inputs: Vec<InputPort>,
     /// The reads of synchronous ROMs, which an edge performs before it loads `registers`. No read or load overwrites a slot that
-    /// a later one reads.
+    /// a later read or load uses.
     pub reads: Vec<ReadEdge>,
     pub registers: Vec<RegisterEdge>,
     /// The contents of the slots at power-up, before settling.

@@ -25,7 +25,7 @@ impl<W: Copy + Default, const LANES: usize> Slots<W, LANES> {
     }
 }
 
-/// The copy is aligned anew, because its memory begins at another address.
+/// The copy is aligned again, because its memory begins at another address.
 impl<W: Copy + Default, const LANES: usize> Clone for Slots<W, LANES> {
     fn clone(&self) -> Self {
         Self::new(self.iter().copied())

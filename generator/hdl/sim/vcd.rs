@@ -13,8 +13,8 @@ use rust_hdl::core::vcd_probe::{VCDProbe, write_vcd_change, write_vcd_dump, writ
 
 /// Writes the waveform of a circuit step by step. Times are in picoseconds.
 ///
-/// rust_hdl panics if a write fails, so it writes to a buffer in memory, which cannot fail. After each step the writer copies the
-/// buffer to the file.
+/// rust_hdl panics if a write fails, so the writer gives rust_hdl a buffer in memory, to which every write succeeds. After each
+/// step the writer copies the buffer to the file.
 pub struct VcdWriter<W: Write> {
     /// The probe of rust_hdl; `None` only while rust_hdl writes.
     probe: Option<VCDProbe<Page>>,
@@ -65,6 +65,9 @@ impl<W: Write> VcdWriter<W> {
     }
 
     /// Writes the buffered text to the file, and empties the buffer.
+    ///
+    /// # Errors
+    /// Fails if the file cannot be written.
     fn write_out(&mut self) -> Result<()> {
         self.file.write_all(&self.page.take()).context(CANNOT_WRITE)
     }
@@ -97,7 +100,7 @@ impl Write for Page {
     }
 }
 
-/// A circuit with a name for its scope. Without it, rust_hdl would call the scope `uut`.
+/// A circuit with a name for its scope. Without this struct, rust_hdl would call the scope `uut`.
 struct Named<'a> {
     name: &'a str,
     circuit: &'a dyn Block,

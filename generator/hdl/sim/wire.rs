@@ -2,8 +2,9 @@
 //! known only at run time.
 //!
 //! A probe that visits the circuit gets an atom for each port and each named net, with its value in lane 0. If the design has a
-//! microprogram, a further atom shows the name of the executed microinstruction. The atoms are made anew at every visit; the id
-//! of a net's atom stays the same. rust_hdl visits a new circuit to check it. Later it visits the circuit only for a waveform.
+//! microprogram, a further atom shows the name of the executed microinstruction. New atoms are made at every visit; the id of a
+//! net's atom stays the same. rust_hdl visits a new circuit to check its ports. Later, rust_hdl visits the circuit only for a
+//! waveform.
 
 use rust_hdl::core::ast::VerilogLiteral;
 use rust_hdl::core::atom::{Atom, AtomKind};

@@ -1,8 +1,8 @@
 //! Reduces wiring to a normal form: every word (the bits of a net) becomes a list of bit ranges of nets and constants.
 //!
 //! Slices, extensions, concatenations, renamed nets and constants are wiring, which needs no hardware. [`Bits`] represents any
-//! mixture of them as pieces of declared nets, constants, and copies of a sign bit. For example, the emitter finds `a[5:2]`
-//! behind three nets of wiring, and the bits of a net that no logic reads.
+//! mixture of such wiring as pieces of declared nets, constants, and copies of a sign bit. For example, the emitter finds
+//! `a[5:2]` behind three nets of wiring, and the bits of a net that no logic reads.
 
 use crate::netlist::NetId;
 use glint_base::fixed::mask;

@@ -13,12 +13,12 @@ use crate::netlist::{DelayLine, NetId};
 const TITLE: &str =
     "Delay lines: a small memory delays values that no logic reads for several stages";
 
-/// The number of words of a delay line's memory, and the net that enables its steps. It is `None` if the line steps on every
-/// clock.
+/// The number of words of a delay line's memory, and the net that enables the steps of the delay line. The net is `None` if the
+/// delay line steps on every clock.
 type Pace = (usize, Option<NetId>);
 
 /// Returns the Verilog section that instantiates the delay lines, with one instance for all lines of the same length and enable.
-/// The list is empty if the pipeline has no delay lines.
+/// The section is empty if the pipeline has no delay lines.
 pub fn section(builder: &mut Builder<'_>, naming: &Naming) -> Vec<String> {
     let plan = builder.plan;
     let mut paces: BTreeMap<Pace, Vec<&DelayLine>> = BTreeMap::new();

@@ -1,7 +1,7 @@
 //! Writes the cells of a netlist as Verilog expressions, such as `a + b` for a sum.
 //!
-//! The operands of every cell have the same width as the result, so that no context can extend or truncate a carry. As an
-//! exception, a product is only written as the whole right-hand side of a net of its full width. The carry into an adder is
+//! The operands of a sum or a difference have the same width as the result, so that no context can extend or truncate a carry. As
+//! an exception, a product is only written as the whole right-hand side of a net of its full width. The carry into an adder is
 //! extended to the adder's width. Operands of products and comparisons are written with `$signed` or `$unsigned` if necessary.
 
 use super::bits::{BitRun, Bits};
@@ -16,17 +16,18 @@ use glint_base::fixed::mask;
 pub struct Constant {
     /// The name of the localparam in the Verilog.
     pub name: String,
-    /// The name in the description. A number that the description language has added at its end is removed.
+    /// The name in the description. If the description language generated the name, the number at its end is removed.
     base: String,
     /// The value of the constant as a bit pattern.
     pub bits: u64,
     /// The number of bits of the constant.
     pub width: u32,
-    /// The comment behind the localparam: the constant's value as text. It is empty if the bit pattern itself is the value.
+    /// The comment behind the localparam: the constant's value as text. The comment is empty if the bit pattern itself is the
+    /// value.
     pub note: String,
 }
 
-/// A writer of the Verilog expressions for one module. It collects the constants that the expressions use.
+/// A writer of the Verilog expressions for one module. The writer collects the constants that the expressions use.
 pub struct Expressions<'a> {
     plan: &'a Plan<'a>,
     names: Names,
@@ -46,8 +47,8 @@ impl<'a> Expressions<'a> {
         self.names.fresh(wish)
     }
 
-    /// Returns the right-hand side of the assignment that drives a net, such as `a + b`. For a register, a ROM or an input, it is
-    /// the name of the net.
+    /// Returns the right-hand side of the assignment that drives a net, such as `a + b`. For a register, a ROM, an input, or a
+    /// mux of more than two inputs, the function returns the name of the net.
     pub fn driver(&mut self, id: NetId) -> String {
         match &self.plan.design.net(id).driver {
             Driver::Op(op) => self.cell(id, op),
@@ -69,8 +70,8 @@ impl<'a> Expressions<'a> {
         }
     }
 
-    /// Returns the Verilog text that reads a net within a larger expression. It is a name, a selection, a concatenation, or a
-    /// cell in parentheses, such as `(a + b)`.
+    /// Returns the Verilog text that reads a net within a larger expression: a name, a selection, a concatenation, or a cell in
+    /// parentheses, such as `(a + b)`.
     pub fn operand(&mut self, id: NetId) -> String {
         if let Some(constant) = self.constant(id) {
             return constant;

@@ -16,7 +16,7 @@ pub struct Origin<'a> {
 }
 
 /// Returns the lines of the header comment for the top module's Verilog file: title, formula, source, latency, formats, ports and
-/// notes.
+/// notes, and the lines of [`regenerated`]. The ports of a pipeline are left out, because they have comments of their own.
 pub fn top(design: &Design, origin: &Origin) -> Vec<String> {
     let about = &design.about;
     let mut lines = comment(0, &format!("{}: {}", design.name, about.title));
@@ -70,7 +70,8 @@ fn paragraph(text: &str) -> Vec<String> {
     lines
 }
 
-/// Returns the comment lines at the end of a header: that Glint generated the file, and with which command.
+/// Returns the comment lines at the end of a header: that Glint generated the file, with which command (unless `regenerate` is
+/// empty), and that the file belongs to its user.
 pub fn regenerated(origin: &Origin) -> Vec<String> {
     let again = match origin.regenerate {
         "" => String::new(),

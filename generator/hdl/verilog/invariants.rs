@@ -1,5 +1,5 @@
 //! Writes assertions for the Verilog of a control unit or datapath, which only formal tools read. The proof of the handshake
-//! relies on them. For example, the control unit of `rough` asserts that `word_address` is 0 while `run` is 0.
+//! relies on these assertions. For example, the control unit of `rough` asserts that `word_address` is 0 while `run` is 0.
 
 use super::naming::Naming;
 use super::text::literal;
@@ -16,7 +16,7 @@ pub fn invariants(design: &Design, naming: &Naming, partition: Partition) -> Vec
     lines.into_iter().map(|line| format!("    {line}")).collect()
 }
 
-/// Writes the assertions on the sequencer. They hold in every clock but the first, in which the design is reset.
+/// Writes the assertions on the sequencer. The assertions hold in every clock but the first, in which the design is reset.
 fn control(design: &Design) -> Vec<String> {
     let name = |register| design.net(design.register(register).q).name.as_str();
     let (address, run) = (name(design.control.address), name(design.control.run));

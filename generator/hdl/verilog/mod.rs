@@ -28,11 +28,12 @@ use interface::Interface;
 use naming::Naming;
 use plan::Plan;
 
-/// Returns the files for a design as pairs of file name and text. They are the Verilog modules (`.v`), and the contents of ROMs
-/// (`.mem`) for `$readmemh` and `$readmemb`.
+/// Returns the files for a design as pairs of file name and text: the Verilog modules (`.v`), and the contents of ROMs (`.mem`)
+/// for `$readmemh` and `$readmemb`.
 ///
 /// # Errors
-/// Fails if [`Design::verify_structure`] finds mistakes, with these mistakes, or if a word of a ROM does not fit the ROM.
+/// Fails if [`Design::verify_structure`] finds mistakes; the error lists them. Fails if the words of the control ROM are not as
+/// wide as all fields together.
 pub fn files(design: &Design) -> Result<Vec<(String, String)>> {
     let (plan, naming) = (Plan::new(design)?, Naming::new(design));
     let origin = Origin { regenerate: "", timing: &HandshakeTiming::default() };

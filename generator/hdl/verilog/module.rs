@@ -106,7 +106,7 @@ impl<'a> Builder<'a> {
     }
 
     /// Returns the outputs of the module's registers that the Verilog declares. Registers inside multipliers, and registers of
-    /// delay lines except the last one, are not declared.
+    /// delay lines except the last register, are not declared.
     fn registers(&self) -> impl Iterator<Item = NetId> {
         let design = self.plan.design;
         let written = (0..).map(RegId).zip(&design.registers).filter(|(id, register)| {
@@ -117,8 +117,8 @@ impl<'a> Builder<'a> {
         written.map(|(_, register)| register.q)
     }
 
-    /// Returns the Verilog declarations of registers and of synchronous ROMs' output words. It declares the nets for which
-    /// `wanted` returns true and that are no output ports.
+    /// Returns the Verilog declarations of registers and of synchronous ROMs' output words. The function declares the nets for
+    /// which `wanted` returns true and that are no output ports.
     pub(super) fn state(&self, wanted: &dyn Fn(NetId) -> bool) -> Vec<Row> {
         let mut nets: Vec<NetId> = self.registers().collect();
         for rom in &self.plan.design.roms {
@@ -135,8 +135,8 @@ impl<'a> Builder<'a> {
         rows
     }
 
-    /// Returns the statements of an initial block that set registers to 0. They leave out the words of synchronous ROMs, which
-    /// are known after the first clock; on some targets block memories have no initial values.
+    /// Returns the statements of an initial block that set registers to 0. The statements leave out the words of synchronous
+    /// ROMs, which are known after the first clock; on some targets block memories have no initial values.
     fn initial(&self) -> Vec<String> {
         let design = self.plan.design;
         let mut lines = Vec::new();
@@ -161,8 +161,8 @@ impl<'a> Builder<'a> {
         lines
     }
 
-    /// Returns a list with the Verilog lines of each declared cell, each memory and each registered multiplier of the module. It
-    /// leaves out the cells that drive a net for which `wanted` returns false.
+    /// Returns a list with the Verilog lines of each declared cell, each memory and each registered multiplier of the module. The
+    /// function leaves out every cell, memory and multiplier whose output net `wanted` rejects.
     pub(super) fn items(&mut self, wanted: &dyn Fn(NetId) -> bool) -> Vec<Vec<String>> {
         let design = self.plan.design;
         let mut items = Vec::new();
@@ -254,8 +254,8 @@ impl<'a> Builder<'a> {
         lines
     }
 
-    /// Returns the labels of a case statement for the select values from 0 up to `count` − 1. They are localparams if the
-    /// select is a field of the control word, and otherwise numbers.
+    /// Returns the labels of a case statement for the select values from 0 up to `count` − 1. The labels are localparams if the
+    /// select is a field of the control word, and otherwise numbers. A value beyond the choices of the field is a number too.
     fn case_labels(&mut self, select: NetId, count: usize) -> Vec<String> {
         let design = self.plan.design;
         let width = design.width(select);
@@ -508,8 +508,8 @@ impl<'a> Builder<'a> {
     }
 }
 
-/// Returns an assignment for each word of a ROM, such as `rom[3] = 8'h1f;`. `place` returns its left side, from the number of the
-/// word and the width of this number in bits.
+/// Returns an assignment for each word of a ROM, such as `rom[3] = 8'h1f;`. `place` returns the left side of the assignment, from
+/// the number of the word and the width of this number in bits.
 fn words(
     design: &Design,
     id: RomId,

@@ -141,9 +141,9 @@ pub fn is_control_rom(design: &Design, rom: RomId) -> bool {
     design.control.rom == rom
 }
 
-/// Returns the Verilog comment behind the declaration of a net: its block number, format and description, as far as it has them.
-/// For example, `mux 8, s1.20: first operand`. The text is empty for a net that has none of them; the format of an unsigned
-/// integer is omitted.
+/// Returns the Verilog comment behind the declaration of a net: its block number, format and description, as far as the net has
+/// them. For example, `mux 8, s1.20: first operand`. A field of the control word has its lines in place of a block number, such
+/// as `line 4`. The text is empty for a net that has none of them; the format of an unsigned integer is omitted.
 pub fn remark(design: &Design, id: NetId) -> String {
     let net = design.net(id);
     // The declared width already states the format of an unsigned integer.

@@ -59,8 +59,8 @@ pub struct Plan<'a> {
     pub reset: Option<NetId>,
     /// The delay lines of a pipeline that the Verilog writes as memories.
     pub delays: Vec<DelayLine>,
-    /// The nets that repeat the value of an earlier net, with the same name without the stage. Only the first declaration of a
-    /// value gets the comment.
+    /// The nets that repeat the value of an earlier net: the names of both nets differ only in the stage. Only the first
+    /// declaration of a value gets the comment.
     repeats: HashSet<NetId>,
 }
 
@@ -134,7 +134,8 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Returns the nets that a reader, such as a cell or a register, reads in the Verilog.
+    /// Returns the nets that a reader, such as a cell or a register, reads in the Verilog. The read enable of a ROM, which only a
+    /// pipeline has, is left out.
     pub fn operands(&self, reader: Reader) -> Vec<NetId> {
         match reader {
             Reader::Cell(net) => match &self.design.net(net).driver {
@@ -158,8 +159,8 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Returns the bits of the net `operand` that a reader uses in the Verilog. These are all bits, unless the reader is a slice,
-    /// a field of the control word or the address of a ROM.
+    /// Returns the bits of the net `operand` that a reader uses in the Verilog. A reader uses all bits, unless the reader is a
+    /// slice, a field of the control word or the address of a ROM.
     pub fn operand_bits(&self, reader: Reader, operand: NetId) -> Bits {
         let bits = &self.bits[operand.index()];
         match reader {
@@ -263,8 +264,8 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Finds the cells that the Verilog writes. It leaves out cells without a name from the description that no written cell,
-    /// register or ROM reads.
+    /// Finds the cells that the Verilog writes. The function leaves out cells without a name from the description that no written
+    /// cell, register or ROM reads.
     fn find_live(&mut self, order: &[NetId]) {
         let mut live = vec![false; self.design.nets.len()];
         // The search starts from registers and ROMs, since no cell is known to be written yet.
@@ -342,7 +343,7 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Returns whether a net of a pipeline is wiring of at most three pieces that is not declared. It must have no comment,
+    /// Returns whether a net of a pipeline is wiring of at most three pieces that is not declared. The net must have no comment,
     /// unless the register behind it carries the same value and shows the comment.
     fn is_plain(&self, id: NetId, bits: &Bits) -> bool {
         const MOST_PIECES: usize = 3;
@@ -401,8 +402,8 @@ impl<'a> Plan<'a> {
         self.repeats = repeats;
     }
 
-    /// Returns the comment that the Verilog shows at the declaration of a net. It is empty if the net only repeats a value of an
-    /// earlier pipeline stage.
+    /// Returns the comment that the Verilog shows at the declaration of a net. The comment is empty if the net only repeats a
+    /// value of an earlier pipeline stage.
     pub fn remark(&self, id: NetId) -> String {
         if self.repeats.contains(&id) { String::new() } else { remark(self.design, id) }
     }

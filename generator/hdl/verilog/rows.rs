@@ -4,7 +4,7 @@ use super::plan::Plan;
 use super::text::{COLUMNS, annotated, range};
 use crate::netlist::{Design, NetId};
 
-/// Returns the texts with a comma after each except the last. For example, `a` and `b` become `a,` and `b`.
+/// Returns the texts with a comma after each text except the last. For example, `a` and `b` become `a,` and `b`.
 pub fn separated(mut texts: Vec<String>) -> Vec<String> {
     let last = texts.len().saturating_sub(1);
     for text in texts.iter_mut().take(last) {
@@ -33,8 +33,8 @@ pub fn variables(design: &Design, with_signs: bool) -> Vec<String> {
     Row::declarations(&rows)
 }
 
-/// The Verilog declaration of one net or port, or of several alike. Its parts are aligned in columns with the declarations around
-/// it.
+/// The Verilog declaration of one net or port, or of several nets whose declarations differ only in their names. Its parts are
+/// aligned in columns with the declarations around it.
 pub struct Row {
     head: String,
     range: String,

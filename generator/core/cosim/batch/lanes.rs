@@ -16,7 +16,7 @@ use crate::cosim::instances::Instances;
 use glint_golden::Contract;
 use glint_rtl::netlist::{Design, NetId, Role};
 
-/// The number of clocks after which a computation counts as one that never ends.
+/// The number of clocks after which a computation counts as a computation that never ends.
 const LIMIT: u64 = 1 << 16;
 
 /// An [`Engine`] that simulates the design with rust_hdl: one simulator for each thread, with an instance of the design in each
@@ -58,8 +58,8 @@ struct Team {
     instances: Instances<LANES>,
     /// The number of clocks from a point to its result, if the design is a pipeline; otherwise `None`.
     latency: Option<u64>,
-    /// The output `in_ready` of a pipeline, which says that it takes a point. It has the same value in all instances. `None` if
-    /// the design has no such port.
+    /// The output `in_ready` of a pipeline, which is 1 if the pipeline takes a point. The output has the same value in all
+    /// instances. `None` if the design has no such port.
     in_ready: Option<NetId>,
 }
 
@@ -75,6 +75,10 @@ struct LaneTask {
 impl Team {
     /// Returns the raw outputs of the points in `range`, in the order of the points. Every instance takes the next point as
     /// soon as it can: a core when it is free, and a pipeline when it is ready.
+    ///
+    /// # Errors
+    /// Fails if the simulation fails, if a computation gives more or fewer results than `points` states, or if it takes [`LIMIT`]
+    /// clocks or more. Fails if a result of a pipeline does not come after the latency.
     fn compute(&mut self, points: &Points, range: Range<usize>) -> Result<Vec<i64>> {
         let Self { instances, latency, in_ready } = self;
         let width = instances.ports.results.len();

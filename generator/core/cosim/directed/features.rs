@@ -9,9 +9,9 @@ use glint_base::fixed::mask;
 use glint_rtl::netlist::{Design, Driver, NetId, Op};
 use glint_rtl::sim::Machine;
 
-/// The number of classes of brightness. Class 0 has the computations whose results are all 0, class 2 those with a result above
-/// a sixteenth of the largest output, and class 1 the rest. A feature is counted separately in each class, because a fault in a
-/// computation with the result 0 seldom shows.
+/// The number of classes of brightness. Class 0 has the computations whose results are all 0, class 2 the computations with a
+/// result above a sixteenth of the largest output, and class 1 all other computations. A feature is counted separately in each
+/// class, because a fault in a computation with the result 0 seldom shows.
 pub const CLASSES: usize = 3;
 
 /// A net, or a few nets, with features that are recorded. Each variant has up to 64 features, one for each bit of a number.
@@ -19,8 +19,8 @@ enum Watched {
     /// The bits of a net that are 1, after an exclusive or with the mask. The mask is 0, or has a 1 for every bit of the net;
     /// then the features are the bits that are 0.
     Ones(NetId, u64),
-    /// The input that a mux takes, if another input has a different value in that clock. The nets are the select and the
-    /// inputs.
+    /// The input that a mux takes, if another input has a different value in that clock. All inputs from number 63 on count as
+    /// one feature. The nets are the select and the inputs.
     Choice(NetId, Vec<NetId>),
     /// The outcomes of a comparison of two nets: equal, less, greater, greater by one, less by one. The numbers are a mask of
     /// the nets' bits, and the mask of the sign bit, or 0 without a sign.
@@ -32,8 +32,8 @@ enum Watched {
     Pair(NetId, NetId),
 }
 
-/// Observes the nets of a simulated design. For each lane it records the features that the lane's computation has exercised,
-/// such as an input of a mux or an outcome of a comparison.
+/// Observes the nets of a simulated design. For each lane, the struct records the features that the lane's computation has
+/// exercised, such as an input of a mux or an outcome of a comparison.
 pub struct Watch {
     watched: Vec<Watched>,
     done: Vec<[u64; LANES]>,
@@ -87,8 +87,8 @@ impl Watch {
         }
     }
 
-    /// Returns the number of features, in all brightness classes together. It reserves 64 features in each class for everything
-    /// that is observed. Reads of ROM words are not counted.
+    /// Returns the number of features, in all brightness classes together. The function reserves 64 features in each class for
+    /// everything that is observed. Reads of ROM words are not counted.
     pub fn count(&self) -> usize {
         64 * CLASSES * self.watched.len()
     }

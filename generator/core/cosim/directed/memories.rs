@@ -11,9 +11,9 @@ use glint_rtl::sim::Machine;
 pub struct Memories {
     /// The input port that selects the copy that a lane reads. The caller must drive it with the number of the lane.
     pub lane: NetId,
-    /// For each ROM, three numbers. The first one is the number of the ROM's first word through all ROMs of the original
-    /// design, and the second one is this number in the design with copies. The third one is the distance in words from one
-    /// lane's copy to the next lane's.
+    /// For each ROM, three numbers. The first number is the number of the ROM's first word through all ROMs of the original
+    /// design, and the second number is the same in the design with copies. The third number is the distance in words from one
+    /// lane's copy to the copy of the next lane.
     roms: Vec<(u32, usize, usize)>,
 }
 

@@ -5,13 +5,16 @@
 //! computations, simulates them, and chooses some of them:
 //!
 //! - For each ROM word that any computation reads, and each bit in the upper half of the word: one computation whose results
-//!   change if the bit is inverted. If the pool has no such computation, the module searches near the computations that read
-//!   the word. For a device that computes a line of points, and reads a word in each clock, it chooses a line that reads the
-//!   word. If all this takes too many clocks, only every second word has such a computation, or every third, and so on.
-//! - For a device that computes lines: one line of the largest length in the contract's domain.
-//! - Every combination of the smallest and the largest values of the operands that determine `f`.
-//! - For each bit of each net, each input of a mux and each outcome of a comparison: some computations that exercise it with
-//!   large results, some with small results and some with results of 0.
+//!   change if the bit is inverted. If the pool has no such computation, the module searches near the computations that read the
+//!   word, and gives up after some rounds. For a device that computes a line of points, and reads a word in each clock, the
+//!   module chooses a line that reads the word. If all this takes too many clocks, only every second word has such a computation,
+//!   or every third, and so on.
+//! - For a highlight device that computes lines: one line of the largest length in the contract's domain, but of at most 4095
+//!   intervals.
+//! - Every combination of the smallest and the largest values of the operands that determine `f`, but at most the first 128
+//!   combinations. Lines have at most three points in these combinations.
+//! - For each bit of each net, each input of a mux and each outcome of a comparison: some computations that exercise this bit,
+//!   input or outcome with large results, some with small results and some with results of 0.
 //!
 //! The choice depends neither on time nor on threads: the same design always gets the same computations.
 
@@ -36,17 +39,18 @@ use side_by_side::{LANES, OutputTrace, SideBySide};
 /// The number of computations that must exercise each feature. If the pool has fewer for a feature, all of them are chosen.
 const TIMES: u8 = 2;
 
-/// The largest number of clocks of all computations together.
+/// The largest number of clocks of all chosen computations up to which a computation is added for its features. Computations that
+/// are chosen for ROM words do not obey this limit.
 const MOST_CLOCKS: u32 = 20_000;
 
-/// A computation of the pool, with what its simulation has shown.
+/// A computation of the pool, with the results of its simulation.
 struct PoolComputation {
     operands: Vec<i64>,
     shown: OutputTrace,
     /// The class of its brightest result; see [`class`].
     class: usize,
     features: Vec<u32>,
-    /// The ROM words that it reads, numbered through all ROMs, in ascending order.
+    /// The ROM words that the computation reads, numbered through all ROMs, in ascending order.
     read: Vec<u32>,
 }
 
@@ -66,9 +70,9 @@ pub struct Computations {
 }
 
 impl ComputationCache {
-    /// Returns the result of [`computations`] for a design from the cache. If the cache does not have it, chooses the
-    /// computations and adds them to the cache. The name of the design does not matter. `contract_digest` must be different for
-    /// different contracts.
+    /// Returns the result of [`computations`] for a design from the cache. If the cache does not have this result, the function
+    /// chooses the computations, and adds them to the cache. The name of the design does not matter. `contract_digest` must be
+    /// different for different contracts.
     ///
     /// # Errors
     /// Fails as [`computations`] does. A failure is not cached.
@@ -160,9 +164,9 @@ pub fn computations(design: &Design, contract: &dyn Contract) -> Result<Computat
     Ok(Computations { operands, word_stride: of_words.word_stride })
 }
 
-/// Returns the indices in `lines` of lines that read many words of tables. The first line, which is the longest, is always one
-/// of them. Another line is one of them if it reads new words, which no chosen line reads: their number must exceed half of the
-/// line's clocks.
+/// Returns the indices in `lines` of lines that read many words of tables. The first line, which is the longest, is always
+/// chosen. Another line is chosen if the number of new words that the line reads exceeds half of its clocks. A word is new if no
+/// line chosen before reads the word.
 fn sweeps(lines: &[PoolComputation]) -> Vec<usize> {
     let mut read = HashSet::new();
     let mut chosen = Vec::new();
@@ -176,8 +180,8 @@ fn sweeps(lines: &[PoolComputation]) -> Vec<usize> {
     chosen
 }
 
-/// Returns the class of the brightest result: 0 if all outputs are 0, 2 if one is larger than a sixteenth of the largest
-/// output, and otherwise 1.
+/// Returns the class of the brightest result: 0 if all outputs are 0, 2 if an output is larger than a sixteenth of its largest
+/// value, and otherwise 1.
 fn class(contract: &dyn Contract, shown: &OutputTrace) -> usize {
     let mut class = 0;
     for (_, outputs) in &shown.results {
@@ -189,9 +193,9 @@ fn class(contract: &dyn Contract, shown: &OutputTrace) -> usize {
     class
 }
 
-/// Adds candidates to `chosen`, always the one that exercises the most missing features per clock. It ends when no feature is
-/// missing, or when another candidate would exceed [`MOST_CLOCKS`]. Features from number `words` on are ROM words, which must
-/// be read once; `count` is the number of all features.
+/// Adds candidates to `chosen`, always the candidate that exercises the most missing features per clock. The function leaves out
+/// a candidate with which all chosen computations would exceed [`MOST_CLOCKS`], and ends when no other candidate adds a missing
+/// feature. Features from number `words` on are ROM words, which must be read once; `count` is the number of all features.
 fn choose(candidates: &[PoolComputation], words: usize, count: usize, chosen: &mut Vec<usize>) {
     let mut coverage = FeatureCoverage { wanted: vec![TIMES; count], clocks: 0 };
     coverage.wanted[words..].fill(1);

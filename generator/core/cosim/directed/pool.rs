@@ -1,7 +1,7 @@
 //! Draws the candidates from which `directed` chooses the computations of a test bench.
 //!
-//! The pool depends only on the device's contract. It has the corners of the domain, random computations, computations that read
-//! ROM words, and long lines for devices that compute lines of points.
+//! The pool depends only on the device's contract. The pool has the corners of the domain, random computations, computations that
+//! read ROM words, and long lines for devices that compute lines of points.
 
 use crate::cosim::{PointSource, Random};
 use glint_golden::{Contract, Highlight};
@@ -9,10 +9,11 @@ use glint_golden::{Contract, Highlight};
 /// The number of random computations in [`Pool::drawn`], drawn in the same way as the points of the default test.
 const DRAWN: usize = 1024;
 
-/// The number of random computations in [`Pool::readers`] of a device without lines. They are drawn in three ways, in turn. One
-/// third is drawn evenly, and reads words far from the peak of the highlight. One third is near the ends of the domains, at
-/// distances of every magnitude, since tables have a word for each octave of the distance. One third has operands from anywhere
-/// in their formats, moved near the peak. In all three, the other operands are chosen such that the result is not 0.
+/// The number of random computations in [`Pool::readers`] of a device without lines. These computations are drawn in three ways,
+/// in turn. One third is drawn evenly, and reads words far from the peak of the highlight. One third is near the ends of the
+/// domains, at distances of every magnitude, since tables have a word for each octave of the distance. One third has operands
+/// from anywhere in their formats, moved to where the formula has a random value. In all three ways, the other operands are
+/// chosen so that the results are seldom 0.
 const SHOWN: usize = 3840;
 
 /// An operand without fraction bits gets one point for each of its values, and points at the edges of the highlight, if it has
@@ -38,15 +39,16 @@ const CORNER_LENGTH: i64 = 2;
 
 /// The candidates from which the computations of a test bench are chosen.
 pub struct Pool {
-    /// Computations in which every operand that determines `f` is at an end of its domain. If this gives few enough
-    /// computations, also at an end of its format.
+    /// Computations in which every operand that determines `f` is at an end of its domain, or, if there are few enough such
+    /// computations, at an end of its format. The length operand of a line is at most 2. There are at most 128 of these
+    /// computations.
     pub corners: Vec<Vec<i64>>,
-    /// Random computations. The search for a test bench records all features that they exercise.
+    /// Random computations. The search for a test bench records all features that these computations exercise.
     pub drawn: Vec<Vec<i64>>,
-    /// Further random computations. The search for a test bench records only the ROM words that they read.
+    /// Further random computations. The search for a test bench records only the ROM words that these computations read.
     pub readers: Vec<Vec<i64>>,
-    /// Lines that read a ROM from its beginning to its end. Empty for a device that does not compute a line of points after one
-    /// `start`.
+    /// Lines from the peak to the edge of the highlight, which read the words of a table one after another. Empty for a device
+    /// that does not compute a line of points after one `start`.
     pub sweeps: Vec<Vec<i64>>,
 }
 
@@ -167,8 +169,9 @@ fn corners(points: &PointSource<'_>) -> Vec<Vec<i64>> {
     corners
 }
 
-/// Returns the values of each operand in the corners: the ends of its domain, and also the ends of its format if `with_format`
-/// is true. A colour has only its largest value, and the length of a line only [`CORNER_LENGTH`].
+/// Returns the values of each operand in the corners: the ends of its domain, and also the ends of its format if `with_format` is
+/// true. A colour has only its largest value, and the length of a line only [`CORNER_LENGTH`], or the largest length if it is
+/// smaller.
 fn corner_values(points: &PointSource<'_>, with_format: bool) -> Vec<Vec<i64>> {
     let mut all = Vec::new();
     for (at, operand) in points.operands().iter().enumerate() {

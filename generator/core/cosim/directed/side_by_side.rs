@@ -15,7 +15,7 @@ use glint_rtl::sim::Machine;
 /// The number of computations that are simulated at once.
 pub const LANES: usize = 32;
 
-/// The number of clocks after which a computation counts as one that never ends.
+/// The number of clocks after which a computation counts as a computation that never ends.
 const LIMIT: u32 = 1 << 16;
 
 /// A set of lanes as a bit mask: bit i is 1 if lane i is in the set.
@@ -115,8 +115,8 @@ impl SideBySide {
     }
 
     /// Runs one computation in each lane to its end, from raw operands in the order of `Contract::operands`, and returns their
-    /// outputs in the same order. There must be at most [`LANES`] computations. It calls `see` before each clock edge with the
-    /// simulator and the set of the lanes that are busy.
+    /// outputs in the same order. There must be at most [`LANES`] computations. The function calls `see` before each clock edge
+    /// with the simulator and the set of the lanes that are busy.
     ///
     /// # Errors
     /// Fails if a computation does not end within 65536 clocks.

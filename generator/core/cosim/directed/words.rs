@@ -1,7 +1,7 @@
 //! Finds computations that detect faults in the words of a design's ROMs.
 //!
-//! A computation detects a fault if its results change when a bit in the upper half of a word is inverted. The search first
-//! tries the candidates of the pool that read the word. If no candidate detects a bit, it tries other computations with similar
+//! A computation detects a fault if its results change when a bit in the upper half of a word is inverted. The search first tries
+//! the candidates of the pool that read the word. If no candidate detects a bit, the search tries other computations with similar
 //! operands.
 
 use std::cmp::Reverse;
@@ -33,8 +33,8 @@ const MOST_CLOCKS: u64 = 40_000;
 const ROUNDS: usize = 6;
 const ROUNDS_BEYOND: usize = 6;
 
-/// The number of tried computations that are kept after each round. They are the ones in which a fault in the word changes the
-/// results most, and the next round tries computations near them.
+/// The number of tried computations that are kept after each round. A fault in the word changes the results of these computations
+/// most, and the next round tries computations near them.
 const KEPT: usize = 8;
 
 /// The computations that were chosen because they detect faults in ROM words.
@@ -49,8 +49,8 @@ pub struct Chosen {
     pub word_stride: usize,
 }
 
-/// Chooses computations that detect inverted bits in the upper halves of ROM words. It chooses among the `candidates`, and
-/// among further computations near them. It leaves out the words with the numbers in `known`, and the control ROM.
+/// Chooses computations that detect inverted bits in the upper halves of ROM words. The function chooses among the `candidates`
+/// and further computations near them, and leaves out the words with the numbers in `known` and the control ROM.
 ///
 /// # Errors
 /// Fails if the design cannot be simulated, if it does not belong to the contract, or if a computation does not end.
@@ -84,16 +84,16 @@ pub fn chosen(
     Ok(search.result)
 }
 
-/// Returns the smallest stride with which the chosen words take at most about [`MOST_CLOCKS`] clocks, at one computation for
-/// each word. It is at least 1.
+/// Returns the smallest stride with which the chosen words take at most about [`MOST_CLOCKS`] clocks, at one computation for each
+/// word. Returns at least 1.
 fn word_stride(candidates: &[PoolComputation], readers: &BTreeMap<u32, Vec<usize>>) -> usize {
     let first = readers.values().filter_map(|readers| readers.first());
     let clocks: u64 = first.map(|&at| u64::from(candidates[at].shown.clocks)).sum();
     clocks.div_ceil(MOST_CLOCKS).max(1) as usize
 }
 
-/// Returns, for each word that is read, the indices of the candidates that read it, brightest first. Each list has at most
-/// [`LANES`] of them, and no candidate with more than [`LONGEST`] clocks.
+/// Returns, for each word that is read, the indices of the candidates that read the word, brightest first. Each list has at most
+/// [`LANES`] candidates, and no candidate with more than [`LONGEST`] clocks.
 fn readers(candidates: &[PoolComputation]) -> BTreeMap<u32, Vec<usize>> {
     let mut order: Vec<usize> = (0..candidates.len()).collect();
     order.retain(|&at| candidates[at].shown.clocks <= LONGEST);
@@ -121,6 +121,9 @@ struct WordSearch<'a> {
 impl WordSearch<'_> {
     /// Chooses computations that detect the bits in the mask `left` of a word. `readers` has the candidates that read the word.
     /// A fault in a bit is detected if the outputs change.
+    ///
+    /// # Errors
+    /// Fails if the simulation fails.
     fn word(&mut self, word: u32, mut left: u64, readers: &[usize]) -> Result<()> {
         let candidates = self.candidates;
         for at in readers {
@@ -158,10 +161,13 @@ impl WordSearch<'_> {
         self.climb(word, left, least, nearest.iter().map(|operands| operands.to_vec()).collect())
     }
 
-    /// Searches for computations that detect the bits in the mask `left` of a word. It starts from the computations `nearest`,
-    /// which detect the bit `probe`, and goes on to computations near them in which a fault of this bit changes the results
-    /// more and more. Within the domain, some words are read only far from any highlight. The last rounds therefore take
+    /// Searches for computations that detect the bits in the mask `left` of a word. The function starts from the computations
+    /// `nearest`, which detect the bit `probe`, and goes on to computations near them in which a fault of this bit changes the
+    /// results more and more. Within the domain, some words are read only far from any highlight. The last rounds therefore take
     /// operands from their whole formats, where the golden model still predicts the device.
+    ///
+    /// # Errors
+    /// Fails if the simulation fails.
     fn climb(
         &mut self,
         word: u32,
@@ -199,6 +205,9 @@ impl WordSearch<'_> {
 
     /// Returns the outputs of computations with the bits in the mask `bits` of a word inverted. A mask of 0 gives the outputs
     /// without a fault.
+    ///
+    /// # Errors
+    /// Fails if the simulation fails.
     fn run(&mut self, computations: &[&[i64]], word: u32, bits: u64) -> Result<Vec<OutputTrace>> {
         let faults: Vec<u64> = vec![bits; computations.len()];
         self.device.run_with(computations, word, &faults)
@@ -206,6 +215,9 @@ impl WordSearch<'_> {
 
     /// Returns the bits in the mask `bits` of a word that a computation detects, when one bit is inverted at a time. `right`
     /// must be the output of the computation without a fault.
+    ///
+    /// # Errors
+    /// Fails if the simulation fails.
     fn noticed(
         &mut self,
         word: u32,
@@ -252,8 +264,8 @@ impl WordSearch<'_> {
 }
 
 /// Returns a value near `raw` for an operand. A control operand moves by a random magnitude in half of the cases, and otherwise
-/// keeps its value. Without fraction bits it may also be drawn anew. It stays within its domain, or within its format if
-/// `beyond` is true. A colour is at most an eighth of its domain below its largest value.
+/// keeps its value. A control operand without fraction bits may also get a new random value. The value stays within its domain,
+/// or within its format if `beyond` is true. A colour is at most an eighth of its domain below its largest value.
 fn moved(random: &mut Random, operand: &Operand, raw: i64, beyond: bool) -> i64 {
     let (low, high) = if beyond && !operand.colour {
         (operand.format.min_raw() as i64, operand.format.max_raw() as i64)

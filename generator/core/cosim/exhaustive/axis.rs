@@ -51,7 +51,7 @@ impl FromStr for AxisValues {
 }
 
 /// Parses first value, last value and step from `5`, `0..1000` or `0..1000/10`. For example, `0..1000/10` gives (0, 1000, 10),
-/// and `5` gives (5, 5, 1). Returns `None` if a part is no integer, or if the step is 0.
+/// and `5` gives (5, 5, 1). Returns `None` if a part is no integer, or if the step is not at least 1.
 fn range(item: &str) -> Option<(i64, i64, usize)> {
     let Some((first, rest)) = item.split_once("..") else {
         let value = item.parse().ok()?;
@@ -66,8 +66,8 @@ fn range(item: &str) -> Option<(i64, i64, usize)> {
 }
 
 /// Returns the contract's sweep: the operand values that an exhaustive check visits. The values in `others` replace the
-/// contract's own values of the same operand. If they leave out a part of a range, `omits` in the returned sweep names the
-/// operand.
+/// contract's own values of the same operand. If these values leave out a part of a range, `omits` in the returned sweep names
+/// the operand.
 ///
 /// # Errors
 /// Fails if an operand is named twice, if the contract's sweep does not have it, or if a value is outside the operand's domain.

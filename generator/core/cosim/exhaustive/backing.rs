@@ -1,8 +1,8 @@
 //! Finds the evidence for the error bound that a contract states.
 //!
-//! The evidence is a proof in Rust beside the golden model of a device of the catalogue, or the record of an exhaustive check
-//! by `glint cosim --exhaustive`, or the record of a proof by `glint certify`. Without any of these, only the author states the
-//! bound. Datasheets and reports print the evidence next to the bound.
+//! A device of the catalogue has a proof in the Rust code of its golden model. For another device, the evidence is the record of
+//! an exhaustive check by `glint cosim --exhaustive`, or the record of a proof by `glint certify`. Without any of these, only the
+//! author states the bound. Datasheets and reports print the evidence next to the bound.
 
 use std::fmt;
 use std::path::Path;
@@ -24,11 +24,11 @@ const SAME: f64 = 1e-9;
 /// The evidence for the error bound that a contract states.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Backing {
-    /// The bound is proved beside the golden model of a device of the catalogue.
+    /// The bound is proved by Rust code in the golden model of a device of the catalogue.
     Catalogue,
-    /// The record of an exhaustive check of every combination of operands shows the bound.
+    /// The record of an exhaustive check of every combination of operands proves the bound. The text is the path of the record.
     Exhaustive(String),
-    /// The record of statements that the prover Gappa accepted shows the bound.
+    /// The record of statements that the prover Gappa accepted proves the bound. The text is the path of the record.
     Certificate(String),
     /// Only the author of the contract states the bound; no proof is known.
     Author,

@@ -1,9 +1,9 @@
 //! Compares every register and every output with the golden model at every clock, for every combination of operands.
 //!
-//! This is feasible only for devices whose operands have at most 26 bits in total; a device of full width is checked through a
-//! narrow configuration. The combinations are numbered and divided into blocks. Each lane of a simulator runs some consecutive
-//! combinations from power-up on, and each computation begins with the register values of the previous one. The result does not
-//! depend on the order of the blocks.
+//! This check is feasible only for devices whose operands have at most 26 bits in total; a device of full width is checked
+//! through a narrow configuration. The combinations are numbered and divided into blocks. Each lane of a simulator runs some
+//! consecutive combinations from power-up on, and each computation begins with the register values of the previous computation.
+//! The result does not depend on the order of the blocks.
 
 use std::fmt;
 use std::io::Write;
@@ -34,7 +34,7 @@ const BLOCK: u64 = RUN * LANES as u64;
 /// The progress of a shard, which is one machine's part of the check of all combinations.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Steps {
-    /// The number of finished blocks. They are the first blocks of the shard.
+    /// The number of finished blocks, which are the first blocks of the shard.
     pub done: u64,
     /// The number of the first combination for which model and hardware differ; `None` if they agree so far. After a
     /// difference, the shard counts as done, and later combinations are not checked.
@@ -50,7 +50,7 @@ pub struct Difference {
     pub clock: u64,
     /// The operands of the combination: each name with its bit pattern.
     pub operands: Vec<(String, u64)>,
-    /// The signal that differs, with its value in the model and in the hardware. The clock in it is counted from the
+    /// The signal that differs, with its value in the model and in the hardware. The clock in this field is counted from the
     /// power-up of the simulated instance.
     pub mismatch: Mismatch,
 }
@@ -72,7 +72,7 @@ impl fmt::Display for Difference {
 }
 
 /// The check of a design against its golden model for every combination of operands. A core computes one combination after
-/// another; a pipeline takes one in every clock.
+/// another; a pipeline takes a combination in every clock in which it is ready.
 pub struct Clocks<'a> {
     binding: Binding<'a>,
 }
@@ -111,7 +111,7 @@ impl<'a> Clocks<'a> {
         }
     }
 
-    /// Returns a phrase about the cases that the check does not cover. It says why the combinations are not run, or which
+    /// Returns a phrase about the cases that the check does not cover. The phrase says why the combinations are not run, or which
     /// inputs only random tests cover.
     pub fn omits(&self) -> String {
         match self.count() {
@@ -129,7 +129,7 @@ impl<'a> Clocks<'a> {
         }
     }
 
-    /// Returns the number of blocks into which the combinations are divided. It is 0 if there are too many combinations.
+    /// Returns the number of blocks into which the combinations are divided. Returns 0 if there are too many combinations.
     pub fn blocks(&self) -> u64 {
         self.count().div_ceil(BLOCK)
     }
@@ -144,8 +144,8 @@ impl<'a> Clocks<'a> {
     }
 
     /// Checks the blocks with the given numbers on all threads of rayon's pool; the numbers must be in ascending order. Returns
-    /// the number of the first combination for which model and hardware differ, or `None` if they always agree. It calls
-    /// `progress` with the number of combinations in each finished block.
+    /// the number of the first combination for which model and hardware differ, or `None` if they always agree. The function
+    /// calls `progress` with the number of combinations in each finished block.
     ///
     /// # Errors
     /// Fails if the design cannot be simulated, or if its signals do not settle in a clock.
@@ -160,8 +160,11 @@ impl<'a> Clocks<'a> {
         found.transpose()
     }
 
-    /// Returns the first of some consecutive combinations at which a signal differs. Each lane runs 512 of them from
-    /// power-up on.
+    /// Returns the first of some consecutive combinations at which a signal differs, or `None` if no signal differs. Each lane
+    /// runs 512 combinations from power-up on.
+    ///
+    /// # Errors
+    /// Fails as [`Clocks::check`] does.
     fn first(&self, places: Range<u64>) -> Result<Option<u64>> {
         let runs =
             places.clone().step_by(RUN as usize).map(|first| (first, RUN.min(places.end - first)));
@@ -197,16 +200,20 @@ impl<'a> Clocks<'a> {
         })
     }
 
-    /// Writes a waveform, in the VCD format, that ends with the difference in combination number `place`. It begins with clock
-    /// `from`, counted from the power-up of the simulated instance.
+    /// Writes a waveform, in the VCD format, that ends with the difference in combination number `place`. The waveform begins
+    /// with clock `from`, counted from the power-up of the simulated instance.
     ///
     /// # Errors
-    /// Fails as [`Clocks::difference`] does, or if the file cannot be written.
+    /// Fails if there is no combination `place`, if the design cannot be simulated, or if the file cannot be written. If nothing
+    /// differs, the waveform ends after the combination.
     pub fn trace(&self, place: u64, from: u64, file: impl Write + Send + 'static) -> Result<()> {
         self.alone(place)?.trace(from, file)
     }
 
     /// Returns a runner with a simulator of its own, which runs the combinations of the lane up to and including `place`.
+    ///
+    /// # Errors
+    /// Fails if there is no combination `place`, or if the design cannot be simulated.
     fn alone(&self, place: u64) -> Result<Runner<'_, 1>> {
         ensure!(place < self.count(), "there is no combination {place}");
         let first = place - place % RUN;

@@ -25,8 +25,8 @@ pub const MOST_SHARDS: u64 = 1_000_000;
 /// The largest number of missing shards that an error message names.
 const NAMED: usize = 10;
 
-/// The number of blocks for each thread that are checked between two calls of `look` in [`Job::run`]. They take some tenths of
-/// a second.
+/// The number of blocks for each thread that are checked between two calls of `look` in [`Job::run`]. These blocks take some
+/// tenths of a second.
 const CHUNK: u64 = 4;
 
 /// A shard: one part of a job that is divided among machines. For example, `2/4` is the second of four shards, and has the blocks
@@ -58,8 +58,8 @@ impl Shard {
         self.number - 1 + at * self.of
     }
 
-    /// Returns the next blocks to check, by their number among all blocks. `done` of the shard's `count` blocks are done
-    /// already. Also returns how many are done after these.
+    /// Returns the next blocks to check, by their number among all blocks. `done` of the shard's `count` blocks are done already.
+    /// Also returns how many blocks are done after these blocks.
     fn chunk(self, done: u64, count: u64) -> (u64, Vec<u64>) {
         let end = (done + CHUNK * rayon::current_num_threads() as u64).min(count);
         (end, (done..end).map(|at| self.block(at)).collect())
@@ -92,7 +92,7 @@ impl FromStr for Shard {
 /// colours.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Progress {
-    /// The number of finished blocks. They are the first blocks of the shard.
+    /// The number of finished blocks, which are the first blocks of the shard.
     pub done: u64,
     /// The largest error in the finished blocks.
     pub peak: Peak,
@@ -140,8 +140,8 @@ pub struct Job<'a> {
 }
 
 impl<'a> Job<'a> {
-    /// Makes the check of a contract's error bound, for the operand values in the contract's own sweep. It does not compare
-    /// clock by clock; [`Job::with`] adds this.
+    /// Makes the check of a contract's error bound, for the operand values in the contract's own sweep. The check does not
+    /// compare clock by clock; [`Job::with`] adds this comparison.
     pub fn new(contract: &'a dyn Contract) -> Self {
         Self::of_sweep(contract, contract.sweep())
     }
@@ -153,7 +153,7 @@ impl<'a> Job<'a> {
     }
 
     /// Returns a phrase with the number of evaluations that the check makes, for example "1 000 evaluations of f and 500 colour
-    /// products".
+    /// products", or "1 000 evaluations of the outputs" for a device without colours.
     pub fn words(&self) -> String {
         let places = grouped(self.f.count());
         match self.colours.count() {
@@ -164,15 +164,15 @@ impl<'a> Job<'a> {
         }
     }
 
-    /// Adds the comparison of model and hardware clock by clock, for every combination of operands. If there are too many,
-    /// [`Clocks::count`] is 0, and nothing is compared.
+    /// Adds the comparison of model and hardware clock by clock, for every combination of operands. If there are too many
+    /// combinations, [`Clocks::count`] is 0, and nothing is compared.
     #[must_use]
     pub fn with(mut self, clocks: Clocks<'a>) -> Self {
         self.clocks = Some(clocks);
         self
     }
 
-    /// Returns the number of blocks of the comparison clock by clock. It is 0 without this comparison.
+    /// Returns the number of blocks of the comparison clock by clock. Returns 0 without this comparison.
     fn blocks_of_clocks(&self) -> u64 {
         self.clocks.as_ref().map_or(0, Clocks::blocks)
     }
@@ -269,9 +269,9 @@ impl<'a> Job<'a> {
         Ok(Duration::from_secs_f64(sum / threads.max(1) as f64))
     }
 
-    /// Continues a shard from `state` to its end, and updates `state`. It calls `look` with the state after every few blocks.
-    /// It returns `ControlFlow::Break` as soon as `look` does, and `ControlFlow::Continue` when the shard is done. It calls
-    /// `progress` with the number of combinations in each finished block.
+    /// Continues a shard from `state` to its end, and updates `state`. The function calls `look` with the state after every few
+    /// blocks. The function returns `ControlFlow::Break` as soon as `look` returns it, and `ControlFlow::Continue` when the shard
+    /// is done. The function calls `progress` with the number of combinations in each finished block.
     ///
     /// # Errors
     /// Fails if the design cannot be simulated, or if its signals do not settle in a clock.

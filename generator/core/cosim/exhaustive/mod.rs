@@ -44,8 +44,7 @@ pub struct Proof {
     /// The error of `f` in output units, for the largest colour: `f.error` times the largest colour operand. For a device that
     /// is no highlight, the same as `f.error`.
     pub f_units: f64,
-    /// The largest rounding error of a product of `f` with a colour, in output units. It is 0 for a device that is no
-    /// highlight.
+    /// The largest rounding error of a product of `f` with a colour, in output units; 0 for a device that is no highlight.
     pub colours: Peak,
     /// Sentences about the errors that exceed the contract's bound. Empty if the bound holds.
     pub failures: Vec<String>,

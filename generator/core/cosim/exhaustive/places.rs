@@ -14,20 +14,20 @@ use glint_golden::{Axis, Contract, Sweep, Values};
 /// The number of operand combinations in a block. A block takes some milliseconds.
 pub const BLOCK: u64 = 1 << 17;
 
-/// The number of places that are timed, and the approximate number of places of [`Places::glimpse`].
+/// The number of places that are timed, and the smallest number of places of [`Places::glimpse`], unless there are fewer.
 const SAMPLE: u64 = 4096;
 
 /// The largest error among some operand combinations, and the first combination with this error.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Peak {
-    /// The absolute error. It is infinite if the formula has no value for the operands.
+    /// The absolute error; infinite if the formula has no value for the operands.
     #[serde(deserialize_with = "or_infinite")]
     pub error: f64,
     /// The number of the operand combination, by the numbering of [`Places`].
     pub place: u64,
 }
 
-/// Reads a number, or `null`, which JSON has in place of an infinite number.
+/// Reads a number, or `null`, which JSON has in place of an infinite number and which gives infinity. Fails for any other JSON.
 fn or_infinite<'de, D: Deserializer<'de>>(number: D) -> Result<f64, D::Error> {
     Ok(Option::deserialize(number)?.unwrap_or(f64::INFINITY))
 }
@@ -143,13 +143,14 @@ impl<'a> Places<'a> {
     }
 
     /// Returns the error for combination `number`: the absolute error of `f`, the error of an output in units, or the rounding
-    /// error of a product, depending on the kind of these places. It is infinite if the formula has no value there.
+    /// error of a product, depending on the kind of these places. The error is infinite if the formula has no value for the
+    /// operands.
     pub fn error(&self, number: u64) -> f64 {
         self.error_at(&self.place(number))
     }
 
-    /// Returns the errors for some combinations, about 4096, that are spread evenly over all. Callers use them as a
-    /// fingerprint of the golden model.
+    /// Returns the errors for 4096 to 8191 combinations that are spread evenly over all, or for all combinations if there are
+    /// fewer. Callers use these errors as a fingerprint of the golden model.
     pub fn glimpse(&self) -> Vec<f64> {
         let step = (self.count() / SAMPLE).max(1);
         (0..self.count()).step_by(step as usize).map(|place| self.error(place)).collect()
@@ -191,7 +192,7 @@ impl<'a> Places<'a> {
         begin.elapsed() / count.max(1) as u32
     }
 
-    /// Returns the largest error among consecutive places, with the first place that has it.
+    /// Returns the largest error among consecutive places, with the first place that has this error.
     fn peak(&self, places: Range<u64>) -> Peak {
         let mut peak = Peak::NONE;
         let Some(inner) = self.sweep.axes.last() else {
@@ -217,8 +218,9 @@ impl<'a> Places<'a> {
         peak
     }
 
-    /// Measures the errors for all combinations in the given blocks on all threads of rayon's pool, and returns the largest.
-    /// Returns [`Peak::NONE`] without blocks. It calls `progress` with the number of combinations in each finished block.
+    /// Measures the errors for all combinations in the given blocks on all threads of rayon's pool, and returns the largest
+    /// error. Returns [`Peak::NONE`] without blocks. The function calls `progress` with the number of combinations in each
+    /// finished block.
     pub fn check(
         &self,
         blocks: impl IntoParallelIterator<Item = u64>,

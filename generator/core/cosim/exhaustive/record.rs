@@ -3,8 +3,8 @@
 //! An exhaustive check computes the error of a device for every combination of operand values that its contract lists. The
 //! digest of the contract in a record tells to which configuration the record belongs.
 //!
-//! Glint does not simply trust a record. It computes the error again at the operands with the largest error in the record, and
-//! compares it with the recorded error ([`Record::proves`]).
+//! Glint does not simply trust a record. [`Record::proves`] computes the error again at the operands with the largest error in
+//! the record, and compares the result with the recorded error.
 
 use std::path::{Path, PathBuf};
 
@@ -25,16 +25,16 @@ pub struct Record {
     axes: Vec<RecordedAxis>,
     /// The number of combinations at which the check computed `f`, or the outputs of a device that is no highlight.
     pub evaluations: u64,
-    /// The number of products of a word `f` with a colour that the check computed. It is 0 for a device that is no highlight.
+    /// The number of products of a word `f` with a colour that the check computed; 0 for a device that is no highlight.
     pub colour_products: u64,
     /// The largest error of `f`. For a device that is no highlight, the largest error of an output, in units.
     pub f: RecordedPeak,
     /// The largest error of a colour multiplier, in output units.
     colour_units: f64,
-    /// The upper bound that the check gives for the error of an output, in output units. It is the error of `f` for the largest
-    /// colour plus the largest rounding error of a product with a colour.
+    /// The upper bound that the check gives for the error of an output, in output units: the error of `f` for the largest colour
+    /// plus the largest rounding error of a product with a colour.
     pub together: f64,
-    /// Whether the contract's bound held for all operands.
+    /// Whether the errors at all recorded operands were within the contract's bound.
     pub holds: bool,
     /// The file that contains the record.
     #[serde(skip)]
@@ -44,9 +44,9 @@ pub struct Record {
 /// The largest error of `f` in a record.
 #[derive(Clone, Copy, Debug, Deserialize)]
 pub struct RecordedPeak {
-    /// The absolute error of `f`, without a unit.
+    /// The absolute error of `f`, without a unit. For a device that is no highlight, the error of an output in units.
     pub error: f64,
-    /// The error of `f` in output units, for the largest colour.
+    /// The error of `f` in output units, for the largest colour. For a device that is no highlight, the same as `error`.
     pub units: f64,
     /// The number of the operand combination with this error.
     place: u64,
@@ -62,8 +62,8 @@ struct RecordedAxis {
 }
 
 impl RecordedAxis {
-    /// Returns whether the record visited every value of `axis`. A recorded list may have more values than the axis; a range
-    /// must be the same.
+    /// Returns whether the recorded check visited every value of `axis`. A recorded list may have more values than the axis; a
+    /// range must be the same.
     fn covers(&self, axis: &Axis) -> bool {
         self.name == axis.name
             && match &axis.values {
@@ -89,8 +89,8 @@ struct Report {
 }
 
 impl Record {
-    /// Returns the record for the contract with this digest, from the JSON files in `directory`. Returns `None` if the
-    /// directory does not exist, or has no such record. It ignores files that are no records.
+    /// Returns the record for the contract with this digest, from the JSON files in `directory`. Returns `None` if the directory
+    /// does not exist, or has no such record. The function ignores files that are no records.
     ///
     /// # Errors
     /// Fails if the directory or a file in it cannot be read, if a record is damaged, or if the record leaves out a part of the
@@ -109,15 +109,19 @@ impl Record {
         Ok(None)
     }
 
-    /// Returns the sweep of the recorded check: the operand values that it visited. It has at least the values of the
-    /// contract's own sweep.
+    /// Returns the sweep of the recorded check: the operand values that the check visited. The sweep has at least the values of
+    /// the contract's own sweep.
     pub fn sweep(&self, contract: &dyn Contract) -> Sweep {
         let axes = self.axes.iter().map(RecordedAxis::axis).collect();
         Sweep { axes, omits: contract.sweep().omits }
     }
 
-    /// Refuses a record that leaves out a part of the contract's sweep. The bound in the record does not matter here:
+    /// Checks that the record leaves out no part of the contract's sweep. The bound in the record does not matter here:
     /// [`Record::proves`] compares the recorded errors with the contract's present bound.
+    ///
+    /// # Errors
+    /// Fails if the record leaves out a part of the sweep. The error names the file of the record, and the command that makes a
+    /// new record.
     fn is_of(&self, contract: &dyn Contract) -> Result<()> {
         let sweep = contract.sweep();
         let same_axes = self.axes.len() == sweep.axes.len()
@@ -163,8 +167,9 @@ impl Record {
 
     /// Computes a part of the recorded check again and compares it with the record. The part is about `places` evenly spread
     /// operand combinations, the combination with the largest error, and all products with colours. `places` must not be 0.
-    /// Returns the number of combinations at which it computed `f`, and a sentence for each difference from the record; no
-    /// sentence means that the record holds. It calls `progress` with the number of evaluations in each finished block.
+    /// Returns the number of combinations at which the function computed `f`, and a sentence for each difference from the record
+    /// and for each error above the contract's bound. No sentence means that the record is right. The function calls `progress`
+    /// with the number of evaluations in each finished block.
     pub fn recheck(
         &self,
         contract: &dyn Contract,

@@ -1,9 +1,9 @@
 //! Predicts the signals of a pipelined core at every clock, from the golden model of the sequential core.
 //!
-//! The model computes each point (one set of operands) on its own. This module tracks in which stage each point is, and
-//! predicts the handshake, the results and the side channel, which carries data of the user along with each point. It also
+//! The model computes each point (one set of operands) on its own. This module tracks in which stage each point is, and predicts
+//! the handshake, the results and the side channel, which carries data of the user along with each point. The module also
 //! predicts *checkpoints*: nets in a stage of the pipeline that carry the same value as a register of the sequential core after
-//! some microinstruction. For the point in that stage, it expects the value of that register in the model.
+//! some microinstruction. For the point in that stage, the net must have the value of that register in the model.
 
 mod reference;
 #[cfg(test)]

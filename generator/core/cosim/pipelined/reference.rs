@@ -1,6 +1,6 @@
 //! Runs the golden model of the sequential core for one point (one set of operands).
 //!
-//! It returns the results, and the register values that a pipeline must show at its checkpoints.
+//! The module returns the results, and the register values that a pipeline must show at its checkpoints.
 
 use anyhow::{Result, bail};
 
@@ -9,7 +9,7 @@ use crate::cosim::ports::Ports;
 use glint_golden::Model;
 use glint_rtl::netlist::{Design, NetId, Pipeline};
 
-/// The number of clocks after which a computation counts as one that never ends.
+/// The number of clocks after which a computation counts as a computation that never ends.
 const MOST_CLOCKS: usize = 8192;
 
 /// The golden model of the sequential core, which computes one point at a time.

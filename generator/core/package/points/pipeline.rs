@@ -1,6 +1,6 @@
 //! Generates a Verilog test bench that sends a list of points through a pipeline.
 //!
-//! It reads the operands of each point from one file and writes the results to another.
+//! The bench reads the operands of each point from one file and writes the results to another.
 
 use anyhow::{Context, Result};
 use glint_base::fill;
@@ -15,7 +15,7 @@ fresh_names!(Variables { points, results, read, clocks, offered, total, tick, du
 /// last results do not come within `limit` clocks after the last point.
 ///
 /// # Errors
-/// Fails if the design has no reset, `in_valid` or `out_valid`, as a pipeline has, or if the template fails.
+/// Fails if the design lacks the reset, `in_valid` or `out_valid`, which every pipeline has, or if the template fails.
 pub fn points_bench(design: &Design, limit: u32) -> Result<PointsBench> {
     let port_name = |port: &Port| design.net(port.net).name.clone();
     let of_role = |role: Role| {

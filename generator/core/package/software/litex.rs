@@ -3,7 +3,7 @@
 //! The file has up to three LiteX modules, and the user takes one of them. For a core `highlight` they are:
 //!
 //! - `HighlightCore`, with a CSR (a register that LiteX manages) for each operand and each result. A pipeline and a core that
-//!   walks lines do not have it.
+//!   computes lines do not have this class.
 //! - `HighlightStream`, with a sink for operands and a source for results, if the configuration asks for a stream.
 //! - `HighlightRegisters`, a slave on a bus with the core's own registers, if the configuration asks for registers.
 

@@ -19,7 +19,8 @@ use super::output_files::OutputFiles;
 use super::tops::Top;
 pub use recompute::check as check_recomputation;
 
-/// Adds the software files that the configuration asks for: the C model, register headers, stream functions and the LiteX module.
+/// Adds the software files that the configuration asks for: the C model, the program that recomputes all results, functions for
+/// lines, register headers, stream functions and the LiteX module.
 ///
 /// # Errors
 /// Fails if the core cannot be written in one of these forms. For example, no C function can wait for a second `start`.

@@ -1,7 +1,7 @@
 //! Generates the bit-exact model of a core in C: a header, the functions, and an example in Python that calls them.
 //!
-//! A function computes the raw results of one point, or of a line of points, from raw operands. It is printed from the
-//! unrolled microprogram (`print`). A core that waits for a second `start` within a computation has no model.
+//! A function computes the raw results of one point, or of a line of points, from raw operands. The module `print` prints the
+//! function from the unrolled microprogram. A core that waits for a second `start` within a computation has no model.
 
 use glint_base::fill;
 use std::collections::BTreeMap;
@@ -201,6 +201,9 @@ fn result_ports(design: &Design) -> impl Iterator<Item = &Port> {
 
 /// Returns the lines of the C function that computes one point, and the ROMs that the function reads. `tables` has the names of
 /// the arrays with their words.
+///
+/// # Errors
+/// Fails if the microprogram cannot be unrolled.
 fn of_point(design: &Design, tables: &[String]) -> Result<(Vec<String>, Vec<RomId>)> {
     let unrolled = unroll_in_powers(design)?;
     let results: Vec<(&Port, NodeId)> = results_of(design, &unrolled).collect();
@@ -243,6 +246,9 @@ fn results_of<'a>(
 
 /// Returns the lines of the C function that computes a line of points, and the ROMs that the function reads. The function
 /// executes the core clock by clock until `done` is 1.
+///
+/// # Errors
+/// Fails if the design has no output `valid` or `done`.
 fn of_line(design: &Design, tables: &[String]) -> Result<(Vec<String>, Vec<RomId>)> {
     let Cycle { unrolled, held } = any_cycle(design);
     let graph = &unrolled.graph;

@@ -26,7 +26,8 @@ pub fn taken() -> Names {
     Names::new(TAKEN.split_ascii_whitespace())
 }
 
-/// Returns the name of a structure's member for a port: the port's name, changed if it is a reserved word of C.
+/// Returns the name of a structure's member for a port: the port's name, with a number added if C or the generated code uses this
+/// name. For example, `int` becomes `int_2`.
 pub fn field(port: &str) -> String {
     taken().fresh(port)
 }
@@ -127,7 +128,7 @@ impl<'a> Printer<'a> {
     }
 
     /// Returns whether the expression of a value still has the same value after C statements have assigned new values to
-    /// registers and memories. This is so if the value is constant or has a C variable of its own.
+    /// registers and memories. Returns true if the value is constant or has its own C variable.
     pub fn is_settled(&self, id: NodeId) -> bool {
         self.locals.contains_key(&id) || self.graph.constant_of(id).is_some()
     }

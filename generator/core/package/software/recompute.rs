@@ -163,6 +163,9 @@ fn in_comment(text: &str) -> String {
 }
 
 /// Returns the program for a formula of one operand.
+///
+/// # Errors
+/// Fails if the formula cannot be parsed, if the design lacks the operand or the result, or if the template fails.
 fn function_program(
     job: &EmitJob,
     design: &Design,
@@ -252,6 +255,9 @@ fn with_numbered_operands(formula: &Expression, facts: &ContractFacts) -> Expres
 }
 
 /// Returns the program for formulas of several operands.
+///
+/// # Errors
+/// Fails if a formula cannot be parsed, if the design lacks an operand or a result, or if the template fails.
 fn expression_program(
     job: &EmitJob,
     design: &Design,

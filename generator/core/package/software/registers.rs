@@ -17,7 +17,7 @@ use glint_rtl::verilog::text::{ascii, constant_name};
 /// A register as the templates print it.
 struct Printed<'a> {
     register: &'a BusRegister,
-    /// In upper case.
+    /// The name of the register in upper case, for constants in C and Rust.
     constant: String,
     fields: Vec<BitField<'a>>,
 }
@@ -25,7 +25,7 @@ struct Printed<'a> {
 /// A field of a register as the templates print it.
 struct BitField<'a> {
     bits: &'a RegisterBits,
-    /// In upper case.
+    /// The name of the field in upper case, for constants in C and Rust.
     constant: String,
 }
 

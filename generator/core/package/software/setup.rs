@@ -1,7 +1,7 @@
 //! Generates the host's part of a device that computes a line of points, in C and in Python.
 //!
 //! The host starts such a device once for a whole line. The generated functions compute the operands of a line from the vectors
-//! or angles at its two ends. They use the same formulas as `render::setup`, and tests compare the results.
+//! or angles at its two ends. The functions use the same formulas as `render::setup`, and tests compare the results.
 
 use anyhow::Result;
 use glint_base::fill;
@@ -32,15 +32,14 @@ struct LineSetup<'a> {
     /// the amplitude's format.
     full: f64,
     amplitude_scale: String,
-    /// The largest absolute value that an angle along the line may have, in right angles, after its multiplication by √(n/2)
-    /// for a device without exponent. It leaves one right angle of the format for rounding errors that add up along the
-    /// line.
+    /// The largest absolute value that an angle along the line may have, in right angles, after its multiplication by √(n/2) for
+    /// a device without exponent. The limit leaves one right angle of the format for rounding errors that add up along the line.
     room: f64,
     order: Vec<String>,
 }
 
 impl LineSetup<'_> {
-    /// Returns the number of raw values of an angle's format as a C literal, 2^width. They cover a full turn.
+    /// Returns the number of raw values of an angle's format as a C literal, 2^width. These values cover a full turn.
     fn turn(&self, angle: &CField) -> String {
         exp2(angle.format.width() as i32).to_string()
     }

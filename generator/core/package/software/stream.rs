@@ -1,7 +1,7 @@
 //! Generates `<name>_stream.h` and `<name>_stream.py`: functions that pack operands into the bytes of an AXI4-Stream, and unpack
 //! results.
 //!
-//! A program uses them to fill and to read the memory of a DMA engine that feeds the core's stream wrapper.
+//! A program uses these functions to fill and to read the memory of a DMA engine that feeds the core's stream wrapper.
 
 use anyhow::Result;
 use glint_base::fill;
@@ -18,7 +18,7 @@ struct TransferNumber {
     field: CField,
     port: String,
     first: u32,
-    /// The number of bytes that it occupies.
+    /// The number of bytes that the operand or result occupies.
     size: u32,
 }
 
@@ -27,12 +27,12 @@ impl TransferNumber {
         0..self.size
     }
 
-    /// Returns the C type of its bit pattern.
+    /// Returns the C type of the bit pattern of this operand or result.
     fn unsigned(&self) -> &'static str {
         if self.size <= 4 { "uint32_t" } else { "uint64_t" }
     }
 
-    /// Returns the C expression that joins its bytes in `transfer` to a bit pattern.
+    /// Returns the C expression that joins the bytes of this operand or result in `transfer` to a bit pattern.
     fn joined(&self) -> String {
         let kind = self.unsigned();
         let mut bytes = Vec::new();
@@ -99,7 +99,7 @@ impl Bytes {
 /// Adds the C header and the Python file that pack and unpack the transfers of the streams.
 ///
 /// # Errors
-/// Fails if a template fails.
+/// Fails if the core has no operands or no results, or if a template fails.
 pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<()> {
     let (name, regenerate) = (job.name(), job.regenerate());
     let (sent, received) = (Transfer::sent(job)?, Transfer::received(job)?);

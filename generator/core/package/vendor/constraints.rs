@@ -34,8 +34,8 @@ pub fn files(job: &EmitJob, tops: &[Top], clock_mhz: f64, files: &mut OutputFile
     Ok(())
 }
 
-/// Returns the period of a clock in nanoseconds with three decimals. It is rounded down, so that the constraint is never slower
-/// than the clock. For example, 130 MHz gives 7.692.
+/// Returns the period of a clock in nanoseconds with three decimals. The period is rounded down, so that the constraint is never
+/// slower than the clock. For example, 130 MHz gives 7.692.
 fn period(clock_mhz: f64) -> String {
     let picoseconds = libm::floor(1e6 / clock_mhz);
     format!("{:.3}", picoseconds / 1e3)

@@ -54,7 +54,7 @@ impl IpXactComponent<'_> {
         format!("{number:x}")
     }
 
-    /// Escapes a text for XML.
+    /// Returns `text` in ASCII, with the characters `&`, `<` and `>` escaped for XML.
     fn escaped(&self, text: &str) -> String {
         escaped(text)
     }
@@ -140,12 +140,13 @@ fn buses(top: &Top) -> Vec<BusInterface> {
     buses
 }
 
-/// Escapes a text for XML.
+/// Returns `text` in ASCII, with the characters `&`, `<` and `>` escaped for XML.
 fn escaped(text: &str) -> String {
     ascii(text).replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
-/// Returns `text` for an XML comment. Adjacent hyphens are separated by spaces, because XML forbids them in a comment.
+/// Returns `text` for an XML comment. Adjacent hyphens are separated by spaces, because XML forbids two adjacent hyphens in a
+/// comment.
 fn comment(text: &str) -> String {
     let mut apart = text.to_owned();
     while apart.contains("--") {

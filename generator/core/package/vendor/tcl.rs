@@ -9,11 +9,11 @@ use crate::package::output_files::OutputFiles;
 use crate::package::tops::{Top, TopPort};
 use glint_rtl::verilog::text::ascii;
 
-/// The FPGA of the build script for Vivado, unless the user names another: a small and common one.
+/// The FPGA of the build script for Vivado, unless the user names another FPGA. This FPGA is small and common.
 const VIVADO_PART: &str = "xc7a35tcsg324-1";
-/// The FPGA family of the build script for Quartus, unless the user names another.
+/// The FPGA family of the build script for Quartus, unless the user names another family.
 const QUARTUS_FAMILY: &str = "Cyclone V";
-/// The FPGA of the build script for Quartus, unless the user names another.
+/// The FPGA of the build script for Quartus, unless the user names another FPGA.
 const QUARTUS_DEVICE: &str = "5CEBA4F23C7";
 
 /// An interface of Platform Designer.
@@ -22,7 +22,7 @@ struct PlatformInterface<'a> {
     kind: &'static str,
     /// The side of the interface, as Platform Designer names it: `end` receives, `start` sends.
     side: &'static str,
-    /// The port and its role.
+    /// The ports of the interface, each with its role in the protocol.
     ports: Vec<(&'a TopPort, String)>,
 }
 

@@ -30,7 +30,7 @@ struct BenchRegister {
 /// runs to its end.
 ///
 /// # Errors
-/// Fails if the core lacks its handshake.
+/// Fails if the core lacks its handshake, operands or results, or if a template fails.
 pub fn files(job: &EmitJob, vectors: &Vectors, files: &mut OutputFiles) -> Result<()> {
     let (design, name) = (job.design, job.name());
     let points = points(design, vectors)?;
@@ -101,6 +101,9 @@ pub fn files(job: &EmitJob, vectors: &Vectors, files: &mut OutputFiles) -> Resul
 }
 
 /// Adds the bench of a wrapper in Python, if the core has a bench in Python too.
+///
+/// # Errors
+/// Fails if the template fails.
 fn add_python(job: &EmitJob, wrapper: &str, tests: &[&str], files: &mut OutputFiles) -> Result<()> {
     if job.inputs.example.is_some() && job.inputs.accuracy.is_some() {
         let name = job.name();
@@ -166,8 +169,8 @@ fn access(part: &PortBits, field: &StreamField, net: &str) -> BenchRegister {
     BenchRegister { at: address(part.place), word, mask: format!("32'h{:08x}", mask(part.width)) }
 }
 
-/// Returns the bus registers of the results. If the results share one register, they are adjacent in it, each in whole bytes,
-/// as in a stream.
+/// Returns the bus registers of the results. If several results share one register, the list has one entry, in which the results
+/// are adjacent, each in whole bytes, as in a stream.
 fn of_results(map: &Map, fields: &[StreamField]) -> Vec<BenchRegister> {
     if map.last() > map.last_operand() + 1 || fields.len() == 1 {
         return accesses(&map.results, fields, "result");

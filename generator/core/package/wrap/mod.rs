@@ -18,7 +18,8 @@ use glint_rtl::netlist::{Design, Port, Role};
 use glint_rtl::verilog::rows::separated;
 use glint_rtl::verilog::text::range;
 
-/// Adds the wrappers that the configuration asks for. If there is a bench, it also adds the wrappers' benches and proofs.
+/// Adds the wrappers that the configuration asks for. If there are test vectors, the function also adds the wrappers' benches and
+/// proofs.
 ///
 /// # Errors
 /// Fails if the core cannot have a wrapper that the configuration asks for. For example, a pipeline without stalls cannot
@@ -45,6 +46,9 @@ pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<()> {
 /// nothing if the configuration has no test vectors, and so no bench. `stubs` names the modules that `text` defines in place
 /// of modules that the wrapper instantiates. For example, the proof of `rough_axis` has a simple module `rough` in place of
 /// the core.
+///
+/// # Errors
+/// Fails if the template fails.
 fn add_proof(
     job: &EmitJob,
     wrapper: &str,
@@ -62,9 +66,9 @@ fn add_proof(
     Ok(())
 }
 
-/// Returns the port connections of the core's instance, the clock first. `to` returns the net for a port, given the port's
-/// role and name. If it returns `None`, an input is connected to `1'b0`, and an output to the wire that [`core_wire`]
-/// declares. For example, `.busy(core_busy)`.
+/// Returns the port connections of the core's instance, the clock first. `to` returns the net for a port, given the port's role
+/// and name. If `to` returns `None`, an input is connected to `1'b0`, and an output to the wire that [`core_wire`] declares. For
+/// example, `.busy(core_busy)`.
 fn connected(
     design: &Design,
     clock: &str,
@@ -87,8 +91,8 @@ fn core_wire(design: &Design, port: &Port) -> String {
     format!("wire {} core_{};", range(net.format.width()), net.name).replace("  ", " ")
 }
 
-/// Returns Verilog for the stub, the module that replaces the core in a proof. It lets the solver choose any values for the
-/// results and status bits of the stub in each clock.
+/// Returns Verilog for the stub, the module that replaces the core in a proof. This Verilog lets the solver choose any values for
+/// the results and status bits of the stub in each clock.
 fn stub_free(design: &Design) -> Vec<String> {
     let mut lines = Vec::new();
     for port in &design.ports {

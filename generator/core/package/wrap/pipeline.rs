@@ -1,5 +1,5 @@
-//! Generates `<name>_axis.v` for a pipeline: a wrapper that takes operands from one AXI4-Stream and puts results on another. It
-//! also generates the formal properties of the wrapper.
+//! Generates `<name>_axis.v` for a pipeline: a wrapper that takes operands from one AXI4-Stream and puts results on another
+//! AXI4-Stream. The module also generates the formal properties of the wrapper.
 
 use anyhow::{Result, ensure};
 use glint_base::fill;

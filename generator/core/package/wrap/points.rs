@@ -12,7 +12,7 @@ use crate::package::bench::packed;
 use glint_base::fixed::mask;
 use glint_rtl::netlist::{Design, Port, Role};
 
-/// The largest number of results in the list. A computation with which the list would exceed it is left out.
+/// The largest number of results in the list. A computation with which the list would exceed this number is left out.
 const RESULTS: usize = 4096;
 
 /// A finished computation from the vectors of a test bench: the bit patterns of its operands and results, in the order of the
@@ -155,8 +155,9 @@ fn streamed<'a>(rows: impl Iterator<Item = PortValues<'a>>) -> Option<Vec<BenchP
     Some(done)
 }
 
-/// Returns the input file of the wrapper's bench: for each computation a word with all operands, each padded to whole bytes.
-/// The padding bits are zeros for one computation and ones for the next, because the wrapper must ignore them.
+/// Returns the input file of the wrapper's bench: for each computation a word with all operands, each padded to whole bytes. The
+/// padding bits are alternately zeros for one computation and ones for the next computation, because the wrapper must ignore
+/// these bits.
 pub fn sent(points: &[BenchPoint], operands: &Transfer) -> String {
     let mut text = String::new();
     for (number, point) in points.iter().enumerate() {
@@ -171,8 +172,8 @@ pub fn sent(points: &[BenchPoint], operands: &Transfer) -> String {
 }
 
 /// Returns the output file of the wrapper's bench: a line for each result, with all outputs padded to whole bytes. A signed
-/// output is padded with copies of its sign bit, any other with zeros. If `is_line` is set, a further digit in front is 1
-/// for the last result of a computation, and 0 for every other result.
+/// output is padded with copies of its sign bit, and any other output with zeros. If `is_line` is set, a further digit in front
+/// is 1 for the last result of a computation, and 0 for every other result.
 pub fn received(points: &[BenchPoint], results: &Transfer, is_line: bool) -> String {
     let mut text = String::new();
     for point in points {

@@ -1,5 +1,5 @@
 //! Generates `<name>_axis.v` for a core with a microprogram: a wrapper that takes operands from one AXI4-Stream and puts results
-//! on another. It also generates the formal properties of the wrapper.
+//! on another AXI4-Stream. The module also generates the formal properties of the wrapper.
 
 use anyhow::{Context, Result};
 use glint_base::fill;
@@ -51,8 +51,8 @@ impl LineStream {
     }
 }
 
-/// Adds the stream wrapper of a core with a microprogram, and its proof. If the core computes several points after one
-/// `start`, it also adds a buffer for the results.
+/// Adds the stream wrapper of a core with a microprogram, and its proof. If the core computes several points after one `start`,
+/// the function also adds a buffer for the results.
 ///
 /// # Errors
 /// Fails if the core lacks the handshake of a microprogram, operands or results.

@@ -97,8 +97,8 @@ pub fn words(design: &Design, map: &Map) -> Vec<Word> {
     words
 }
 
-/// Returns the Verilog expression of one part of a port, extended to 32 bits. A signed result is extended with copies of its
-/// sign bit, any other port with zeros.
+/// Returns the Verilog expression of one part of a port, extended to 32 bits. A signed result is extended with copies of its sign
+/// bit, and any other port with zeros.
 fn extended(port: &PortPlacement, part: &PortBits, net: &str, is_result: bool) -> String {
     let width = port.format.width();
     let bits = format!("{net}{}", select(width, part.low, part.low + part.width - 1));

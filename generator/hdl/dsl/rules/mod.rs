@@ -16,8 +16,7 @@ pub(super) use operands::read_by;
 pub(super) use unused::warnings;
 
 /// Returns a diagnostic for every rule that `design` breaks. `views` has the nets that carry a product of a shared multiplier,
-/// each with the selection under which it is this product. `picked` has the select fields to which some microinstruction gives a
-/// value.
+/// each with the selection under which it is this product. `picked` has the fields to which some microinstruction gives a value.
 pub(super) fn check(
     design: &Design,
     views: &HashMap<NetId, SelectedProduct>,

@@ -7,7 +7,7 @@ use glint_base::codes;
 use glint_base::cone::reached;
 use glint_base::diagnostic::Diagnostic;
 
-/// Finds operands on which no output depends.
+/// Returns a diagnostic for each operand on which no output depends. The list is empty if every operand affects an output.
 pub(super) fn check(design: &Design) -> Vec<Diagnostic> {
     let used = used(design);
     let mut found = Vec::new();

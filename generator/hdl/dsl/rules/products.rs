@@ -25,9 +25,9 @@ struct Checker<'a> {
 }
 
 impl Checker<'_> {
-    /// Checks every register that microinstruction `at` loads. If its data depends on a shared product, the microinstruction must
-    /// select the operands of this product. If registers lie behind the selection, the microinstructions that many clocks earlier
-    /// must select them.
+    /// Checks every register that microinstruction `at` loads. If the data of a register depends on a shared product,
+    /// microinstruction `at` must select the operands of this product. If n registers lie behind the selecting mux, the
+    /// microinstructions n clocks earlier must select the operands.
     fn selections(&mut self, at: usize) {
         let design = self.design;
         let microprogram = &design.control.microprogram;

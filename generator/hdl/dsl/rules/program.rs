@@ -1,5 +1,5 @@
-//! Checks the microprogram of a description. It must raise `valid` only after the result is loaded, and select an input of every
-//! mux, and every loop must be able to end.
+//! Checks the microprogram of a description. The microprogram must raise `valid`, but only after the result is loaded. Some
+//! microinstruction must select an input of every mux. Every loop must be able to end.
 
 use std::collections::HashSet;
 
@@ -12,7 +12,7 @@ use glint_base::cone::reached;
 use glint_base::diagnostic::Diagnostic;
 
 /// Returns the mistakes of the microprogram: microinstructions that raise `valid` too early, or none that raises it, select lines
-/// without a choice, and loops that cannot end. `picked` has the select fields to which some microinstruction gives a value.
+/// without a choice, and loops that cannot end. `picked` has the fields to which some microinstruction gives a value.
 pub(super) fn check(design: &Design, picked: &HashSet<FieldId>) -> Vec<Diagnostic> {
     let mut found = early(design);
     found.extend(silent(design));
@@ -21,7 +21,8 @@ pub(super) fn check(design: &Design, picked: &HashSet<FieldId>) -> Vec<Diagnosti
     found
 }
 
-/// Returns a mistake if the design has a result, but no microinstruction raises `valid`.
+/// Returns a mistake if the design has a result, but no microinstruction raises `valid`. Returns `None` for a design whose
+/// `valid` follows a signal.
 fn silent(design: &Design) -> Option<Diagnostic> {
     let control = &design.control;
     let result = design.port(|role| role == Role::Result)?;
@@ -57,8 +58,9 @@ fn unpicked(design: &Design, picked: &HashSet<FieldId>) -> Vec<Diagnostic> {
     found
 }
 
-/// Finds microinstructions that raise `valid` while they load a register that a result shows. A path through the microprogram
-/// must lead to them without an earlier load of this register. In this clock the output does not yet show the result.
+/// Finds microinstructions that raise `valid` while they load a register that a result shows, so that the output shows the loaded
+/// value only in the next clock. If every path to the microinstruction loads the register before, the microinstruction is
+/// accepted.
 fn early(design: &Design) -> Vec<Diagnostic> {
     let control = &design.control;
     let mut found = Vec::new();
@@ -95,7 +97,7 @@ fn early(design: &Design) -> Vec<Diagnostic> {
     found
 }
 
-/// Returns the register that drives a net, or `None` if another kind of driver drives it.
+/// Returns the register that drives a net, or `None` if another kind of driver drives the net.
 fn register(design: &Design, id: NetId) -> Option<RegId> {
     match design.net(id).driver {
         Driver::Register(register) => Some(register),
@@ -135,7 +137,7 @@ fn cone(design: &Design, at: usize, net: NetId) -> HashSet<NetId> {
 }
 
 /// Finds loops that cannot end: no microinstruction of the loop changes a register on which the condition depends, and no other
-/// microinstruction leaves the loop.
+/// microinstruction leaves the loop or waits for `start`.
 fn endless(design: &Design) -> Vec<Diagnostic> {
     let control = &design.control;
     let mut found = Vec::new();

@@ -1,5 +1,5 @@
-//! Finds parts of a correct description that the device does not need. They are logic on which no output depends, muxes that
-//! always pass the same input, and choices that no microinstruction makes.
+//! Finds superfluous hardware in a description without mistakes: logic on which no output depends, muxes that always pass the
+//! same input, and choices that no microinstruction makes.
 
 use std::collections::HashSet;
 

@@ -16,7 +16,7 @@ pub(super) struct State {
     pub(super) roms: Vec<NodeId>,
 }
 
-/// One clock of the symbolic execution of a design: it finds the node of each net's value in this clock.
+/// One clock of the symbolic execution of a design. The struct finds the node of each net's value in this clock.
 pub(super) struct Clock<'e, 'a> {
     executor: &'e mut Executor<'a>,
     state: &'e State,

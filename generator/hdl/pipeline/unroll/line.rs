@@ -2,9 +2,9 @@
 //! to the next.
 //!
 //! The registers that carry state from one point to the next are called the *walk*, for example the register with the current
-//! angle. The module proves by induction that every point is the same function of the operands and the walk. It also proves that
-//! the first point loads functions of the operands into the walk, and every other point one function of the walk and the
-//! operands. A design for which the proof fails is refused.
+//! angle. The module proves by induction that every point is the same function of the operands and the walk. The module also
+//! proves that the first point loads functions of the operands into the walk, and that every other point loads the same function
+//! of the walk and the operands. If the proof fails, `unroll_line` returns an error.
 
 use super::{Clock, Executor, Iterations, State, Unrolled};
 use crate::netlist::{Design, NetId, RegisterKind, Role, Sequence};
@@ -16,8 +16,8 @@ use glint_base::diagnostic::{Diagnostic, Diagnostics};
 /// The largest number of clocks between the microinstruction that writes a point and the clock with the point's results.
 const MOST_DELAY: usize = 12;
 
-/// A computation with several results, such as the points of a scan line. It consists of a graph that computes the first point,
-/// and of the registers from which each later point is computed.
+/// A computation with several results, such as the points of a scan line. The struct has a graph that computes the first point,
+/// and the registers from which each later point is computed.
 #[derive(Debug)]
 pub struct UnrolledLine {
     /// The graph that computes the first point. Later points differ only in the registers of the walk, which carry state from
@@ -45,7 +45,8 @@ pub struct WalkRegister {
 /// # Errors
 /// Fails if the design has no output `valid`, or if `valid` follows no microinstruction within 12 clocks. Fails if the
 /// microprogram has no first point that is computed once and before all others. Fails if two points differ in the function that
-/// loads the walk or in the results, or if another microinstruction changes the walk.
+/// loads the walk or in the results, or if another microinstruction changes the walk. Fails if a result depends on a register or
+/// a memory word that an earlier computation has left.
 pub fn unroll_line(design: &Design) -> Result<UnrolledLine, Diagnostics> {
     let executor = Executor::new(design, Iterations::OneByOne);
     LineUnroller { executor }.line().map_err(|diagnostic| Diagnostics(vec![diagnostic]))
@@ -189,6 +190,9 @@ impl LineUnroller<'_> {
 
     /// Checks that the microinstruction `first` comes before all other microinstructions in `writes`, and that it is executed
     /// once.
+    ///
+    /// # Errors
+    /// Fails if another microinstruction in `writes` can come first, or if `first` can be executed again.
     fn in_order(&self, first: usize, writes: &[usize]) -> Result<(), Diagnostic> {
         let design = self.executor.design;
         // The search stops at microinstructions that write points.
@@ -211,7 +215,7 @@ impl LineUnroller<'_> {
     }
 
     /// Executes all microinstructions of `path` but the last, from `state` on. Returns the answer of `ask` in the clock of the
-    /// last one.
+    /// last microinstruction.
     fn at_end<T>(
         &mut self,
         state: &State,
@@ -253,8 +257,8 @@ fn successors(design: &Design, at: usize) -> Vec<usize> {
     }
 }
 
-/// Returns every path through the microprogram that begins at one of the microinstructions `from` and has `clocks` steps, which
-/// is one microinstruction more than `clocks`.
+/// Returns every path through the microprogram that begins at one of the microinstructions `from` and takes `clocks` clocks to
+/// its last microinstruction. Each path therefore has `clocks` + 1 microinstructions.
 fn paths(design: &Design, from: &[usize], clocks: usize) -> Vec<Vec<usize>> {
     let mut paths: Vec<Vec<usize>> = from.iter().map(|&at| vec![at]).collect();
     for _ in 0..clocks {

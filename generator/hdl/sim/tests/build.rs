@@ -8,7 +8,7 @@ use crate::netlist::{
 };
 use glint_base::fixed::{Format, mask};
 
-/// A design under construction. It has the input port `rst_n`, number 0.
+/// A design under construction, with the input port `rst_n`, number 0.
 pub struct Build {
     pub design: Design,
     pub rst_n: NetId,
