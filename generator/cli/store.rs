@@ -1,8 +1,11 @@
-//! Writes the generated files of a configuration to disk, and replaces no file of the user, unless the user gives `--force`.
+//! Writes the generated files of a configuration to disk, and deletes files that an earlier run wrote and that are no longer
+//! needed. If this would replace a file that Glint did not write, or that somebody edited since, the write fails and changes
+//! nothing, unless the user gives `--force`.
 //!
-//! All files are first written to a temporary directory next to the directories of the configuration, and then moved to their
-//! places one by one. A file that exists already is replaced only if the digests in the manifest show that Glint wrote it and
-//! nobody edited it since. A file that Glint neither wrote nor needs to write, such as an editor's swap file, is left alone.
+//! Glint recognises its files by the digests in the manifest. The manifest has no digest of itself: a manifest that can be read
+//! counts as Glint's, even if somebody edited it. All files are first written to a temporary directory in the output directory,
+//! and then moved to their places one by one. A file that Glint neither wrote nor needs to write, such as an editor's swap
+//! file, is left alone. With `--force`, a directory in the place of a file is deleted with its contents.
 
 mod staging;
 mod survey;

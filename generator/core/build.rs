@@ -1,7 +1,8 @@
 //! Build script: sets `GLINT_SOURCES` to a digest of the source files that an exhaustive check depends on.
 //!
-//! An exhaustive check that was interrupted, or divided among machines, may continue only with the same sources. `glint cosim`
-//! therefore compares this digest with the digest in the file of the check.
+//! An exhaustive check that was interrupted, or divided among machines, must continue with the same sources. This digest is
+//! therefore a part of `Core::fingerprint`. The file of a check has the fingerprint, and `glint cosim --exhaustive --resume`
+//! and `glint merge` compare it.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,5 +1,5 @@
-//! Adds the nodes that compute a function of one number: a table of polynomials, with the range reduction before it and after
-//! it.
+//! Adds the nodes that compute a function of one number: a table of polynomials and, if the function has a range reduction, the
+//! steps of the reduction before and after the table.
 //!
 //! A range reduction maps the operand to a number in a shorter domain, for which the table is made, and restores the result
 //! from the polynomial's value. For example, an odd function needs polynomials for x ≥ 0 only. The nodes before the table

@@ -1,5 +1,8 @@
-//! Finds the plan for the formulas of a statement, and proves the error of each result. The module caches the plans that it has
-//! found, and the refusals.
+//! Finds a plan for an [`ExpressionStatement`], which has the formulas, the domains of the operands and the allowed errors, and
+//! proves a bound on the error of each result.
+//!
+//! Of the plans that it tries, it chooses the one with the fewest estimated look-up tables. If no plan keeps the allowed
+//! errors, the search fails with a [`PlanRefusal`]. The module caches plans and refusals.
 
 use std::collections::HashMap;
 use std::sync::{Arc, LazyLock, Mutex};

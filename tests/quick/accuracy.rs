@@ -1,5 +1,5 @@
-//! Tests the error bounds of accuracy contracts: no error at random points exceeds the bound, in random configurations of every
-//! device.
+//! Tests the error bounds of accuracy contracts: no error at random points exceeds the bound, in random configurations of the
+//! devices of `Registry::catalogue`, which are the ten highlights and `function`.
 //!
 //! A default run draws a part of the configurations. Proofs over all control operands are recorded in `records/proofs/`, and
 //! `tests/quick/proofs.rs` checks these records.

@@ -1,5 +1,5 @@
-//! Tests the pages of the repository: the pages in `docs/devices/` are what Glint writes today, and the links on handwritten
-//! pages lead to existing files and headings.
+//! Tests the pages of the repository: the pages in `docs/devices/` are what Glint writes today, and the relative links in
+//! `README.md`, `CONTRIBUTING.md` and the handwritten pages below `docs/` lead to existing files and headings.
 
 use std::collections::BTreeSet;
 use std::fs;

@@ -36,11 +36,11 @@ struct EstimateRow {
     excess: String,
 }
 
-/// Runs `glint estimate`, which estimates area and clock frequency of a core on each FPGA family, without outside tools.
+/// Runs `glint estimate`, which estimates area and clock frequency of each core on each FPGA family, without outside tools.
 /// Returns true, because the command checks nothing.
 ///
 /// # Errors
-/// Fails if a configuration has problems.
+/// Fails if a configuration has problems, or if two configurations name the same module.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
     let mut estimates = Vec::new();

@@ -181,8 +181,9 @@ impl<'a> PointSource<'a> {
         }
     }
 
-    /// Returns a random raw value for operand number `at`, within its domain and often at an end of it or close to one. A
-    /// length is usually short, so that long computations do not take most of the time.
+    /// Returns a random raw value for operand number `at`, counted from 0, within the domain from which the operand is drawn.
+    /// The value is often an end of the domain, or near an end. In a domain with both signs it is also often near 0. A length
+    /// is usually short, so that long computations do not take most of the time.
     pub fn one(&self, random: &mut Random, at: usize) -> i64 {
         let (low, high) = self.operands[at].domain;
         if self.length != Some(at) || random.once_in(16) {

@@ -92,7 +92,8 @@ impl Top {
         ports
     }
 
-    /// Returns whether the module has an interrupt output, which is active as long as an interrupt is pending.
+    /// Returns whether the module has an interrupt output, `irq`. The output is 1 as long as an interrupt is pending and
+    /// enabled.
     pub fn interrupts(&self) -> bool {
         matches!(self.face, Face::Registers(_))
     }

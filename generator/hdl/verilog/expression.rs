@@ -151,7 +151,9 @@ impl<'a> Expressions<'a> {
         self.bits(&exact)
     }
 
-    /// Returns the net whose cell is written in place of the net `id`. Returns `None` if `id` is not exactly such a net.
+    /// Returns the net whose expression is written where the Verilog reads the net `id`: `id` itself, or the net whose bits
+    /// `id` passes on unchanged. Returns `None` if no expression is written there, because `id` is declared, is a constant, or
+    /// is other wiring.
     fn inline(&self, id: NetId) -> Option<NetId> {
         match self.plan.bits[id.index()].single() {
             Some(BitRun::Net { net, .. }) if self.plan.forms[net.index()] == NetForm::Inline => {

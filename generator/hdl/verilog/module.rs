@@ -305,8 +305,9 @@ impl<'a> Builder<'a> {
         lines
     }
 
-    /// Returns the declaration of a memory with its words, or the function with a case statement that replaces it if `style.case`
-    /// is true.
+    /// Returns the lines that declare a memory and fill it: with its words in an `initial` block if `style.inline` is true, and
+    /// otherwise from a memory file by `$readmemh` or `$readmemb`. If `style.case` is true, returns a function with a case
+    /// statement instead.
     fn memory(&mut self, id: RomId) -> Vec<String> {
         let design = self.plan.design;
         let rom = design.rom(id);

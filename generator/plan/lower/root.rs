@@ -120,8 +120,9 @@ impl Lowering<'_> {
     }
 
     /// Normalises a node whose values are not below 0, apart from rounding errors. The word is shifted to the left, so that a
-    /// fraction from 1/2 to below 1 remains; returns this fraction and the shift. If `by_pairs` is true, the shift has an even
-    /// number of bits, and the fraction is from 1/4. `range` must contain the exact values of the node.
+    /// fraction from 1/2 to below 1 remains; a word of 0 gives the fraction 0. Returns the fraction, the shift, and the word
+    /// before the shift. If `by_pairs` is true, the shift has an even number of bits and is counted in pairs, and the fraction
+    /// is from 1/4 to below 1. `range` must contain the exact values of the node. Fails if a node has too many bits.
     pub(super) fn octave(
         &mut self,
         node: NodeId,

@@ -240,9 +240,10 @@ impl Check {
         (self.steps)(subject)
     }
 
-    /// Runs the check, and calls `progress` with the number of newly finished steps. It always returns an answer: if a tool is
-    /// missing, the verdict is [`CheckVerdict::NotRun`]. If a tool fails, the verdict is [`CheckVerdict::Failed`], or
-    /// [`CheckVerdict::LimitReached`] if the tool was stopped at its time limit.
+    /// Runs the check, and calls `progress` with the number of newly finished steps. It always returns an answer. If a tool is
+    /// missing, the verdict is [`CheckVerdict::NotRun`]. If the check ends with an error, the verdict is
+    /// [`CheckVerdict::Failed`], or [`CheckVerdict::LimitReached`] if a tool was stopped at its time limit. A check can also
+    /// handle a failure of its tool itself: if Gappa finds no proof in time, the verdict is [`CheckVerdict::Unconfirmed`].
     pub fn run(&self, subject: &CheckSubject<'_>, progress: &(dyn Fn(u64) + Sync)) -> CheckAnswer {
         let begin = Instant::now();
         let (tools, finding) = self.find(subject, progress);

@@ -115,8 +115,9 @@ impl<'a> FormulaReader<'a> {
         Some(found)
     }
 
-    /// Parses relations with words of [`PROSE`] between them, up to a comma, a semicolon or the end. Returns `None` if the
-    /// parser does not understand the text.
+    /// Parses a clause, up to a comma outside parentheses, a semicolon or the end, and returns its MathML. A clause consists of
+    /// relations and words of [`PROSE`], with at least one word between two relations. Returns `None` if the clause is empty,
+    /// or if the parser does not understand it.
     fn clause(&mut self) -> Option<String> {
         let mut clause = String::new();
         let mut after_relation = false;
@@ -154,8 +155,8 @@ impl<'a> FormulaReader<'a> {
         Some(relation)
     }
 
-    /// Parses products with `+`, `-` and `+-` between them. A minus may precede the first one. Returns `None` if the parser
-    /// does not understand the text.
+    /// Parses products with `+`, `-` and `+-` between them, and returns their MathML. A minus may precede the first product.
+    /// Returns `None` if the parser does not understand the text.
     fn sum(&mut self) -> Option<String> {
         let mut sum = match self.sign(&["-"]) {
             Some(_) => "<mo>−</mo>".to_owned(),

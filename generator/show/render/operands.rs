@@ -266,7 +266,8 @@ impl Feed {
         self.takes(OperandMeaning::CosDgamma)
     }
 
-    /// Returns whether the device has the exponent n, or its logarithm, as an operand.
+    /// Returns whether an operand of the device gets the exponent n of the scene, or its logarithm to base 2. Returns false if
+    /// [`Feed::with`] got a fixed value for this operand.
     pub fn takes_exponent(&self) -> bool {
         self.takes(OperandMeaning::Exponent) || self.takes(OperandMeaning::Shift)
     }

@@ -1,4 +1,7 @@
-//! Tests `glint verify`: two runs give the same record and the same page, except for the timings.
+//! Tests `glint verify --without-tools`, which leaves out the checks that need other programs.
+//!
+//! Two runs give the same record, and the same page except for the timings. The record has the expected verdicts and the
+//! digests of the files that `glint generate` writes.
 
 use crate::common::json::Json;
 use crate::workspace::Workspace;

@@ -63,7 +63,8 @@ impl SideBySide {
     /// Makes the simulator of a design from `machine`, which must have been compiled from the same design, and resets it.
     ///
     /// # Errors
-    /// Fails if design and contract do not have the same operands and outputs, or if the design is a pipeline.
+    /// Fails if the design is a pipeline or lacks a port of the handshake. Fails also if design and contract do not have the
+    /// same operands, if the strobe of an operand is not an input, or if the design lacks an output of the contract.
     pub fn new(
         design: &Design,
         contract: &dyn Contract,

@@ -1,9 +1,11 @@
-//! Writes a C program that computes the results of a core for every combination of operands, and compares them with the formulas.
+//! Writes a C program that computes the results of a core with its C model for every combination of operands, and compares them
+//! with the formulas.
 //!
-//! The program evaluates the formulas with the multiple-precision library MPFR, so that its verdict does not depend on
-//! Glint's own arithmetic. The program for a core with one formula of one operand uses MPFR at every operand. A core of the
-//! device `expression` has up to 2^32 combinations. Its program evaluates the formulas in double precision first, and uses
-//! MPFR only if the rounding errors of doubles leave the verdict open.
+//! The program evaluates the formulas with the multiple-precision library MPFR, so that its verdict does not depend on Glint's
+//! own arithmetic. For a core with one formula of one operand, it uses MPFR at every operand. For a core of the device
+//! `expression`, it evaluates the formulas in double precision first, and uses MPFR only if rounding errors leave the verdict
+//! open. There is no program for an expression with more than 2^32 combinations, for a core with a result that wraps, or for
+//! any other contract: [`check`] refuses it.
 
 use anyhow::Result;
 

@@ -1,6 +1,9 @@
 //! Records the waveform of one computation, or of several points in a pipeline, with the built-in simulator.
 //!
-//! A waveform has one lane for each signal. A waveform can be written as JSON for the drawing tool WaveDrom.
+//! A waveform has a lane for the clock and for each recorded signal. In a core with a microprogram, these are the handshake,
+//! the microinstruction, the registers that change, and the results. In a pipeline, they are the handshake, the operands, the
+//! results and the status outputs. A waveform of more than 40 clocks keeps only the first 24 and the last 8. It can be written
+//! as JSON for the drawing tool WaveDrom.
 
 use anyhow::Result;
 use serde_json::{Value, json};
