@@ -137,7 +137,10 @@ fn the_bound_of_a_device_of_a_user_is_printed() {
     let file = dir.path().join("s.toml");
     let text = succeeded(cargo_example("smoothstep").arg("certify").arg(&file));
     assert!(text.contains("certified: |output - formula| <= 0.6"), "{text}");
-    assert!(text.contains("a bound that is found, as the contract states none"), "{text}");
+    assert!(
+        text.contains("with a bound that Gappa found, because the contract states none"),
+        "{text}"
+    );
 }
 
 /// A bound that is found for a device of the catalogue is no more than its author has proved, and no less than an error that is

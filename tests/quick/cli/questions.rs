@@ -129,8 +129,8 @@ fn options_of_new_set_keys() {
     dir.write("file.toml", text.replace("exponent.bits = 8", "exponent.bits = 6"));
     dir.done(["generate", "file.toml"]);
     for (setting, part) in [
-        ("exponent.bits", "a key and a value are wanted"),
-        ("a b=1", "`a b` is no name of a key"),
+        ("exponent.bits", "expected KEY=VALUE"),
+        ("a b=1", "`a b` cannot be the name of a key"),
         ("exponent.bit=8", "did you mean `exponent.bits`?"),
         ("exponent.bits=80", "`exponent.bits` = 80 is out of range"),
     ] {

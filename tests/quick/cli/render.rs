@@ -266,7 +266,7 @@ fn a_million_triangles_are_read() {
 #[test]
 fn a_mesh_is_text() {
     let dir = Workspace::with("binary.obj", [0x76, 0x20, 0xff, 0xfe]);
-    dir.glint(render(&["--mesh", "binary.obj"])).refused(1, &["it is not text"]);
+    dir.glint(render(&["--mesh", "binary.obj"])).refused(1, &["the file is not UTF-8 text"]);
 }
 
 #[test]
