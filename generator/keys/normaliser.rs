@@ -34,8 +34,7 @@ pub(super) fn inverse() -> Key {
         "inverse.fraction",
         20,
         6..=24,
-        "Number of fraction bits R of the inverse root, whose format \
-                                                  is u1.R.",
+        "Number of fraction bits R of the inverse root, whose format is u1.R.",
     )
 }
 

@@ -35,7 +35,8 @@ pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<()> {
         return Ok(());
     };
     let name = job.naming.multiplier();
-    let title = format!("{name}: a multiplier with an output register, which loads while `enable` is high");
+    let title =
+        format!("{name}: a multiplier with an output register, which loads while `enable` is high");
     let header = |form: &str| -> Vec<String> {
         let mut lines = comment(0, &title);
         lines.push("//".to_owned());

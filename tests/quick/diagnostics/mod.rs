@@ -88,7 +88,7 @@ fn a_mistake_names_its_code_and_the_command_that_explains_it() {
         text.starts_with("error[G0401]: the design has no microprogram\n  --> tests/"),
         "{text}"
     );
-    assert!(text.ends_with("\n`glint explain G0401` says more"), "{text}");
+    assert!(text.ends_with("\n`glint explain G0401` explains the mistake"), "{text}");
 }
 
 #[test]
