@@ -276,7 +276,10 @@ fn results_that_depend_on_the_past_and_results_that_never_come_are_refused() {
     };
     let silent = Device { contract: |_| sum_model(false).contract(Sum), ..sum };
     for (device, expected) in [
-        (sum, "`sum_out` depends on what `earlier` held before the computation; load `earlier`"),
+        (
+            sum,
+            "`sum_out` depends on the value that `earlier` had before the computation; load `earlier`",
+        ),
         (silent, "shows no result within"),
     ] {
         let config = Config::defaults(&(device.schema)(), "sum");

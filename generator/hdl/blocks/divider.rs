@@ -60,15 +60,17 @@ impl<'d> Divider<'d> {
     ) -> Self {
         let part = |suffix: &str| format!("{name}_{suffix}");
         if bits < 2 {
-            let message = format!("divider `{name}` gives {bits} bits: ask for two or more");
+            let message = format!(
+                "divider `{name}` has a quotient of {bits} bits: request at least two bits"
+            );
             d.error(codes::WIDE, message);
         }
         for operand in [dividend, divisor] {
             let (low, high) = operand.range();
             if low < 0 {
                 d.error(codes::SIGN, format!(
-                    "divider `{name}`: `{}` has values from {low} to {high} ulp: divide magnitudes, or narrow it to a format \
-                     without a sign, which saturates at 0",
+                    "divider `{name}`: `{}` has values from {low} to {high} ulp: divide absolute values, or \
+                     narrow the operand to an unsigned format, which saturates at 0",
                     operand.name()
                 ));
             }
@@ -93,14 +95,15 @@ impl<'d> Divider<'d> {
             .doc("the quotient; each step shifts in one bit");
         let most = i128::from(quotient_bits) - 1;
         let last = d.raw_constant(&part("last"), most, Format::holding(0, most, 0));
-        let remaining = d.down_counter(&part("remaining"), last).doc("quotient bits after the next one");
+        let remaining =
+            d.down_counter(&part("remaining"), last).doc("quotient bits after the next one");
 
         let doubled = remainder.q().shift_left(1).with_fraction(frac);
-        let trial =
-            d.sub(&part("trial"), doubled, held.q()).doc("negative if the divisor exceeds the remainder");
+        let trial = d
+            .sub(&part("trial"), doubled, held.q())
+            .doc("negative if the divisor exceeds the remainder");
         let negative = trial.bit(trial.format().width() - 1);
-        let bit =
-            d.not(&part("bit"), negative).doc("the next quotient bit: 1 if the divisor fits");
+        let bit = d.not(&part("bit"), negative).doc("the next quotient bit: 1 if the divisor fits");
         let left = d.choose(&part("left"), bit, [doubled, trial]);
         let stepped = cut(&part("stepped"), left);
         let source = d.mux(&part("source"), [dividend, stepped]);
@@ -115,7 +118,9 @@ impl<'d> Divider<'d> {
             source,
             dividend,
             stepped,
-            more: d.any(&part("more"), remaining.q()).doc("1 if the next quotient bit is not the last"),
+            more: d
+                .any(&part("more"), remaining.q())
+                .doc("1 if the next quotient bit is not the last"),
         }
     }
 
