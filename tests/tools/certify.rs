@@ -272,7 +272,7 @@ fn what_cannot_be_stated_says_which_step() {
         statements(&design, contract.as_ref(), Duration::MAX).map(|_| ())
     };
     let step = step_of("quad-cosine").expect_err("a power by a dictionary");
-    assert!(step.starts_with("`{` is no part of a formula, `{1: 1, 2: 2,"), "{step}");
+    assert!(step.starts_with("`{` cannot be a part of a formula, `{1: 1, 2: 2,"), "{step}");
     let step = step_of("rough").expect_err("a square root");
     assert_eq!(step, "the function `sqrt` has no translation");
 }
