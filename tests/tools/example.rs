@@ -73,7 +73,7 @@ fn every_command_works() {
     let refused = run(directory, &["render", "f.toml", "--out", "out.png"]);
     let errors = String::from_utf8_lossy(&refused.stderr);
     assert_eq!(refused.status.code(), Some(1), "{errors}");
-    for part in ["cannot supply `cos_half`", "`f0` (", "it supplies cos_gamma, exponent"] {
+    for part in ["cannot compute `cos_half`", "`f0` (", "it computes only cos_gamma, exponent"] {
         assert!(errors.contains(part), "no `{part}` in {errors}");
     }
 }

@@ -148,7 +148,7 @@ fn power_of_two(value: f64) -> Option<i32> {
 
 /// Returns the error message for a function in a contract's formula that the prover Gappa does not have.
 pub fn untranslated(function: Function) -> String {
-    format!("the function `{}` has no translation", function.name())
+    format!("the function `{}` cannot be written for Gappa", function.name())
 }
 
 /// Returns all branches of a contract's formula, as terms for a Gappa script. A formula without conditions has one branch.
@@ -170,7 +170,9 @@ pub fn branches(
         Kind::Number(literal) => Ok(unconditional(terms.number(literal.nearest()))),
         Kind::Operand(name) => Ok(unconditional(operand(name, setting, terms)?)),
         Kind::Word(rom, place) => Ok(unconditional(word(rom, place, setting, terms)?)),
-        Kind::Constant(name, _) => Err(format!("the constant `{name}` has no translation")),
+        Kind::Constant(name, _) => {
+            Err(format!("the constant `{name}` cannot be written for Gappa"))
+        }
         Kind::Unary(Function::Negate, a) => {
             let zero = Expression::new(Kind::Number(Literal::zero()), formula.span.clone());
             operation([&zero, a], RealTerm::Sub, setting, terms)
@@ -181,8 +183,8 @@ pub fn branches(
         Kind::Binary(Operator::Mul, a, b) => operation([a, b], RealTerm::Mul, setting, terms),
         Kind::Binary(Operator::Div, a, b) => operation([a, b], RealTerm::Div, setting, terms),
         Kind::Binary(Operator::Power, base, exponent) => {
-            let exponent =
-                constant(exponent, setting).ok_or("a power with an exponent that varies")?;
+            let exponent = constant(exponent, setting)
+                .ok_or("a power with a varying exponent cannot be written for Gappa")?;
             if let Some(base) = constant(base, setting) {
                 return Ok(unconditional(terms.number(libm::pow(base, exponent))));
             }
@@ -192,9 +194,11 @@ pub fn branches(
             }
             Ok(found)
         }
-        Kind::Binary(Operator::Mod, ..) => Err("the operator `%` has no translation".to_owned()),
+        Kind::Binary(Operator::Mod, ..) => {
+            Err("the operator `%` cannot be written for Gappa".to_owned())
+        }
         Kind::Binary(Operator::Atan2, ..) => {
-            Err("the function `atan2` has no translation".to_owned())
+            Err("the function `atan2` cannot be written for Gappa".to_owned())
         }
         Kind::Binary(operator @ (Operator::Max | Operator::Min), a, b) => {
             let mut found = Vec::new();
@@ -301,11 +305,13 @@ fn word(
     let (name, range) = match &place.kind {
         Kind::Operand(name) => (name.as_str(), setting.ranges.get(name).copied()),
         Kind::Number(literal) => ("", Some((literal.nearest(), literal.nearest()))),
-        _ => return Err(format!("`{rom}` is read at an address that is computed")),
+        _ => return Err(format!("the formula reads `{rom}` at a computed address")),
     };
     let (low, high) = range.ok_or_else(|| format!("there is no operand `{name}`"))?;
     if setting.operands.iter().any(|operand| operand.name == name && operand.format.frac != 0) {
-        return Err(format!("`{rom}` is read at an operand with a fraction, `{name}`"));
+        return Err(format!(
+            "the formula reads `{rom}` at an operand with fraction bits, `{name}`"
+        ));
     }
     let Some(read) = words.get(low as usize..=high as usize) else {
         return Err(format!("there is no word {high} in `{rom}`"));
