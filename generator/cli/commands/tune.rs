@@ -28,7 +28,7 @@ use glint_prove::tune::{self, Answer, Candidate, ErrorUnit, Objective, TuningGoa
 /// The command compares the error bound of the accuracy contract with --error, so the result keeps the error for all
 /// operands of the domain. It searches the keys that change neither ports nor formula. It searches keys that add
 /// microinstructions, such as one multiplier for several products, only with --rate, with --objective dsps, or if nothing
-/// else fits the chip. Of two configurations with equal cost, it takes the one with the smaller error. Formats, domain and
+/// else fits the chip. If two configurations have equal cost, it takes the one with the smaller error. Formats, domain and
 /// formula keep their defaults or the values of --set. Area and clock are estimates that were fitted to synthesis results;
 /// `glint synth` measures the result.
 #[derive(Args)]
