@@ -298,7 +298,7 @@ impl TargetFunction {
             key: "function.formula",
             place: Some(fault.span.clone()),
             message: format!("at x = {x}: {}", fault.message),
-            remedy: "keep such places out of the domain: change function.from or function.to"
+            remedy: "exclude such operands from the domain: change function.from or function.to"
                 .to_owned(),
         }
     }
@@ -431,7 +431,8 @@ impl Piecewise {
         let result = self.restored(raw, sums[0]);
         let mut all = sums.iter().zip(&self.sums).chain([(&result, &self.result)]);
         if let Some((sum, format)) = all.find(|(sum, format)| !format.holds(i128::from(**sum))) {
-            let message = format!("at the operand {raw} a sum is {sum}, which is not {format}");
+            let message =
+                format!("at the raw operand {raw}, a sum is {sum}, which does not fit {format}");
             return Err(Refusal::new("result.fraction", message, "change the formats"));
         }
         let limits = function.limits(raw).map_err(|fault| function.refusal(raw, &fault))?;
@@ -440,7 +441,8 @@ impl Piecewise {
         // A difference of 0 is exact. Any other difference may have been rounded down.
         let error = if difference == 0.0 { 0.0 } else { difference.next_up() };
         if error >= function.error {
-            let message = format!("at the operand {raw} the result is {error:.4} units off");
+            let message =
+                format!("at the raw operand {raw}, the error of the result is {error:.4} units");
             return Err(Refusal::new("result.error", message, "allow a larger error"));
         }
         Ok(error)

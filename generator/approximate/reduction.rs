@@ -200,11 +200,16 @@ impl Reduction {
         wider: bool,
     ) -> Result<(Self, TargetFunction), Refusal> {
         let Curve::Formula(formula) = &function.curve else {
-            return refused("samples have no identity", "\"none\"");
+            return refused(
+                "samples cannot have a range reduction",
+                "set approximation.reduction to \"none\"",
+            );
         };
         let whole = Whole { function, formula, guard };
         let (rule, bits, text) = match identity {
-            Identity::None => return refused("there is no identity", "leave it out"),
+            Identity::None => {
+                return refused("there is no identity", "remove approximation.reduction");
+            }
             Identity::Odd => whole.size(true, wider)?,
             Identity::Even => whole.size(false, wider)?,
             Identity::Quadrants => whole.quadrants()?,
@@ -212,12 +217,15 @@ impl Reduction {
             Identity::Exponent => whole.exponent()?,
         };
         if bits == 0 || bits > MOST {
-            let message = format!("a reduced operand has {bits} bits, and not 1 to {MOST}");
-            return refused(&message, "other fraction bits, or another domain");
+            let message =
+                format!("a reduced operand would have {bits} bits, but 1 to {MOST} are possible");
+            return refused(&message, "set other fraction bits, or another domain");
         }
         let place = formula.span.clone();
         let (fraction, text) = text;
-        let inner = parse(&text).map_err(|fault| Refusal::new(KEY, fault.message, "\"none\""))?;
+        let inner = parse(&text).map_err(|fault| {
+            Refusal::new(KEY, fault.message, "set approximation.reduction to \"none\"")
+        })?;
         let reduced = formula.substitute(&Expression::operand("x"), &inner, &place);
         let last = match rule {
             Rule::Size(_) if wider => function.domain.0.abs().max(function.domain.1),
@@ -260,7 +268,10 @@ fn refused<T>(message: &str, remedy: &str) -> Result<T, Refusal> {
 
 /// Returns the refusal of a formula for which the identity does not hold. `wanted` is the reason, as text for the user.
 fn unlike<T>(wanted: &str) -> Result<T, Refusal> {
-    refused(&format!("the formula has no such identity: {wanted}"), "\"none\", or another")
+    refused(
+        &format!("the formula does not satisfy this identity: {wanted}"),
+        "set approximation.reduction to \"none\" or to another identity",
+    )
 }
 
 fn near(a: f64, b: f64) -> bool {
@@ -324,7 +335,10 @@ impl Whole<'_> {
         let TargetFunction { domain: (first, last), operand: Format { frac, .. }, .. } =
             *self.function;
         if first >= 0 || last < 0 {
-            return refused("the domain is on one side of 0", "\"none\", or change function.from");
+            return refused(
+                "the domain is on one side of 0",
+                "set approximation.reduction to \"none\", or change function.from",
+            );
         }
         let centre = if odd { 2.0 * self.at(0.0)? } else { 0.0 };
         let ends = last.min(-first) as f64 * exp2(-frac);
@@ -351,8 +365,9 @@ impl Whole<'_> {
         let count = last - first + 1;
         let quarter = count / 4;
         if count < 8 || !(count as u64).is_power_of_two() || first % quarter != 0 {
-            let message = "the domain is no period of four quadrants with a power of two operands";
-            return refused(message, "scale the operand, as in sin(2 * pi * x) from 0 to 1");
+            let message = "the domain is not one period of four quadrants, with a power of two as the number \
+                           of operands";
+            return refused(message, "scale the operand, for example sin(2 * pi * x) from 0 to 1");
         }
         let mut values = [0.0; 8];
         for (eighth, value) in values.iter_mut().enumerate() {
@@ -360,7 +375,7 @@ impl Whole<'_> {
             *value = self.at(raw as f64 * exp2(-frac))?;
         }
         let Some(phase) = (0..4).find(|phase| is_sine(&values, *phase)) else {
-            return unlike("its quadrants are not those of a sine");
+            return unlike("the quadrants of the formula are not the quadrants of a sine");
         };
         let from = first + (-(phase as i64) * quarter - first).rem_euclid(count);
         let text = format!("x + {}", from as f64 * exp2(-frac));
@@ -370,7 +385,10 @@ impl Whole<'_> {
     fn octaves(&self) -> ReductionResult {
         let TargetFunction { domain: (first, last), operand: format, .. } = *self.function;
         if first < 0 || last < 8 || last.ilog2() < first.max(1).ilog2() + 2 {
-            return refused("the domain has not three octaves above 0", "\"none\"");
+            return refused(
+                "the domain does not have three octaves above 0",
+                "set approximation.reduction to \"none\"",
+            );
         }
         let (low, high) = (first.max(1).ilog2() as i32, last.ilog2() as i32);
         let (mut steps, mut ratios) = (Vec::new(), Vec::new());
@@ -393,12 +411,12 @@ impl Whole<'_> {
         {
             (ratio % 2.0 != 0.0, ratio, 0.0)
         } else {
-            return unlike("f(4x) is neither a power of two times f(x) nor a constant more");
+            return unlike("f(4x) is neither f(x) times a power of two nor f(x) plus a constant");
         };
         if first == 0 && !rises {
             return refused(
-                "function.from is 0, and 0 is in no octave",
-                "change function.from to the least operand above 0",
+                "function.from is 0, and 0 does not belong to any octave",
+                "set function.from to the smallest operand above 0",
             );
         }
         // The octave, or the pair of octaves, for which the polynomial is fitted: the one with the largest results.
@@ -437,7 +455,7 @@ impl Whole<'_> {
             let x = from + (to - from) * part;
             let wanted = self.logarithm_at(from)? + slope * (x - from);
             if !slope.is_normal() || !near(self.logarithm_at(x)?, wanted) {
-                return unlike("its logarithm is no straight line");
+                return unlike("the logarithm of the formula is not a straight line");
             }
         }
         // The distance between two operands for which one result is twice the other.
@@ -453,16 +471,17 @@ impl Whole<'_> {
             let factor = exp2(cut as i32 + bits - frac) / unit;
             if factor.abs() >= exp2(40) {
                 return refused(
-                    "the operand's factor has more than 40 bits",
-                    "fewer fraction bits",
+                    "the factor of the operand would have more than 40 bits",
+                    "set fewer fraction bits",
                 );
             }
             (Some(((factor + 0.5).floor() as i64, cut)), bits)
         };
         if bits < 1 || bits > MOST as i32 {
-            let message =
-                format!("the fraction of the exponent has {bits} bits, and not 1 to {MOST}");
-            return refused(&message, "other fraction bits");
+            let message = format!(
+                "the fraction of the exponent would have {bits} bits, but 1 to {MOST} are possible"
+            );
+            return refused(&message, "set other fraction bits");
         }
         let falls = slope < 0.0;
         let whole = exponent(scale, if falls { first } else { last }) >> bits;

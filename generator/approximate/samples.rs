@@ -74,20 +74,20 @@ impl Samples {
 fn read_point(point: &str, fraction: u32, domain: (i64, i64)) -> Result<(i64, Enclosure), Refusal> {
     let numbers = point.split_once(',').and_then(|(x, y)| Some((parse(x).ok()?, number(y)?)));
     let Some((x, y)) = numbers.filter(|(x, _)| x.enclose(&[]).is_ok()) else {
-        let message = format!("the sample `{point}` is no pair of numbers");
-        return Err(Refusal::new(KEY, message, "a number for x, a comma and a number for y"));
+        let message = format!("the sample `{point}` is not a pair of numbers");
+        return Err(Refusal::new(KEY, message, "write a number for x, a comma and a number for y"));
     };
     let Some(raw) = raw_operand(&x, fraction) else {
         let message =
-            format!("the sample `{point}` is at no operand with {fraction} fraction bits");
-        let remedy = "more operand.fraction bits, or number the samples: 0, 1, 2 …";
+            format!("x of the sample `{point}` is not an operand with {fraction} fraction bits");
+        let remedy = "set a larger operand.fraction, or number the samples: 0, 1, 2 …";
         return Err(Refusal::new(KEY, message, remedy));
     };
     match i64::try_from(raw) {
         Ok(raw) if (domain.0..=domain.1).contains(&raw) => Ok((raw, y)),
         _ => {
             let message = format!("the sample `{point}` is outside the domain");
-            let remedy = "change function.from or function.to, or leave it out";
+            let remedy = "change function.from or function.to, or remove the sample";
             Err(Refusal::new(KEY, message, remedy))
         }
     }
@@ -107,7 +107,7 @@ fn check_points(
     for pair in points.windows(2) {
         if pair[0].0 == pair[1].0 {
             let message = format!("there are two samples for x = {}", pair[0].0 as f64 * unit);
-            return Err(Refusal::new(KEY, message, "keep one of the two, or their mean"));
+            return Err(Refusal::new(KEY, message, "keep one of the two samples, or their mean"));
         }
     }
     let first = points.first().map(|point| point.0);
@@ -116,7 +116,11 @@ fn check_points(
         let missing = if first == Some(domain.0) { domain.1 } else { domain.0 };
         let x = missing as f64 * unit;
         let message = format!("there is no sample at the end of the domain, x = {x}");
-        return Err(Refusal::new(KEY, message, "add it, or let the domain end at a sample"));
+        return Err(Refusal::new(
+            KEY,
+            message,
+            "add a sample there, or let the domain end at a sample",
+        ));
     }
     let steps: Vec<i64> = points.windows(2).map(|pair| pair[1].0 - pair[0].0).collect();
     if steps.len() <= 2 {
@@ -128,7 +132,7 @@ fn check_points(
         if *step > GAP * before.max(after) {
             let [from, to] = [at, at + 1].map(|at| points[at].0 as f64 * unit);
             let message = format!("there is a gap between the samples at x = {from} and {to}");
-            let remedy = "add samples there, or make two functions of it";
+            let remedy = "add samples there, or describe two functions with separate domains";
             return Err(Refusal::new(KEY, message, remedy));
         }
     }
@@ -222,14 +226,17 @@ mod tests {
         let samples = Samples::read(near, 20, ((1 << 20) - 2, 1 << 20)).unwrap();
         assert_eq!(samples.limits((1 << 20) - 1), Enclosure::exactly(0.5));
         for (text, message) in [
-            ("0,0 1,1 3,x", "the sample `3,x` is no pair of numbers"),
-            ("0,0 1 3,1", "the sample `1` is no pair of numbers"),
-            ("0,0 0.25,1 3,1", "the sample `0.25,1` is at no operand with 1 fraction bits"),
+            ("0,0 1,1 3,x", "the sample `3,x` is not a pair of numbers"),
+            ("0,0 1 3,1", "the sample `1` is not a pair of numbers"),
+            ("0,0 0.25,1 3,1", "x of the sample `0.25,1` is not an operand with 1 fraction bits"),
             ("0,0 3.5,1", "the sample `3.5,1` is outside the domain"),
             ("0,0 1,1 1.0,1 3,1", "there are two samples for x = 1"),
             ("1,1 3,1", "there is no sample at the end of the domain, x = 0"),
             ("0,0 1,1", "there is no sample at the end of the domain, x = 3"),
-            ("0,0 0.5,1 2.75,1 3,1", "the sample `2.75,1` is at no operand with 1 fraction bits"),
+            (
+                "0,0 0.5,1 2.75,1 3,1",
+                "x of the sample `2.75,1` is not an operand with 1 fraction bits",
+            ),
             ("0,0 0.5,1 3,1", "there is no gap"),
             ("0,0 0.5,1 1,1 3,1", "there is no gap"),
             ("0,0 0.5,1 2.5,1 3,1", "there is no gap"),

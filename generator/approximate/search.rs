@@ -69,13 +69,17 @@ pub(super) fn search(function: &TargetFunction, wish: Wish) -> Result<Piecewise,
         return Err(Refusal::new(
             "operand.fraction",
             format!("operands of the domain have {bits} bits, more than {WIDEST}"),
-            format!("at most {}", function.operand.frac - (bits - WIDEST) as i32),
+            format!(
+                "set operand.fraction to at most {}",
+                function.operand.frac - (bits - WIDEST) as i32
+            ),
         ));
     }
     if matches!(function.curve, Curve::Samples(_)) && function.is_wide() {
-        let message =
-            format!("of samples every operand is computed, and there are more than 2^{MOST_BITS}");
-        return Err(Refusal::new("operand.fraction", message, "fewer operand.fraction bits"));
+        let message = format!(
+            "with samples, Glint computes every operand, and the domain has more than 2^{MOST_BITS} operands"
+        );
+        return Err(Refusal::new("operand.fraction", message, "set a smaller operand.fraction"));
     }
     if let Some(found) = attempt(function, wish)? {
         return Ok(found);
@@ -89,7 +93,7 @@ pub(super) fn search(function: &TargetFunction, wish: Wish) -> Result<Piecewise,
         Some(degree) => format!("degree {degree} does not keep"),
         None => format!("no degree up to {DEGREES} keeps"),
     };
-    let fewer = "fewer operand.fraction or result.fraction bits";
+    let fewer = "set a smaller operand.fraction or result.fraction";
     Err(Refusal::new(
         "result.error",
         format!(
@@ -97,7 +101,7 @@ pub(super) fn search(function: &TargetFunction, wish: Wish) -> Result<Piecewise,
             function.error
         ),
         match reached {
-            Some(error) => format!("{error} is reached; or {fewer}"),
+            Some(error) => format!("set result.error to {error}, or {fewer}"),
             None => fewer.to_owned(),
         },
     ))
@@ -164,8 +168,15 @@ fn variants(identity: Identity) -> &'static [(u32, bool)] {
 /// if the found approximation cannot be proved.
 fn attempt_reduced(function: &TargetFunction, wish: Wish) -> Result<Option<Piecewise>, Refusal> {
     if function.is_wide() {
-        let message = format!("the domain has more than 2^{MOST_BITS} operands to be computed");
-        return Err(Refusal::new(KEY, message, "\"none\", or fewer operand.fraction bits"));
+        let message = format!(
+            "with a reduction, Glint computes every operand, and the domain has more than 2^{MOST_BITS} \
+             operands"
+        );
+        return Err(Refusal::new(
+            KEY,
+            message,
+            "set approximation.reduction to \"none\", or set a smaller operand.fraction",
+        ));
     }
     for &(guard, wider) in variants(wish.identity) {
         let (reduction, inner) = Reduction::of(wish.identity, function, guard, wider)?;

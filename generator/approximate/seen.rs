@@ -71,8 +71,8 @@ impl TargetFunction {
     fn right(&self, raw: i64, stricter: f64) -> Result<(i64, i64, i64), Refusal> {
         let limits = self.limits(raw).map_err(|fault| self.refusal(raw, &fault))?;
         if limits.low.abs().max(limits.high.abs()) > exp2(48) {
-            let message = format!("at the operand {raw} the result has more than 48 bits");
-            let remedy = "fewer fraction bits, or another domain";
+            let message = format!("at the raw operand {raw}, the result has more than 48 bits");
+            let remedy = "set fewer fraction bits, or another domain";
             return Err(Refusal::new("result.fraction", message, remedy));
         }
         let error = self.error - stricter;

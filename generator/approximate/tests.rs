@@ -88,10 +88,13 @@ fn what_cannot_be_had_is_refused_with_what_can() {
     );
     assert_eq!(near.key, "result.error");
     assert!(near.message.starts_with("degree 1 does not keep an error of 0.5 units"), "{near:?}");
-    assert!(near.remedy.starts_with("0.51 is reached"), "{near:?}");
+    assert!(near.remedy.starts_with("set result.error to 0.51"), "{near:?}");
     let wide = TargetFunction { domain: (0, 1 << 48), ..function("x", (0.0, 4.0), 26, 1.0) };
     let wide = refused(&wide, Wish::default());
-    assert_eq!((wide.key, wide.remedy.as_str()), ("operand.fraction", "at most 23"));
+    assert_eq!(
+        (wide.key, wide.remedy.as_str()),
+        ("operand.fraction", "set operand.fraction to at most 23")
+    );
 }
 
 /// The bound over intervals is equal to or a little larger than the bound over every operand. A wrong coefficient exceeds the

@@ -119,7 +119,7 @@ impl Piecewise {
         let Some(walk) = self.walk(word) else { return Ok(0.0) };
         for (sum, format) in walk.sums.iter().zip(&self.sums).skip(1) {
             if !format.holds(sum.0) || !format.holds(sum.1) {
-                let message = format!("a sum of the word {word} is not {format}");
+                let message = format!("a sum with the table word {word} does not fit {format}");
                 return Err(Refusal::new("result.fraction", message, "change the formats"));
             }
         }
@@ -183,6 +183,6 @@ impl Piecewise {
 
 /// Returns the refusal of a proof that needs too many intervals.
 fn unproved() -> Refusal {
-    let message = format!("the bound is not proved with 2^{} intervals", MOST.ilog2());
-    Refusal::new("result.error", message, "allow a larger error, or fewer operand.fraction bits")
+    let message = format!("the bound cannot be proved with 2^{} intervals", MOST.ilog2());
+    Refusal::new("result.error", message, "allow a larger error, or set a smaller operand.fraction")
 }

@@ -57,7 +57,7 @@ impl fmt::Display for Diagnostics {
             write!(f, "{diagnostic}")?;
         }
         if let Some(first) = self.0.first() {
-            write!(f, "\n`{Program} explain {}` says more", first.code)?;
+            write!(f, "\n`{Program} explain {}` explains the mistake", first.code)?;
         }
         Ok(())
     }

@@ -175,7 +175,7 @@ impl FromStr for Format {
             (int.parse().map_err(|_| wrong())?, frac.parse().map_err(|_| wrong())?);
         let width = i64::from(int) + i64::from(frac) + i64::from(signed);
         if !(1..=i64::from(MAX_WIDTH)).contains(&width) {
-            return Err(format!("`{text}` is {width} bits wide; 1 to {MAX_WIDTH} are possible"));
+            return Err(format!("`{text}` has {width} bits; a format has 1 to {MAX_WIDTH} bits"));
         }
         Ok(Self { signed, int, frac })
     }

@@ -10,17 +10,17 @@ use crate::keywords::is_keyword;
 pub fn check(name: &str) -> Result<(), &'static str> {
     let mut characters = name.chars();
     match characters.next() {
-        None => return Err("it is empty"),
+        None => return Err("the name is empty"),
         Some(first) if !(first.is_ascii_alphabetic() || first == '_') => {
-            return Err("it does not begin with a letter");
+            return Err("the name does not begin with a letter");
         }
         Some(_) => {}
     }
     if !characters.all(|other| other.is_ascii_alphanumeric() || other == '_') {
-        return Err("only ASCII letters, digits and _ are possible");
+        return Err("the name has a character other than ASCII letters, digits and _");
     }
     if is_keyword(name) {
-        return Err("it is a keyword");
+        return Err("the name is a keyword");
     }
     Ok(())
 }

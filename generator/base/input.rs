@@ -38,10 +38,10 @@ pub fn open(path: &Path) -> io::Result<Box<dyn Read>> {
     }
     let found = fs::metadata(path)?;
     if found.is_dir() {
-        return Err(io::Error::new(io::ErrorKind::IsADirectory, "it is a directory"));
+        return Err(io::Error::new(io::ErrorKind::IsADirectory, "the path is a directory"));
     }
     if !found.is_file() {
-        let message = "it is a pipe or a device, not a file; `-` reads standard input";
+        let message = "the path is a pipe or a device, not a file; give `-` to read standard input";
         return Err(io::Error::new(io::ErrorKind::InvalidInput, message));
     }
     Ok(Box::new(File::open(path)?))
@@ -95,7 +95,8 @@ pub fn records<T: DeserializeOwned>(directory: &Path) -> Result<Vec<(PathBuf, T)
 /// Returns the error message for a record file whose contents cannot be understood.
 pub fn damaged(path: &Path) -> String {
     format!(
-        "the record `{}` is damaged: restore it, move it away, or make it again with the command that wrote it",
+        "the record `{}` is damaged: restore the record, move it away, or make it again with the command \
+         that wrote it",
         path.display()
     )
 }

@@ -60,15 +60,13 @@ pub fn describe(d: &Designer, config: &Config) {
     let (word, places) = by_pairs(d, squares.q().read_as(width));
     let mantissa = d.register("mantissa", width).doc("the sum of squares, scaled to 1.0 ... 4.0");
     mantissa.takes(word);
-    let shift = d.register("shift", places.format()).doc(
-        "number of pairs of leading zeros of the sum of \
-                                                          squares",
-    );
+    let shift = d
+        .register("shift", places.format())
+        .doc("number of pairs of leading zeros of the sum of squares");
     shift.takes(places);
-    let distance = d.register("distance", keys.distance()).doc(
-        "the sum of products, for a normal scaled to a length of \
-                                                     1.0 to 2.0",
-    );
+    let distance = d
+        .register("distance", keys.distance())
+        .doc("the sum of products, for a normal scaled to a length of 1.0 to 2.0");
     let products = if keys.two_sided { size(d, sum.q()) } else { sum.q() };
     distance.takes(shifted(d, products, shift.q(), &keys));
     let root = d.register("inverse", keys.shortened()).doc("1/sqrt of the scaled sum of squares");

@@ -46,10 +46,9 @@ pub fn describe(d: &Designer, config: &Config) {
     let mantissa =
         d.register("mantissa", integer(width)).doc("the sum of squares, scaled to 1.0 ... 4.0");
     mantissa.takes(word);
-    let shift = d.register("shift", places.format()).doc(
-        "number of pairs of leading zeros of the sum of \
-                                                          squares",
-    );
+    let shift = d
+        .register("shift", places.format())
+        .doc("number of pairs of leading zeros of the sum of squares");
     shift.takes(places);
 
     let root = d

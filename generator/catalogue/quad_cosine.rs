@@ -66,10 +66,9 @@ pub fn describe<'d>(d: &'d Designer, config: &Config) {
         .doc("sqrt(n/k) * |angle|, in right angles");
     let (scaled, within) = (held("scaled_angle_held", scaled), held("scaled_within_held", within));
     let step = angle::address(d, "table_step", scaled, within, table);
-    let address = d.concat("table_address", decoder(d, exponent), step).doc(
-        "the number of the table, and the address in \
-                                                                   it",
-    );
+    let address = d
+        .concat("table_address", decoder(d, exponent), step)
+        .doc("the number of the table, and the address in it");
     let address = held("table_address_held", address);
     let words: Vec<i128> =
         POWERS.iter().flat_map(|&power| angle::cosine_power_table(power, table, f.frac)).collect();

@@ -37,15 +37,20 @@ pub fn error_unit() -> impl TypedValueParser<Value = ErrorUnit> {
 
 /// Returns a parser for the cost that is minimised: `area`, `luts`, `dsps` or `memory`.
 pub fn objective() -> impl TypedValueParser<Value = Objective> {
-    const AREA: &str = "The area: look-up tables, where a DSP block or a block RAM counts for as many look-up tables as the chip has for each";
+    const AREA: &str = "The area in look-up tables; a DSP block or a block RAM counts as the number of \
+                        look-up tables that the chip has per such block";
     one_of(vec![
         ("area", Objective::Area, AREA),
         ("luts", Objective::Luts, "Look-up tables"),
-        ("dsps", Objective::Dsps, "The number of DSP blocks, and among equal numbers the area"),
+        (
+            "dsps",
+            Objective::Dsps,
+            "The number of DSP blocks; of two equal numbers, the one with the smaller area",
+        ),
         (
             "memory",
             Objective::Memory,
-            "The number of bits in the ROMs, and among equal numbers the area",
+            "The number of bits in the ROMs; of two equal numbers, the one with the smaller area",
         ),
     ])
 }

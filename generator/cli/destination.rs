@@ -42,9 +42,8 @@ impl Destination {
             return Ok(Self { path: path.to_owned(), sink, made: MadeDirectories::default() });
         }
         let path = match path.is_symlink() {
-            true => fs::canonicalize(path).with_context(|| {
-                format!("{}: it is a symbolic link that leads nowhere", cannot(path))
-            })?,
+            true => fs::canonicalize(path)
+                .with_context(|| format!("{}: the symbolic link leads nowhere", cannot(path)))?,
             false => path.to_owned(),
         };
         let directory = match path.parent() {
@@ -68,7 +67,7 @@ impl Destination {
     pub fn fresh(path: &Path, force: bool) -> Result<Self> {
         if path.is_file() && !force {
             bail!(
-                "`{}` is there already; move it away, name another file, or add --force to replace it",
+                "`{}` exists already; move it away, name another file, or add --force to replace it",
                 path.display()
             );
         }

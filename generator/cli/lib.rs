@@ -36,10 +36,10 @@ use tables::say;
 struct Cli {
     #[command(subcommand)]
     command: Option<Command>,
-    /// Main job only: print for each configuration what was compared, and where the largest error is
+    /// Only without a command: print for each configuration what was compared, and the operands with the largest error
     #[arg(long)]
     details: bool,
-    /// How many threads to use at most [default: the number of processors]
+    /// The largest number of threads to use [default: the number of processors]
     #[arg(long, value_name = "N", global = true, value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
     #[command(flatten)]
@@ -55,7 +55,7 @@ Examples:
   glint cosim my_core.toml --points 1000000     golden model against hardware, every clock
   glint cosim my_core.toml --simulator icarus   the emitted Verilog in Icarus Verilog
   glint cosim my_core.toml --points 20 --vcd wave.vcd
-  glint mutate my_core.toml                     are faults noticed? Plants thousands, one at a time
+  glint mutate my_core.toml                     plants thousands of faults: does a test notice each?
   glint eval my_core.toml cos_gamma=0.99 exponent=20 red=255
   glint setup my_core.toml gamma=8 exponent=20  operands from angles or vectors
   glint describe my_core.toml                   ports, blocks, microprogram, accuracy: a page
@@ -63,8 +63,8 @@ Examples:
   glint estimate my_core.toml                   area and clock on each FPGA family, without tools
   glint synth my_core.toml                      area, frequency and critical path
   glint compare --exponent 100                  all devices side by side
-  glint verify my_core.toml                     every proof and test there is, and a page about it
-  glint render my_core.toml --out sphere.png    a picture through the bit-accurate device
+  glint verify my_core.toml                     every proof and test, and a page with the results
+  glint render my_core.toml --out sphere.png    a picture with the highlights of the bit-accurate device
 
 Exit codes: 0 everything holds; 1 something does not hold or could not be done; 2 wrong usage.";
 
@@ -95,7 +95,7 @@ commands! {
 
 #[derive(Args, Clone, Copy)]
 struct Force {
-    /// Replace a file that is there already
+    /// Replace an existing file
     #[arg(long)]
     force: bool,
 }
@@ -131,7 +131,7 @@ struct OutputOptions {
     /// Print JSON, for scripts
     #[arg(long, global = true)]
     json: bool,
-    /// No progress bars
+    /// Show no progress bars
     #[arg(long, short, global = true)]
     quiet: bool,
 }
@@ -153,13 +153,13 @@ fn parse(arguments: &[OsString]) -> Result<Cli, clap::Error> {
 /// Parses a finite number. For example, `0.75` and `12e6` are numbers. Fails for any other text, such as `inf`.
 fn number(text: &str) -> Result<f64, String> {
     let number = text.parse().ok().filter(|number: &f64| number.is_finite());
-    number.ok_or_else(|| "a number is wanted, as 0.75 or 12e6".to_owned())
+    number.ok_or_else(|| "expected a number, for example 0.75 or 12e6".to_owned())
 }
 
 /// Parses a whole number of at least 1. For example, `1000000`, `1_000_000` and `1e6` are a million, and `1.5e3` is 1500. Fails
 /// for 0, for fractions such as `1.5`, and for numbers beyond 64 bits.
 fn count(text: &str) -> Result<u64, String> {
-    let wanted = || "a whole number from 1 on is wanted, as 1000000 or 1e6".to_owned();
+    let wanted = || "expected a whole number of at least 1, for example 1000000 or 1e6".to_owned();
     let number = match text.split_once(['e', 'E']) {
         None => text.replace('_', "").parse().ok(),
         Some((digits, zeros)) => {
@@ -196,7 +196,9 @@ pub fn run_with(
 ) -> ExitCode {
     program::run_as(program);
     if let Err(error) = interrupt::listen() {
-        failure::warn(&format!("an interruption may leave temporary files behind: {error}"));
+        failure::warn(&format!(
+            "cannot handle signals, so an interrupted command may leave temporary files behind: {error}"
+        ));
     }
     run_from(registry, arguments)
 }

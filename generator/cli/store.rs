@@ -117,7 +117,7 @@ pub fn may_write(path: &Path, seal: Seal, force: bool) -> Result<Option<Vec<u8>>
     {
         ensure!(
             is_sealed(found, seal),
-            "{}\nmove it away, choose another --out, or replace it with --force",
+            "{}\nmove the file away, choose another --out, or replace the file with --force",
             not_glints(path)
         );
     }
@@ -130,7 +130,7 @@ pub fn may_write(path: &Path, seal: Seal, force: bool) -> Result<Option<Vec<u8>>
 /// Fails if Glint did not write the file, if somebody edited the file since, or if the file cannot be read.
 pub fn may_replace(path: &Path, seal: Seal) -> Result<()> {
     let is_own = contents(path)?.is_none_or(|found| is_sealed(&found, seal));
-    ensure!(is_own, "{}\nmove it away, or choose another --out", not_glints(path));
+    ensure!(is_own, "{}\nmove the file away, or choose another --out", not_glints(path));
     Ok(())
 }
 

@@ -75,7 +75,10 @@ fn text(columns: &[TerminalColumn<'_>], rows: &[Vec<String>], room: Option<usize
             }
             gone.dedup();
             if !gone.is_empty() {
-                let note = format!("(no room for {}; --json has all)", gone.join(", "));
+                let note = format!(
+                    "(the line has no room for {}; --json shows all columns)",
+                    gone.join(", ")
+                );
                 text = format!("{text}\n{}", folded(&note, room));
             }
             return text;
@@ -278,7 +281,7 @@ mod tests {
     #[test]
     fn the_least_important_column_goes_first_and_is_named() {
         let text = text(&TerminalColumn::all(HEADINGS), &rows(), Some(40));
-        assert!(text.contains("(no room for points; --json"), "{text}");
+        assert!(text.contains("(the line has no room for points; --json"), "{text}");
         assert!(text.contains("1 305 235"), "{text}");
     }
 

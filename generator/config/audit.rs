@@ -43,7 +43,7 @@ impl Schema {
                         "`{name}` depends on `{other}`, which is not declared before it"
                     )),
                     Some(other) if !other.can_be(value) => mistakes.push(format!(
-                        "`{name}` depends on `{}` = {value}, which that can never be",
+                        "`{name}` depends on `{}` = {value}, a value that the key cannot have",
                         other.name
                     )),
                     Some(_) => {}

@@ -89,16 +89,16 @@ impl TomlReader<'_> {
         let message = error.message();
         let (message, remedy) = if message == "duplicate key" {
             let message = format!("`{}` is given twice", shown(found));
-            (message, "keep one of the two; a table has one heading")
+            (message, "remove one of the two; a table can have only one heading")
         } else if message.contains("recursion") || message.contains("recurse") {
             let message = "tables or lists are nested too deeply".to_owned();
-            (message, "a configuration has tables of plain values")
+            (message, "give plain values in tables")
         } else if message.starts_with("string values must be quoted") {
             let message = format!("not valid TOML: `{}` is not a value", shown(found));
             (message, "put a word in double quotes")
         } else {
             let message = format!("not valid TOML: {message}");
-            (message, "write `key = value` or `[table]`, one to a line")
+            (message, "write one `key = value` or one `[table]` in each line")
         };
         self.problems.push_error_at(span, KeyError::new("", message, remedy));
     }
@@ -154,7 +154,7 @@ impl TomlReader<'_> {
         let Some(value) = document.get("device") else {
             // After a syntax error, the key may be in the file without having been read.
             if self.valid_toml {
-                let message = "the file does not say which device it configures";
+                let message = "the file does not name the device that it configures";
                 let remedy = format!("add `device = \"…\"`; {remedy}");
                 self.problems.push("device", message, remedy);
             }
@@ -181,7 +181,8 @@ impl TomlReader<'_> {
     fn name(&mut self, document: &DeTable, file_name: &str) -> String {
         match document.get("name") {
             None if file_name == STANDARD_INPUT => {
-                let message = "the module has no name: standard input has none to take it from";
+                let message = "the module has no name, because a configuration from standard input has no \
+                               file name";
                 let remedy = "add `name = \"…\"`, the name of the Verilog module".to_owned();
                 self.problems.push("name", message, remedy);
                 String::new()
@@ -190,7 +191,7 @@ impl TomlReader<'_> {
                 let stem = Path::new(file_name).file_stem().unwrap_or_default();
                 let name = stem.to_string_lossy().replace('-', "_");
                 if let Some(error) = module_name::error(&name) {
-                    let message = format!("{}; it comes from the name of the file", error.message);
+                    let message = format!("{}; the module has the name of the file", error.message);
                     let remedy = format!("set `name`: {}", error.remedy);
                     self.problems.push("name", message, remedy);
                 }
@@ -457,7 +458,9 @@ impl TomlReader<'_> {
             .map(|known| format!("`{known}`"))
             .collect();
         let remedy = if common_names().chain(names()).chain(tables()).any(|k| k == below) {
-            format!("`{below}` is outside [{heading}]: move it above the first [table] heading")
+            format!(
+                "`{below}` does not belong to [{heading}]: move the line above the first [table] heading"
+            )
         } else if let Some(meant) = meant {
             // The name is misspelt, so the user's value of the intended key is unknown.
             let within = format!("{meant}.");
@@ -466,7 +469,7 @@ impl TomlReader<'_> {
             }
             format!("did you mean `{meant}`?")
         } else if !is_table && !elsewhere.is_empty() {
-            format!("there is {}", listed(&elsewhere))
+            format!("the device has {}", listed(&elsewhere))
         } else {
             keys_of(schema, if tables().any(|known| known == table) { table } else { "" })
         };
@@ -581,5 +584,5 @@ fn is_bare(key: &str) -> bool {
 fn start_from(schemas: &[Schema]) -> String {
     let devices: Vec<&str> = schemas.iter().map(|schema| schema.device).collect();
     let devices = devices.join(", ");
-    format!("`{Program} new DEVICE` writes a file to start from; devices: {devices}")
+    format!("write a configuration with `{Program} new DEVICE > FILE.toml`; devices: {devices}")
 }

@@ -15,7 +15,8 @@ use std::{fs, io};
 pub(super) fn read(path: &Path) -> Result<String, (String, String)> {
     let name = path.display();
     let text = text(path).map_err(|error| {
-        let remedy = "give the path of a CSV file, from the configuration's directory".to_owned();
+        let remedy =
+            "give the path of a CSV file, relative to the configuration's directory".to_owned();
         (format!("`{name}` cannot be read: {error}"), remedy)
     })?;
     let mut points: Vec<String> = Vec::new();
@@ -33,7 +34,7 @@ pub(super) fn read(path: &Path) -> Result<String, (String, String)> {
             _ if points.is_empty() && numbers == 0 => {}
             _ if has_decimal_commas(line) => {
                 let message = format!("line {} of `{name}` has decimal commas: `{line}`", at + 1);
-                return Err((message, "write decimal points, `0.5` for `0,5`".to_owned()));
+                return Err((message, "write decimal points: `0.5` in place of `0,5`".to_owned()));
             }
             _ => {
                 let message = format!("line {} of `{name}` is not two numbers: `{line}`", at + 1);
@@ -68,11 +69,11 @@ fn has_decimal_commas(line: &str) -> bool {
 fn text(path: &Path) -> io::Result<String> {
     let refused = |message: String| Err(io::Error::new(io::ErrorKind::InvalidInput, message));
     if !fs::metadata(path)?.is_file() {
-        return refused("it is no regular file".to_owned());
+        return refused("the path is not a regular file".to_owned());
     }
     let bytes = fs::read(path)?;
     if bytes.starts_with(&[0xFF, 0xFE]) || bytes.starts_with(&[0xFE, 0xFF]) {
-        return refused("it is UTF-16; save it as UTF-8".to_owned());
+        return refused("the file is UTF-16; save the file as UTF-8".to_owned());
     }
     match String::from_utf8(bytes) {
         // Some spreadsheets begin a file with a byte order mark.
@@ -84,7 +85,7 @@ fn text(path: &Path) -> io::Result<String> {
             let line = 1 + error.as_bytes()[..valid].iter().filter(|byte| **byte == b'\n').count();
             let byte = error.as_bytes()[valid];
             refused(format!(
-                "line {line} has the byte {byte:02X}, which is not UTF-8; save it as UTF-8"
+                "line {line} has the byte {byte:02X}, which is not UTF-8; save the file as UTF-8"
             ))
         }
     }
@@ -108,14 +109,14 @@ mod tests {
         for (bytes, message) in [
             (
                 &b"# H\xF6he\n0,0\n"[..],
-                "line 1 has the byte F6, which is not UTF-8; save it as UTF-8",
+                "line 1 has the byte F6, which is not UTF-8; save the file as UTF-8",
             ),
-            (b"\xFF\xFE0\x00,\x000\x00", "it is UTF-16; save it as UTF-8"),
+            (b"\xFF\xFE0\x00,\x000\x00", "the file is UTF-16; save the file as UTF-8"),
         ] {
             fs::write(&path, bytes).unwrap();
             assert!(read(&path).unwrap_err().0.ends_with(message));
         }
-        assert!(read(dir.path()).unwrap_err().0.ends_with("it is no regular file"));
+        assert!(read(dir.path()).unwrap_err().0.ends_with("the path is not a regular file"));
         for (text, message) in [
             ("0,0\n1,\n", "line 2 of `it` is not two numbers: `1,`"),
             ("0,0\nx,y\n", "line 2 of `it` is not two numbers: `x,y`"),

@@ -50,8 +50,10 @@ pub fn read_located(path: &Path, schemas: &[Schema]) -> Result<(Config, Problems
             let mut problems = Problems::of_file(&file_name, &lossy);
             let message = format!("the file is not UTF-8: byte {start} is {:#04x}", bytes[start]);
             let remedy = match bytes.as_slice() {
-                [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => "it looks like UTF-16; save it as UTF-8",
-                _ => "save it as UTF-8 text",
+                [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => {
+                    "save the file as UTF-8; the file looks like UTF-16"
+                }
+                _ => "save the file as UTF-8 text",
             };
             problems.push_error_at(start..end, KeyError::new("", message, remedy));
             Err(problems)
@@ -65,16 +67,16 @@ fn contents(path: &Path) -> Result<Vec<u8>, (String, String)> {
     let read = input::open(path).and_then(|file| file.take(LARGEST + 1).read_to_end(&mut bytes));
     match read {
         Err(error) if error.kind() == io::ErrorKind::IsADirectory => {
-            Err(("this is a directory".to_owned(), "give the path of a TOML file".to_owned()))
+            Err(("the path is a directory".to_owned(), "give the path of a TOML file".to_owned()))
         }
         Err(error) if error.kind() == io::ErrorKind::InvalidInput => {
             let remedy = "give the path of a TOML file, or - for standard input".to_owned();
-            Err(("this is a pipe or a device, not a file".to_owned(), remedy))
+            Err(("the path is a pipe or a device, not a file".to_owned(), remedy))
         }
         Err(error) if error.kind() == io::ErrorKind::NotFound => {
             let remedy = match neighbour(path) {
                 Some(neighbour) => format!("did you mean `{neighbour}`?"),
-                None => format!("`{Program} new DEVICE` writes a file to start from"),
+                None => format!("write a configuration with `{Program} new DEVICE > FILE.toml`"),
             };
             Err(("there is no such file".to_owned(), remedy))
         }

@@ -247,7 +247,7 @@ fn check(schema: &Schema, draft: &Draft, problems: &mut Problems) {
             problems.push(
                 key.name,
                 format!("`{}` has no effect with {other} = {actual}", key.name),
-                format!("remove it, or set {needed}"),
+                format!("remove the key, or set {needed}"),
             );
         }
     }
@@ -256,15 +256,15 @@ fn check(schema: &Schema, draft: &Draft, problems: &mut Problems) {
     if keys.stages != 0 && draft.given.contains("pipeline.clock_mhz") {
         problems.push(
             "pipeline.clock_mhz",
-            "`pipeline.clock_mhz` and `pipeline.stages` both say how fast the pipeline is",
-            "remove one of them",
+            "`pipeline.clock_mhz` and `pipeline.stages` both set the speed of the pipeline",
+            "remove one of the two keys",
         );
     }
 
     if keys.stream && keys.stall == "none" {
         problems.push(
             "interface.stream",
-            "`interface.stream` needs a pipeline that its receiver can hold back",
+            "`interface.stream` needs a pipeline that the receiver of the stream can stall",
             "set pipeline.stall = \"ready\", or remove interface.stream",
         );
     }
@@ -276,15 +276,15 @@ fn check(schema: &Schema, draft: &Draft, problems: &mut Problems) {
     if keys.interval == "auto" && aims == [false; 2] && !doubtful {
         problems.push(
             "pipeline.interval",
-            "`pipeline.interval` = \"auto\" needs an aim",
+            "`pipeline.interval` = \"auto\" needs a goal from which the interval follows",
             "set pipeline.rate or pipeline.max_multipliers",
         );
     }
     if aims == [true; 2] {
         problems.push(
             "pipeline.max_multipliers",
-            "`pipeline.max_multipliers` and `pipeline.rate` both say which interval it is",
-            "remove one of them",
+            "`pipeline.max_multipliers` and `pipeline.rate` both set the interval of the pipeline",
+            "remove one of the two keys",
         );
     }
 
@@ -312,7 +312,7 @@ fn check(schema: &Schema, draft: &Draft, problems: &mut Problems) {
 /// is the default.
 fn of_default(key: &Key, draft: &Draft, message: &str) -> String {
     let value = draft.config.value(key.name).toml();
-    format!("`{}` = {value}, its default, since it is not given: {message}", key.name)
+    format!("`{}` is not set and has the default {value}: {message}", key.name)
 }
 
 /// Returns the conditions on which it depends whether `key` applies, the key's own condition first.

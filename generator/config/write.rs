@@ -33,7 +33,7 @@ pub fn brief(schema: &Schema, config: &Config, given: &[String]) -> String {
             _ => format!("{key} = {value}\n"),
         };
     }
-    let architecture = "\"pipelined\" computes a point every clock, or every few";
+    let architecture = "\"pipelined\" computes a point every clock or every few clocks";
     text += &remarked(&assignment(config, "architecture"), architecture);
     text.push('\n');
     for key in schema.all_keys().filter(|key| key.name != "architecture") {

@@ -92,7 +92,7 @@ impl Core {
             Ok(design) => design,
             Err(DesignError::Key(error)) => return Err(error.into()),
             Err(DesignError::Description(mistakes)) => {
-                let context = format!("the description of `{}` is wrong", device.name);
+                let context = format!("the description of `{}` has mistakes", device.name);
                 return Err(anyhow::Error::new(mistakes).context(context));
             }
         };

@@ -139,14 +139,14 @@ impl Device {
         let model = (self.model)(config);
         ensure!(
             !config.flag(OUTPUT_REGISTERED) || model.with_output_registers().is_some(),
-            "the golden model of `{}` does not say what registers behind the results do \
-             (`Model::with_output_registers`): leave {OUTPUT_REGISTERED} out",
+            "the golden model of `{}` does not model output registers (`Model::with_output_registers`): \
+             remove {OUTPUT_REGISTERED}",
             self.name
         );
         ensure!(
             !config.flag(OPERANDS_BUFFERED) || model.with_operand_buffers().is_some(),
-            "the golden model of `{}` does not say what buffers of operands do (`Model::with_operand_buffers`): \
-             leave {OPERANDS_BUFFERED} out",
+            "the golden model of `{}` does not model operand buffers (`Model::with_operand_buffers`): remove \
+             {OPERANDS_BUFFERED}",
             self.name
         );
         Ok(())
@@ -178,7 +178,8 @@ impl Device {
         match carried {
             None => Ok(()),
             Some(carried) => Err(anyhow::Error::new(Diagnostics(vec![carried])).context(format!(
-                "the contract of `{}` is of one point at a time: accuracy, proofs and pipelines",
+                "the results of `{}` must depend only on the operands of their own point, because the \
+                 contract states them so",
                 self.name
             ))),
         }
@@ -268,10 +269,10 @@ impl Registry {
 fn with_key_remedies(mut mistakes: Diagnostics, keys: &Shared) -> Diagnostics {
     for mistake in &mut mistakes.0 {
         if mistake.code == codes::OUTPUT_REGISTER && keys.output_registered {
-            mistake.message += &format!(", or leave {OUTPUT_REGISTERED} out");
+            mistake.message += &format!(", or remove {OUTPUT_REGISTERED} from the configuration");
         }
         if mistake.code == codes::BUFFER && keys.operands_buffered {
-            mistake.message += &format!(": leave {OPERANDS_BUFFERED} out");
+            mistake.message += &format!(": remove {OPERANDS_BUFFERED} from the configuration");
         }
     }
     mistakes

@@ -56,8 +56,8 @@ impl Expression {
         let (precise, value) =
             self.decided(&[], |precise, value| precise.ceiling(value, fraction).is_some())?;
         precise.ceiling(&value, fraction).ok_or_else(|| {
-            let message = "this is so near to a number that an operand can have that 1024 bits do not \
-                           tell the two apart";
+            let message = "this value is so near to the value of an operand that 1024 bits cannot \
+                           distinguish the two";
             Fault::new(self.span.clone(), message)
         })
     }
@@ -105,10 +105,10 @@ impl Expression {
             Kind::Constant(name, below) => arithmetic.constant(name, *below),
             Kind::Operand(name) => match operands.iter().find(|(own, _)| own == name) {
                 Some((_, value)) => value.clone(),
-                None => return Err(fault(format!("nothing is known of `{name}`"))),
+                None => return Err(fault(format!("`{name}` has no value here"))),
             },
             Kind::Word(name, _) => {
-                return Err(fault(format!("nothing is known of the words of `{name}`")));
+                return Err(fault(format!("the words of `{name}` have no values here")));
             }
             Kind::Unary(function, a) => {
                 let a = a.evaluate(arithmetic, operands)?;
@@ -129,7 +129,7 @@ impl Expression {
                         let yes = yes.evaluate(arithmetic, operands)?;
                         let no = no.evaluate(arithmetic, operands)?;
                         let doubt =
-                            "1024 bits do not tell which of the two compared values is larger";
+                            "1024 bits cannot decide which of the two compared values is larger";
                         arithmetic.either(yes, no, doubt).map_err(fault)?
                     }
                 }
@@ -137,7 +137,7 @@ impl Expression {
         };
         let Enclosure { low, high } = arithmetic.enclosure(&value);
         if low.is_nan() || high.is_nan() {
-            return Err(fault("this is no number".to_owned()));
+            return Err(fault("this is not a number".to_owned()));
         }
         Ok(value)
     }
@@ -247,7 +247,7 @@ fn remainder<A: Arithmetic>(
     let quotient = arithmetic.divide(a, b)?;
     let Some(floor) = arithmetic.floor(&quotient) else {
         // The remainder jumps within the interval, so it can be any number from 0 to the divisor.
-        let doubt = "1024 bits do not tell on which side of a step this is";
+        let doubt = "1024 bits cannot decide on which side of a step this value is";
         return arithmetic.either(arithmetic.integer(0), b.clone(), doubt);
     };
     arithmetic.subtract(a, &arithmetic.multiply(&floor, b)?)
@@ -261,7 +261,7 @@ fn power<A: Arithmetic>(arithmetic: &A, a: &A::Value, b: &A::Value) -> Result<A:
     }
     let (exponent_low, _) = arithmetic.signs(b);
     if holds_zero(arithmetic, a) && exponent_low != Ordering::Greater {
-        return Err("a pole: a power of 0 that is not above 0".to_owned());
+        return Err("a pole: 0 to a power that is not above 0".to_owned());
     }
     if let Some(exponent) = arithmetic.known_integer(b, LARGEST_PRODUCT) {
         let product = arithmetic.repeated_product(a, exponent.unsigned_abs() as u32)?;
@@ -300,7 +300,7 @@ fn direction<A: Arithmetic>(
         return arithmetic.subtract(&axis, &from_axis);
     }
     if x_high != Ordering::Less {
-        return Err("the direction of a point that may be the origin, 0 and 0".to_owned());
+        return Err("the direction of a point that can be the origin, (0, 0)".to_owned());
     }
     let from_left = arithmetic.function(Function::Atan, &arithmetic.divide(y, x)?)?;
     let above = arithmetic.add(&from_left, &half_turn)?;
@@ -308,7 +308,7 @@ fn direction<A: Arithmetic>(
         return Ok(above);
     }
     let below = arithmetic.subtract(&from_left, &half_turn)?;
-    let doubt = "1024 bits do not tell on which side of the negative x axis a point is";
+    let doubt = "1024 bits cannot decide on which side of the negative x axis a point is";
     arithmetic.either(above, below, doubt)
 }
 

@@ -88,7 +88,7 @@ pub fn parse(text: &str) -> Result<Expression, Fault> {
         Some(rest) => {
             let begins = |c: char| c.is_ascii_alphanumeric() || matches!(c, '(' | '_');
             let factor = text[rest.clone()].starts_with(begins);
-            let remedy = if factor { ": a product has a sign, `2*x`" } else { "" };
+            let remedy = if factor { ": write the sign of a product, as in `2*x`" } else { "" };
             Err(Fault::new(rest.clone(), format!("this does not belong here{remedy}")))
         }
     }
@@ -116,7 +116,7 @@ fn tokens(text: &str) -> Result<Vec<Range<usize>>, Fault> {
             _ => {
                 let remedy =
                     instead_of_sign(first).map_or(String::new(), |text| format!(": {text}"));
-                let message = format!("`{first}` is no part of a formula{remedy}");
+                let message = format!("`{first}` cannot be a part of a formula{remedy}");
                 return Err(Fault::new(at..at + first.len_utf8(), message));
             }
         };
@@ -129,7 +129,7 @@ fn tokens(text: &str) -> Result<Vec<Range<usize>>, Fault> {
 /// Returns an advice about the notation that replaces a sign. Returns `None` for a sign without a known replacement.
 fn instead_of_sign(sign: char) -> Option<&'static str> {
     Some(match sign {
-        '=' | '!' => "`<`, `>`, `<=` and `>=` compare",
+        '=' | '!' => "compare with `<`, `>`, `<=` or `>=`",
         '²' => "a square is written `x^2`",
         '³' => "a cube is written `x^3`",
         '⁰' | '¹' | '⁴'..='⁹' | '⁻' | 'ⁿ' => "a power is written `x^4`",
@@ -143,7 +143,7 @@ fn instead_of_sign(sign: char) -> Option<&'static str> {
         '–' | '—' | '‐' | '‑' => "a minus sign is written `-`",
         '½' => "write `1/2`",
         '¼' => "write `1/4`",
-        '∞' => "a formula has finite numbers",
+        '∞' => "a formula has only finite numbers",
         _ => return None,
     })
 }
@@ -206,7 +206,7 @@ impl Parser<'_> {
 
     fn choice(&mut self) -> Result<Expression, Fault> {
         if self.depth == DEEPEST {
-            return self.fault(format!("more than {DEEPEST} parts are within each other"));
+            return self.fault(format!("the formula is nested more than {DEEPEST} deep"));
         }
         self.depth += 1;
         let from = self.at;
@@ -277,7 +277,7 @@ impl Parser<'_> {
         let mut part = self.atom()?;
         if self.taken(&["^", "**"]) {
             if self.depth == DEEPEST {
-                return self.fault(format!("more than {DEEPEST} parts are within each other"));
+                return self.fault(format!("the formula is nested more than {DEEPEST} deep"));
             }
             self.depth += 1;
             let kind = Kind::Binary(Operator::Power, Box::new(part), Box::new(self.signed()?));
@@ -303,7 +303,7 @@ impl Parser<'_> {
         }
         if token.starts_with(|c: char| c.is_ascii_digit() || c == '.') {
             let Some(literal) = Literal::read(&token) else {
-                return self.fault("this is no number");
+                return self.fault("this is not a number");
             };
             self.at += 1;
             return Ok(self.made(from, Kind::Number(literal)));
@@ -412,7 +412,8 @@ fn written_out(
     }
     if parts > MOST_PARTS {
         let message = format!(
-            "`{name}` here makes more than {MOST_PARTS} parts of the formula: it names its operand {most_uses} times"
+            "`{name}` expands to more than {MOST_PARTS} parts of a formula, because it uses its operand \
+             {most_uses} times"
         );
         return Err(Fault::new(span, message));
     }

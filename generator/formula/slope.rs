@@ -42,7 +42,7 @@ impl Expression {
                 let value = binary(&Double, *operator, &a.value, &b.value).map_err(fault)?;
                 match of_binary(*operator, a, b, value) {
                     Some(slope) => ValueAndSlope { value, slope },
-                    None => return Err(fault("this may jump".to_owned())),
+                    None => return Err(fault("the value of this part can jump".to_owned())),
                 }
             }
             Kind::If(comparison, yes, no) => {
@@ -51,12 +51,12 @@ impl Expression {
                 match comparison.decided(&Double, &left, &right).map_err(fault)? {
                     Some(true) => yes.pair(operand, limits)?,
                     Some(false) => no.pair(operand, limits)?,
-                    None => return Err(fault("this may jump".to_owned())),
+                    None => return Err(fault("the value of this part can jump".to_owned())),
                 }
             }
         };
         if !pair.value.is_finite() || !pair.slope.is_finite() {
-            return Err(fault("this is infinitely steep".to_owned()));
+            return Err(fault("the slope of this part is infinite".to_owned()));
         }
         Ok(pair)
     }

@@ -81,7 +81,7 @@ fn directions_near_their_jump_and_at_the_origin() {
     assert!(both.low < -3.0 && both.high > 3.0);
     let around = [("y", Enclosure::between(-1.0, 1.0)), ("x", Enclosure::between(-1.0, 1.0))];
     let message = formula.enclose(&around).unwrap_err().message;
-    assert_eq!(message, "the direction of a point that may be the origin, 0 and 0");
+    assert_eq!(message, "the direction of a point that can be the origin, (0, 0)");
     let ahead = parse("atan2(x, 2)").unwrap();
     let (_, slope) = ahead.slope("x", Enclosure::exactly(2.0)).unwrap();
     assert!(slope.holds(0.25) && slope.high - slope.low < 1e-12);
@@ -130,12 +130,15 @@ fn mistakes_are_shown_under_their_places() {
         ("1 / sqrt(", "         ^ a number, an operand or a function is missing"),
         ("1 + 2 )", "      ^ this does not belong here"),
         ("2 * foo(x)", "    ^^^ there is no function `foo`"),
-        ("x # 2", "  ^ `#` is no part of a formula"),
+        ("x # 2", "  ^ `#` cannot be a part of a formula"),
         ("(x + 1", "      ^ `)` is missing"),
-        ("1.2.3", "^^^^^ this is no number"),
+        ("1.2.3", "^^^^^ this is not a number"),
         ("if(x, 1, 2)", "    ^ `<`, `>`, `<=` or `>=` is missing"),
-        ("2x", " ^ this does not belong here: a product has a sign, `2*x`"),
-        ("if(x == 2, 1, 2)", "     ^ `=` is no part of a formula: `<`, `>`, `<=` and `>=` compare"),
+        ("2x", " ^ this does not belong here: write the sign of a product, as in `2*x`"),
+        (
+            "if(x == 2, 1, 2)",
+            "     ^ `=` cannot be a part of a formula: compare with `<`, `>`, `<=` or `>=`",
+        ),
         ("1 + ceil(x)", "    ^^^^ there is no function `ceil`: write -floor(-x)"),
         ("2 * y", "    ^ there is no `y`: the operand is `x`"),
         ("3 + 1 / x", "    ^^^^^ a pole: the divisor is from -1 to 2"),
@@ -149,12 +152,9 @@ fn mistakes_are_shown_under_their_places() {
         let (first, second) = under.split_once('\n').unwrap();
         assert!(first == text && second.starts_with(shown), "{under}");
     }
-    assert!(parse(&"(".repeat(5000)).unwrap_err().message.contains("within each other"));
+    assert!(parse(&"(".repeat(5000)).unwrap_err().message.contains("nested more than"));
     assert!(
-        parse(&format!("2{}", "^2".repeat(5000)))
-            .unwrap_err()
-            .message
-            .contains("within each other")
+        parse(&format!("2{}", "^2".repeat(5000))).unwrap_err().message.contains("nested more than")
     );
 }
 
@@ -222,7 +222,7 @@ fn exact_values_are_known_to_be_exact() {
         assert_eq!(ceiling(text, fraction), (raw, false), "{text}");
     }
     let doubt = parse("sqrt(2)^2").unwrap().ceiling(0).unwrap_err();
-    assert!(doubt.message.contains("1024 bits do not tell"), "{doubt}");
+    assert!(doubt.message.contains("1024 bits cannot"), "{doubt}");
 }
 
 /// Compares random decimals, with and without a power of ten, with integer arithmetic: digits · 10^(exponent − places) ≥ k /
@@ -294,7 +294,7 @@ fn steps_signs_and_sizes_are_decided_at_exact_operands() {
     let fault = parse(undecided).unwrap().evaluate_exactly(&[("x", RBig::from(2))]).unwrap_err();
     assert_eq!(
         fault.under(undecided),
-        "floor(sqrt(x)^2)\n^^^^^^^^^^^^^^^^ 1024 bits do not tell on which side of a step this is"
+        "floor(sqrt(x)^2)\n^^^^^^^^^^^^^^^^ 1024 bits cannot decide on which side of a step this value is"
     );
 }
 
@@ -323,11 +323,11 @@ fn both_evaluations_overlap() {
 #[test]
 fn signs_of_other_alphabets_are_named() {
     for (text, shown) in [
-        ("x²", " ^ `²` is no part of a formula: a square is written `x^2`"),
-        ("√x", "^ `√` is no part of a formula: a root is written `sqrt(x)`"),
-        ("x ÷ 2", "  ^ `÷` is no part of a formula: a quotient is written `a / b`"),
-        ("|x|", "^ `|` is no part of a formula: an absolute value is written `abs(x)`"),
-        ("x – 1", "  ^ `–` is no part of a formula: a minus sign is written `-`"),
+        ("x²", " ^ `²` cannot be a part of a formula: a square is written `x^2`"),
+        ("√x", "^ `√` cannot be a part of a formula: a root is written `sqrt(x)`"),
+        ("x ÷ 2", "  ^ `÷` cannot be a part of a formula: a quotient is written `a / b`"),
+        ("|x|", "^ `|` cannot be a part of a formula: an absolute value is written `abs(x)`"),
+        ("x – 1", "  ^ `–` cannot be a part of a formula: a minus sign is written `-`"),
     ] {
         let under = parse(text).unwrap_err().under(text);
         assert_eq!(under, format!("{text}\n{shown}"));

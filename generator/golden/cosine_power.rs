@@ -186,9 +186,9 @@ impl Reflectance for PowerArithmetic {
         };
         let exponents: Vec<String> = worse.iter().map(|entry| entry.0.to_string()).collect();
         vec![format!(
-            "power = {power} is above some n of the domain: for n = {} a smaller power is closer to cos^n; \
-             at n = {n} the formula is off by {own:.4} with power = {power}, by {error:.4} with power = {other} \
-             (raise domain.exponent_min, or choose the smaller power)",
+            "power = {power} is above some n of the domain: for n = {} a smaller power is closer to cos^n. \
+             For example, at n = {n} the error of the formula is {own:.4} with power = {power}, and \
+             {error:.4} with power = {other}. Raise domain.exponent_min, or set the smaller power",
             exponents.join(", ")
         )]
     }

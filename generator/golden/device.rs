@@ -292,7 +292,8 @@ impl<F: Formula> Contract for OfModel<F> {
             let (stated, outputs) = (exact.len(), self.device.outputs.len());
             if stated != outputs {
                 return Err(format!(
-                    "the formula gives {stated} values for {outputs} outputs: one for each, in the order of `shows`"
+                    "the formula gives {stated} values for {outputs} outputs: give one value for each \
+                     output, in the order of `shows`"
                 ));
             }
             if self.shown(&operands, 0).is_none() {

@@ -127,8 +127,8 @@ impl Formula for Stated {
         };
         let of_pole = self.function.pole().map(|(from, to)| {
             format!(
-                "between x = {from} and {to} the formula has a pole or comes near one: the results of both are right, and no \
-                 operand is between them"
+                "between x = {from} and {to} the formula has a pole or comes near to a pole: the results at \
+                 these two operands are right, and no operand lies between them"
             )
         });
         of_samples.into_iter().chain(of_pole).collect()

@@ -172,8 +172,8 @@ impl Reflectance for QuadraticArithmetic {
             return Vec::new();
         }
         vec![format!(
-            "with coefficient.scheme = \"taylor\" the formula is off from cos^n by up to {:.4}, at n = {n}; with \
-             \"minimax\" by {:.4}",
+            "with coefficient.scheme = \"taylor\", the formula differs from cos^n by up to {:.4}, at n = \
+             {n}; with \"minimax\", by up to {:.4}",
             errors[0], errors[1]
         )]
     }

@@ -225,8 +225,8 @@ impl Reflectance for ThresholdArithmetic {
             return Vec::new();
         }
         vec![format!(
-            "visibility.levels cut into what is visible: at n = {n} outputs up to {shown} become 0, which the \
-             formula without ROM(n) shows (levels of at most 50 hide only what rounds to 0)"
+            "visibility.levels hide visible outputs: at n = {n}, outputs of up to {shown} become 0, although \
+             the formula without ROM(n) shows them; levels of at most 50 hide only outputs that round to 0"
         )]
     }
 }

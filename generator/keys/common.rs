@@ -237,12 +237,20 @@ pub fn line_stages(choices: &'static [&'static str]) -> Key {
 pub fn check_exponents(domain: &Domain, bits: u32, problems: &mut Problems) {
     let (min, max) = domain.exponents();
     if min > max {
-        let message = format!("{min} is above domain.exponent_max, {max}");
-        problems.push("domain.exponent_min", message, format!("at most {max}"));
+        let message =
+            format!("the smallest n, {min}, is above domain.exponent_max, which is {max}");
+        problems.push(
+            "domain.exponent_min",
+            message,
+            format!("set domain.exponent_min to at most {max}"),
+        );
     }
     if max >= 1 << bits {
-        let message = format!("{max} does not fit the {bits} bits of the exponent");
-        let remedy = format!("at most {}, or a larger exponent.bits", (1 << bits) - 1);
+        let message = format!("the largest n, {max}, does not fit the {bits} bits of the exponent");
+        let remedy = format!(
+            "set domain.exponent_max to at most {}, or set a larger exponent.bits",
+            (1 << bits) - 1
+        );
         problems.push("domain.exponent_max", message, remedy);
     }
 }
@@ -264,7 +272,7 @@ pub fn check_rom_size(
     if bits > ROM_LIMIT {
         let message =
             format!("{rom} would have 2^{address} entries of {width} bits, {bits} bits in all");
-        problems.push(key, message, format!("{remedy}, for at most {ROM_LIMIT} bits"));
+        problems.push(key, message, format!("{remedy}; the limit is {ROM_LIMIT} bits"));
     }
 }
 
@@ -279,9 +287,9 @@ pub fn check_segments(segments: &[u32], key: &str, bits: u32, problems: &mut Pro
         let bits = bits.saturating_sub(2 * range);
         if prefix > bits {
             let message = format!(
-                "range {range} has {bits} bits of 1 - cos, which cannot be cut into 2^{prefix} segments"
+                "range {range} has {bits} bits of 1 - cos, so it cannot have 2^{prefix} segments"
             );
-            let remedy = "fewer ranges or smaller entries, or a larger cosine.fraction".to_owned();
+            let remedy = "set fewer ranges, smaller entries or a larger cosine.fraction".to_owned();
             problems.push(key, message, remedy);
             break;
         }

@@ -43,11 +43,13 @@ fn check(config: &Config, problems: &mut Problems) {
     let keys = Keys::of(config);
     let fraction = keys.angle_fraction;
     if keys.table_address > fraction {
-        let message = format!("the angle has {fraction} fraction bits");
-        let remedy = format!("at most {fraction}, or a larger angle.fraction");
+        let message =
+            format!("the table has more address bits than the angle has fraction bits, {fraction}");
+        let remedy =
+            format!("set table.address to at most {fraction}, or set a larger angle.fraction");
         problems.push("table.address", message, remedy);
     }
     let size = (keys.table_address, keys.fraction);
-    let remedy = "fewer address bits or narrower entries";
+    let remedy = "set a smaller table.address or a smaller intensity.fraction";
     common::check_rom_size("table.address", "ROM 12", size, remedy, problems);
 }

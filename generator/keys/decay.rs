@@ -195,9 +195,10 @@ pub(super) fn check(config: &Config, decay: Decay, problems: &mut Problems) {
     let (coarse, fine) = (keys.coarse_fraction, keys.decay_fraction);
     if coarse > fine {
         let message = format!(
-            "{coarse} fraction bits of the decay for the product by n do not go with {fine} of the decay"
+            "the product with n uses {coarse} fraction bits of the decay, and the decay has only {fine}"
         );
-        let remedy = format!("at most {fine}, or a larger decay.fraction");
+        let remedy =
+            format!("set decay.coarse_fraction to at most {fine}, or set a larger decay.fraction");
         problems.push("decay.coarse_fraction", message, remedy);
     }
     if problems.is_refused() {

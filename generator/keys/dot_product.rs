@@ -64,7 +64,14 @@ fn check(config: &Config, problems: &mut Problems) {
     let Keys { fraction, address, inverse, factor, kept, .. } = Keys::of(config);
     normaliser::check_root(fraction, address, inverse, problems);
     if kept >= 2 * factor {
-        let message = format!("more fraction bits than the {} of the last product", 2 * factor - 1);
-        problems.push("output.fraction", message, "a larger factor.bits".to_owned());
+        let message = format!(
+            "the cosine has more fraction bits than the last product, which has {}",
+            2 * factor - 1
+        );
+        problems.push(
+            "output.fraction",
+            message,
+            "set a smaller output.fraction or a larger factor.bits".to_owned(),
+        );
     }
 }

@@ -25,7 +25,8 @@ const LEAST_ERROR: f64 = 0.5;
 const LARGEST_ERROR: f64 = 1024.0;
 
 /// The remedy, as text for the user, for a relative error that is not a number between 0 and 1.
-const RELATIVE_ERROR: &str = "a number between 0 and 1, or a formula of numbers: \"2^-12\", say";
+const RELATIVE_ERROR: &str =
+    "give a number between 0 and 1, or a formula of numbers, for example \"2^-12\"";
 
 glint_config::keys! {
     /// The values of a configuration of the device `expression`, one field for each of its keys.
@@ -147,7 +148,8 @@ impl StatementError {
     }
 
     fn of_fault(key: String, fault: Fault) -> Self {
-        let remedy = "a formula has numbers, pi, e, operands, + - * / ^, parentheses and functions: `sqrt(x^2 + y^2)`, say";
+        let remedy = "write a formula of numbers, pi, e, operands, + - * / ^, parentheses and functions, for \
+                      example `sqrt(x^2 + y^2)`";
         Self { place: Some(fault.span), ..Self::new(key, fault.message, remedy) }
     }
 }
@@ -201,7 +203,11 @@ fn statement(keys: &Keys) -> Result<ExpressionStatement, StatementError> {
         if !results.iter().any(names_it) {
             let key = format!("operands.{}", operand.name);
             let message = format!("no result depends on `{}`", operand.name);
-            return Err(StatementError::new(key, message, "remove it, or name it in a formula"));
+            return Err(StatementError::new(
+                key,
+                message,
+                "remove the operand, or use it in a formula",
+            ));
         }
     }
     let mut statement = ExpressionStatement { operands, results };
@@ -238,10 +244,10 @@ fn error_of_relative(
     let least = least_size(statement, number).map_err(|refusal| refused(statement, refusal))?;
     if least == 0.0 {
         let message = format!(
-            "`{name}` may be 0 or near 0, where no error is small enough as a part of the value"
+            "`{name}` can be 0 or near 0, and no error is a small enough part of such a value"
         );
-        let remedy =
-            "limit the operands, by `where` or by their domains, or give `error` in its place";
+        let remedy = "limit the operands with `where` or with their domains, or give `error` in place of \
+                      `error_relative`";
         return Err(StatementError::new(key, message, remedy));
     }
     let allowed = part.low * least;
@@ -249,9 +255,10 @@ fn error_of_relative(
     if units < LEAST_ERROR {
         let needed = (LEAST_ERROR / allowed).log2().ceil();
         let message = format!(
-            "`{name}` comes down to {least:.6}: with {fraction} fraction bits half a unit is more than {text} of it"
+            "the smallest value of `{name}` is {least:.6}: with {fraction} fraction bits, half a unit is \
+             more than {text} of this value"
         );
-        let remedy = format!("at least {needed} fraction bits, or a larger part");
+        let remedy = format!("set at least {needed} fraction bits, or a larger error_relative");
         return Err(StatementError::new(key, message, remedy));
     }
     Ok(units.min(LARGEST_ERROR))
@@ -288,20 +295,24 @@ fn check_names(keys: &Keys) -> Result<(), StatementError> {
                 return Err(StatementError::new(
                     key,
                     fault,
-                    "a name has lower-case letters, digits and _",
+                    "give a name of lower-case letters, digits and _",
                 ));
             }
             if PORTS.contains(&name.as_str()) {
-                let message = format!("`{name}` is a port that every core has");
-                return Err(StatementError::new(key, message, "give it another name"));
+                let message = format!("every core has a port `{name}`");
+                return Err(StatementError::new(key, message, "give the entry another name"));
             }
             if let Some((other, _)) = known.iter().find(|(_, own)| own == name) {
-                let message = format!("`{name}` is an entry of [{other}] already");
-                return Err(StatementError::new(key, message, "give one of the two another name"));
+                let message = format!("[{other}] has an entry `{name}` already");
+                return Err(StatementError::new(
+                    key,
+                    message,
+                    "give one of the two entries another name",
+                ));
             }
             if parse(name).ok().is_none_or(|it| !matches!(it.kind, Kind::Operand(_))) {
                 let message = format!("`{name}` is a constant of formulas");
-                return Err(StatementError::new(key, message, "give it another name"));
+                return Err(StatementError::new(key, message, "give the entry another name"));
             }
             known.push((table, name));
         }
@@ -314,7 +325,8 @@ fn operand(record: &TableEntry) -> Result<StatedOperand, StatementError> {
     let name = record.name.clone();
     let whole = format!("operands.{name}");
     let Some(Value::Integer(fraction)) = record.field("fraction") else {
-        let remedy = "add fraction, the number of fraction bits: { bits = 12, fraction = 11 }, say";
+        let remedy =
+            "add fraction, the number of fraction bits: for example, { bits = 12, fraction = 11 }";
         return Err(StatementError::new(whole, format!("`{name}` has no `fraction`"), remedy));
     };
     let frac = *fraction as i32;
@@ -331,7 +343,7 @@ fn operand(record: &TableEntry) -> Result<StatedOperand, StatementError> {
             return Err(StatementError::new(
                 key("outside"),
                 message,
-                "remove it, or give from and to",
+                "remove `outside`, or give from and to",
             ));
         }
         let signed = record.flag("signed");
@@ -350,11 +362,12 @@ fn operand(record: &TableEntry) -> Result<StatedOperand, StatementError> {
         return Err(StatementError::new(whole, message, remedy));
     };
     if record.field("signed").is_some() {
-        let message = "a domain says itself whether there is a sign";
-        return Err(StatementError::new(key("signed"), message, "remove it"));
+        let message =
+            "`from` and `to` determine whether the operand has a sign, so `signed` has no effect";
+        return Err(StatementError::new(key("signed"), message, "remove `signed`"));
     }
     let Ok(fraction) = u32::try_from(frac) else {
-        let message = "the fraction bits of a domain are not below 0";
+        let message = "an operand with `from` and `to` cannot have fewer than 0 fraction bits";
         return Err(StatementError::new(
             key("fraction"),
             message,
@@ -374,14 +387,18 @@ fn operand(record: &TableEntry) -> Result<StatedOperand, StatementError> {
         return Err(StatementError::new(
             key("fraction"),
             message,
-            "fewer fraction bits, or a smaller domain",
+            "set fewer fraction bits, or a smaller domain",
         ));
     }
     if high <= low {
         let message = format!(
             "the domain from {from} to {to} has no two operands with {fraction} fraction bits"
         );
-        return Err(StatementError::new(key("to"), message, "a larger end, or more fraction bits"));
+        return Err(StatementError::new(
+            key("to"),
+            message,
+            "set a larger `to`, or more fraction bits",
+        ));
     }
     let outside = match record.text("outside") {
         Some("clamp") => Outside::Clamp,
@@ -406,13 +423,18 @@ fn result(
     let name = record.name.clone();
     let whole = format!("results.{name}");
     let Some(fraction) = record.bits("fraction") else {
-        let remedy = "add fraction, the number of fraction bits: { formula = \"x * y\", fraction = 11 }, say";
+        let remedy = "add fraction, the number of fraction bits: for example, { formula = \"x * y\", \
+                      fraction = 11 }";
         return Err(StatementError::new(whole, format!("`{name}` has no `fraction`"), remedy));
     };
     let key = format!("{whole}.formula");
     if record.text("formula").is_none() {
         let message = format!("`{name}` has no `formula`");
-        return Err(StatementError::new(whole, message, "add formula = \"x * y\", say"));
+        return Err(StatementError::new(
+            whole,
+            message,
+            "add a formula: for example, formula = \"x * y\"",
+        ));
     }
     let formula = formula(record.text("formula"), &key, keys, parts)?;
     let promise = match record.text("where") {
@@ -442,7 +464,7 @@ fn result(
             if record.field(field).is_some() {
                 let message = format!("`{field}` has no effect without `bits`");
                 let key = format!("{whole}.{field}");
-                return Err(StatementError::new(key, message, "add bits, or remove it"));
+                return Err(StatementError::new(key, message, "add bits, or remove the field"));
             }
         }
     }
@@ -510,8 +532,8 @@ fn resolved(
         let mut names: Vec<&str> = Vec::new();
         names.extend(keys.operands.0.iter().map(|operand| operand.name.as_str()));
         names.extend(parts.iter().map(|(part, _)| part.as_str()));
-        let message = format!("there is no operand and no part `{name}` here");
-        let remedy = format!("names: {}", names.join(", "));
+        let message = format!("there is no operand and no earlier part `{name}`");
+        let remedy = format!("use one of these names: {}", names.join(", "));
         let error = StatementError::new(key.to_owned(), message, remedy);
         return Err(StatementError { place: Some(span), ..error });
     }
@@ -536,7 +558,7 @@ fn promise(
         start..span.end.saturating_sub(BEFORE.len()).clamp(start, text.len())
     };
     let choice = parse(&format!("{BEFORE}{text}, 1, 0)")).map_err(|fault| {
-        let remedy = "a comparison of two formulas, as `x < y` or `s > 0`";
+        let remedy = "give a comparison of two formulas, for example `x < y` or `s > 0`";
         let error = StatementError::new(key.to_owned(), fault.message, remedy);
         StatementError { place: Some(moved(fault.span)), ..error }
     })?;
@@ -545,8 +567,12 @@ fn promise(
     match choice.kind {
         Kind::If(comparison, ..) => Ok(comparison),
         _ => {
-            let message = format!("`{text}` is no comparison");
-            Err(StatementError::new(key.to_owned(), message, "a comparison, as `x < y`"))
+            let message = format!("`{text}` is not a comparison");
+            Err(StatementError::new(
+                key.to_owned(),
+                message,
+                "give a comparison, for example `x < y`",
+            ))
         }
     }
 }

@@ -68,8 +68,8 @@ fn check(config: &Config, problems: &mut Problems) {
         return;
     }
     if !config.text(samples).is_empty() && problems.gives(formula) {
-        let message = format!("there are both `{formula}` and `{samples}`");
-        return problems.push(formula, message, "keep one of the two");
+        let message = format!("`{formula}` and `{samples}` are both given");
+        return problems.push(formula, message, "remove one of the two keys");
     }
     let refusal = match problems.is_refused() {
         true => function(&Keys::of(config)).err(),
@@ -97,7 +97,11 @@ pub fn found(config: &Config) -> Result<(TargetFunction, Arc<Piecewise>), Refusa
     };
     let it = find(&function, wish)?;
     if let Err(refusal) = ExpressionPlan::of_function(&function, &it) {
-        return Err(Refusal::new("operand.fraction", refusal.message, "fewer fraction bits"));
+        return Err(Refusal::new(
+            "operand.fraction",
+            refusal.message,
+            "set a smaller operand.fraction",
+        ));
     }
     Ok((function, it))
 }
@@ -132,13 +136,14 @@ fn function(keys: &Keys) -> Result<TargetFunction, Refusal> {
             "the domain from {} to {} has no two operands with {fraction} fraction bits",
             keys.from, keys.to
         );
-        let remedy = "a larger end, or more operand.fraction bits";
+        let remedy = "set a larger function.to or a larger operand.fraction";
         return Err(Refusal::new("function.to", message, remedy));
     }
     let count = (last - first) as u64 + 1;
     if keys.outside == Outside::Wrap && !count.is_power_of_two() {
-        let message = format!("a period of {count} operands is no power of two");
-        let remedy = "scale the operand so that it is, or \"clamp\" or \"anything\"";
+        let message = format!("the period has {count} operands, which is not a power of two");
+        let remedy = "scale the operand so that the number of operands is a power of two, or set \
+                      function.outside to \"clamp\" or \"anything\"";
         return Err(Refusal::new("function.outside", message, remedy));
     }
     let curve = if keys.samples.is_empty() {
@@ -177,7 +182,8 @@ impl End {
     pub(super) fn read(key: &'static str, text: &str, fraction: u32) -> Result<Self, Refusal> {
         let formula = parse(text).map_err(|fault| misread(key, fault))?;
         let (ceiling, is_operand) = formula.ceiling(fraction).map_err(|fault| {
-            let remedy = "write the end as a number, `2` or `1e-3`, or as a formula of numbers";
+            let remedy =
+                "write the end as a number, for example `2` or `1e-3`, or as a formula of numbers";
             Refusal { place: Some(fault.span), ..Refusal::new(key, fault.message, remedy) }
         })?;
         Ok(Self { ceiling, is_operand })
@@ -189,13 +195,13 @@ fn too_wide(from: &End, to: &End, fraction: u32) -> String {
     let bits = |end: &End| i128::BITS - end.ceiling.unsigned_abs().leading_zeros();
     let excess = bits(from).max(bits(to)) - (MAX_WIDTH - 2);
     match fraction.checked_sub(excess) {
-        Some(fewer) => format!("at most {fewer}, or a smaller domain"),
-        None => "a smaller domain: change function.from or function.to".to_owned(),
+        Some(fewer) => format!("set operand.fraction to at most {fewer}, or set a smaller domain"),
+        None => "set a smaller domain: change function.from or function.to".to_owned(),
     }
 }
 
 fn misread(key: &'static str, fault: Fault) -> Refusal {
-    let remedy =
-        "a formula has numbers, pi, e, + - * / ^, parentheses and functions: `1 / sqrt(x)`, say";
+    let remedy = "write a formula of numbers, pi, e, + - * / ^, parentheses and functions, for example `1 / \
+                  sqrt(x)`";
     Refusal { place: Some(fault.span), ..Refusal::new(key, fault.message, remedy) }
 }

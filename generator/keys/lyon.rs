@@ -66,8 +66,11 @@ fn check(config: &Config, problems: &mut Problems) {
     let (distance, vector) = (keys.distance_fraction, keys.vector_fraction);
     if distance > 2 * vector {
         let message =
-            format!("{distance} fraction bits are more than the squares of the components have");
-        let remedy = format!("at most {}, or a larger vector.fraction", 2 * vector);
+            format!("D^2 has {distance} fraction bits, more than the squares of the components");
+        let remedy = format!(
+            "set distance.fraction to at most {}, or set a larger vector.fraction",
+            2 * vector
+        );
         problems.push("distance.fraction", message, remedy);
     }
 }

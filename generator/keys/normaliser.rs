@@ -14,8 +14,7 @@ glint_config::keys! {
             "Number of fraction bits F of the components of the vector, whose format is s1.F."),
         address: u32 = address(),
         inverse: u32 = inverse(),
-        kept: u32 = Key::integer("output.fraction", 14, 2..=20, "Number of fraction bits C of the results, \
-                                                                 whose format is s1.C."),
+        kept: u32 = Key::integer("output.fraction", 14, 2..=20, "Number of fraction bits C of the results, whose format is s1.C."),
         rounding: Rounding = Key::rounding("output.rounding", "nearest",
             "Rounding mode of the components of the unit vector."),
     }
@@ -34,8 +33,7 @@ pub(super) fn inverse() -> Key {
         "inverse.fraction",
         20,
         6..=24,
-        "Number of fraction bits R of the inverse root, whose format \
-                                                  is u1.R.",
+        "Number of fraction bits R of the inverse root, whose format is u1.R.",
     )
 }
 
@@ -48,8 +46,11 @@ fn check(config: &Config, problems: &mut Problems) {
     let Keys { fraction, address, inverse, kept, .. } = Keys::of(config);
     check_root(fraction, address, inverse, problems);
     if kept > inverse {
-        let message = format!("more fraction bits than the {inverse} of the inverse root");
-        let remedy = format!("at most {inverse}, or a larger inverse.fraction");
+        let message = format!(
+            "the results have more fraction bits than the inverse root, which has {inverse}"
+        );
+        let remedy =
+            format!("set output.fraction to at most {inverse}, or set a larger inverse.fraction");
         problems.push("output.fraction", message, remedy);
     }
 }
@@ -60,13 +61,20 @@ pub(super) fn check_root(fraction: u32, address: u32, inverse: u32, problems: &m
     let sum = 2 * fraction + 4;
     if address >= sum {
         let message = format!(
-            "the sum of squares has {sum} bits, of which one at least is left for the way along a segment"
+            "the sum of squares has {sum} bits, and at least one of these bits must select the position \
+             within a segment"
         );
-        let remedy = format!("at most {}, or a larger vector.fraction", sum - 1);
+        let remedy =
+            format!("set table.address to at most {}, or set a larger vector.fraction", sum - 1);
         problems.push("table.address", message, remedy);
     }
     if inverse < address {
-        let message = format!("coarser than the {address} bits of table.address");
-        problems.push("inverse.fraction", message, format!("at least {address}"));
+        let message =
+            format!("the inverse root has fewer fraction bits than table.address has, {address}");
+        problems.push(
+            "inverse.fraction",
+            message,
+            format!("set inverse.fraction to at least {address}"),
+        );
     }
 }

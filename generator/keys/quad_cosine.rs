@@ -47,22 +47,29 @@ fn check(config: &Config, problems: &mut Problems) {
     let keys = Keys::of(config);
     common::check_exponents(&keys.domain, keys.exponent_bits, problems);
     if keys.exponent_bits < 3 {
-        let message = "decoder 10 tells n = 7 from smaller ones, which takes three bits".to_owned();
-        problems.push("exponent.bits", message, "at least 3".to_owned());
+        let message = "decoder 10 compares n with 7, and this takes three bits".to_owned();
+        problems.push("exponent.bits", message, "set exponent.bits to at least 3".to_owned());
     }
     let fraction = keys.angle_fraction;
     if keys.angle_multiplied > fraction {
-        let message = format!("the angle has {fraction} fraction bits");
-        let remedy = format!("at most {fraction}, or a larger angle.fraction");
+        let message = format!(
+            "multiplier 11 uses more bits of the angle than the angle has fraction bits, {fraction}"
+        );
+        let remedy =
+            format!("set angle.multiplied to at most {fraction}, or set a larger angle.fraction");
         problems.push("angle.multiplied", message, remedy);
     }
     let product = keys.angle_multiplied + keys.root_fraction;
     if keys.table_address > product {
-        let message = format!("the angle times the root has {product} fraction bits");
-        let remedy = format!("at most {product}, or a larger angle.multiplied or root.fraction");
+        let message = format!(
+            "each table has more address bits than the angle times the root has fraction bits, {product}"
+        );
+        let remedy = format!(
+            "set table.address to at most {product}, or set a larger angle.multiplied or root.fraction"
+        );
         problems.push("table.address", message, remedy);
     }
     let size = (keys.table_address + 2, keys.fraction);
-    let remedy = "fewer address bits or narrower entries";
+    let remedy = "set a smaller table.address or a smaller intensity.fraction";
     common::check_rom_size("table.address", "ROM 12", size, remedy, problems);
 }

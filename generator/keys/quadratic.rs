@@ -54,8 +54,11 @@ fn check(config: &Config, problems: &mut Problems) {
     let (difference, cosine) = (keys.difference_fraction, keys.operands.cosine.fraction);
     if difference > 2 * cosine {
         let message =
-            format!("{difference} fraction bits are more than the square of the cosine has");
-        let remedy = format!("at most {}, or a larger cosine.fraction", 2 * cosine);
+            format!("c^2 - c has {difference} fraction bits, more than the square of the cosine c");
+        let remedy = format!(
+            "set difference.fraction to at most {}, or set a larger cosine.fraction",
+            2 * cosine
+        );
         problems.push("difference.fraction", message, remedy);
     }
 }

@@ -96,23 +96,31 @@ fn check(config: &Config, problems: &mut Problems) {
     // No combination of key values makes a net wider than 64 bits. The widest net is the product of n/2 and the output of adder
     // 15, with the fraction bits of the square: 13 + 48 bits.
     if keys.patent() && keys.operands.exponent_bits < 2 {
-        let message = "the patent's wiring of n/2 drops the only bit of n".to_owned();
-        let remedy = "at least 2 with arithmetic = \"patent\"".to_owned();
+        let message = "n has one bit, which the patent's wiring of n/2 drops".to_owned();
+        let remedy = "set exponent.bits to at least 2, or set arithmetic = \"exact\"".to_owned();
         problems.push("exponent.bits", message, remedy);
     }
     let (fraction, product) =
         if keys.patent() { (cosine, cosine) } else { (keys.sine_fraction, keys.product_fraction) };
     if product > 2 * fraction.min(cosine) {
-        let message = format!("{product} fraction bits are more than the products have");
-        problems.push("product.fraction", message, format!("at most {}", 2 * fraction.min(cosine)));
+        let message = format!(
+            "the registers have {product} fraction bits, more than the products that they hold"
+        );
+        problems.push(
+            "product.fraction",
+            message,
+            format!("set product.fraction to at most {}", 2 * fraction.min(cosine)),
+        );
     }
     if keys.scheme == RomLayout::Direct {
         if keys.address > cosine {
-            let message = "more address bits than the cosine has fraction bits".to_owned();
-            let remedy = format!("at most {cosine}, or a larger cosine.fraction");
+            let message =
+                "the sine table has more address bits than the cosine has fraction bits".to_owned();
+            let remedy =
+                format!("set sine.address to at most {cosine}, or set a larger cosine.fraction");
             problems.push("sine.address", message, remedy);
         }
-        let remedy = "fewer address bits, or sine.scheme = \"segmented\"";
+        let remedy = "set a smaller sine.address, or set sine.scheme = \"segmented\"";
         let size = (keys.address, fraction);
         common::check_rom_size("sine.address", "ROM 18", size, remedy, problems);
         return;
@@ -123,14 +131,19 @@ fn check(config: &Config, problems: &mut Problems) {
         problems.push(
             "sine.segments",
             format!("2^{rest} exact entries would remain below the last range"),
-            "as many ranges as leave 0 to 12 bits of cosine.fraction, two bits a range".to_owned(),
+            "set so many ranges that cosine.fraction minus two bits for each range is from 0 to 12"
+                .to_owned(),
         );
     }
     let slope = keys.slope_fraction;
     if slope > fraction || most + slope < fraction {
-        let message =
-            format!("{slope} fraction bits of the slope do not go with {fraction} of the sine");
-        let remedy = format!("{} to {fraction}", fraction.saturating_sub(most).max(8));
+        let message = format!(
+            "the slope has {slope} fraction bits, which do not fit the {fraction} fraction bits of the sine"
+        );
+        let remedy = format!(
+            "set sine.slope_fraction to a value from {} to {fraction}",
+            fraction.saturating_sub(most).max(8)
+        );
         problems.push("sine.slope_fraction", message, remedy);
     }
 }

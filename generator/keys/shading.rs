@@ -67,9 +67,12 @@ fn check(config: &Config, problems: &mut Problems) {
     let keys = Keys::of(config);
     let most = (1 << keys.exponent_bits) - 1;
     if keys.most > most {
-        let message =
-            format!("{} does not fit the {} bits of the exponent", keys.most, keys.exponent_bits);
-        let remedy = format!("at most {most}, or a larger exponent.bits");
+        let message = format!(
+            "the largest n, {}, does not fit the {} bits of the exponent",
+            keys.most, keys.exponent_bits
+        );
+        let remedy =
+            format!("set domain.exponent_max to at most {most}, or set a larger exponent.bits");
         problems.push("domain.exponent_max", message, remedy);
         return;
     }
@@ -81,19 +84,23 @@ fn check(config: &Config, problems: &mut Problems) {
     let Some(problem) = why.iter().next() else { return };
     let error = &problem.error;
     if part != function::schema().device {
-        let message = format!("its part `{part}` cannot be made: {}: {}", error.key, error.message);
-        return problems.push("highlight", message, "other widths");
+        let message = format!(
+            "the part `{part}` of the device cannot be made: `{}`: {}",
+            error.key, error.message
+        );
+        return problems.push("highlight", message, "set other widths");
     }
     // The keys of the part are not the keys of this file. The part shares only the formula with this file, and makes its
     // other keys itself.
     let message = error.message.clone();
     if error.key == FORMULA {
-        let remedy = error
-            .remedy
-            .replace("change function.from or function.to", "the cosine x is from 0 to 1");
+        let remedy = error.remedy.replace(
+            "change function.from or function.to",
+            "change the formula, because the cosine x is from 0 to 1",
+        );
         problems.push_within(FORMULA, problem.place.clone(), message, remedy);
     } else {
-        let remedy = "another formula, or fewer bits of cosine.fraction";
+        let remedy = "give another formula, or set a smaller cosine.fraction";
         problems.push(FORMULA, message, remedy);
     }
 }

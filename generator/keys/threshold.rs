@@ -30,9 +30,9 @@ fn check(config: &Config, problems: &mut Problems) {
     let most = 100 * ((1 << keys.operands.colours.bits) - 1);
     if let Some(level) = keys.levels.iter().find(|&&level| level >= most) {
         let message = format!(
-            "{level} hundredths are as much as the largest output: nothing would be visible"
+            "a level of {level} hundredths is as large as the largest output, so nothing would be visible"
         );
-        let remedy = format!("at most {}, or a larger colour.bits", most - 1);
+        let remedy = format!("set levels of at most {}, or set a larger colour.bits", most - 1);
         problems.push("visibility.levels", message, remedy);
     }
 }

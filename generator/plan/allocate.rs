@@ -205,12 +205,12 @@ impl ExcessiveResult {
 
     fn refusal(&self, statement: &ExpressionStatement, plan: &ExpressionPlan) -> PlanRefusal {
         let message = format!(
-            "the error of `{}` {} for {}, whatever the widths of the parts are",
+            "the error of `{}` {} for {}, with any widths of the parts",
             statement.results[self.result].name,
             self.worst.words(plan),
             statement.place(&self.worst.limits)
         );
-        let remedy = "allow a larger error, or leave these operands out by `where`";
+        let remedy = "allow a larger error, or exclude these operands with `where`";
         PlanRefusal::new(message, remedy).of_result(self.result)
     }
 }

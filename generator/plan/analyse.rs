@@ -570,7 +570,7 @@ fn check_fit(node: NodeId, value: NodeError, format: Format) -> Result<(), Undec
 fn known_places(node: NodeId, places: NodeError) -> Result<i32, Undecided> {
     match places.known() {
         Some(places) => Ok(places as i32),
-        None => Err(Undecided { node, what: "the places of its shift are not known" }),
+        None => Err(Undecided { node, what: "the distance of its shift is not known" }),
     }
 }
 
@@ -592,7 +592,10 @@ fn approximated(
     // No raw operand lies between the end of the domain and one unit beyond it.
     let unit = exp2(-function.operand.frac);
     if actual.low <= domain.low - unit || actual.high >= domain.high + unit {
-        return Err(Undecided { node: id, what: "its operand may leave the domain" });
+        return Err(Undecided {
+            node: id,
+            what: "its operand can leave the domain of the function",
+        });
     }
     let undecided = Undecided { node: id, what: "the function has no value, or no slope" };
     let glint_approximate::Curve::Formula(formula) = &function.curve else {

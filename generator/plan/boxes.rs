@@ -58,7 +58,7 @@ impl BoxError {
         match &self.undecided {
             None => format!("cannot be proved below {:.3} units", self.units),
             Some(Undecided { node, what }) => {
-                format!("has no limit, because of the part `{}`: {what},", plan.node(*node).name)
+                format!("has no limit (the part `{}`: {what})", plan.node(*node).name)
             }
         }
     }

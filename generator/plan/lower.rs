@@ -193,10 +193,10 @@ impl<'s> Lowering<'s> {
         if is_refused && !(format.holds(low) && format.holds(high)) {
             let [low, high] = [low, high].map(|raw| own.to_f64(raw));
             let message = format!(
-                "`{name}` has {} bits, {format}, and its values need {own}, from {low} to {high}",
+                "`{name}` has {} bits ({format}), but its values need {own}: they are from {low} to {high}",
                 format.width()
             );
-            let remedy = "give it more bits, or overflow = \"saturate\" or \"wrap\"";
+            let remedy = "give the result more bits, or set overflow = \"saturate\" or \"wrap\"";
             return Err(PlanRefusal::new(message, remedy));
         }
         self.plan.narrow(&format!("{name}_in_width"), node, *format, Rounding::Truncate)
@@ -319,9 +319,8 @@ impl<'s> Lowering<'s> {
         if let Some((raw, frac)) = dyadic(part) {
             return self.plan.constant("constant", raw, frac);
         }
-        let fault = |message: String| {
-            PlanRefusal::new(message, "write a number that is finite").at(&part.span)
-        };
+        let fault =
+            |message: String| PlanRefusal::new(message, "write a finite number").at(&part.span);
         let finest = self.finest;
         self.rounding(finest + 2, |own, frac| {
             let value = part.enclose(&[]).map_err(|it| fault(it.message))?;
@@ -349,8 +348,8 @@ impl<'s> Lowering<'s> {
             Kind::Binary(operator, a, b) => self.binary(*operator, a, b, part),
             Kind::If(comparison, yes, no) => self.choice(comparison, yes, no),
             _ => Err(PlanRefusal::new(
-                "this function of several operands has no rule",
-                "write it as a function of one part: a sum, a product or a quotient",
+                "Glint cannot compute this function of several operands",
+                "write the function with one argument, which can be a sum, a product or a quotient",
             )),
         }
     }
@@ -371,8 +370,8 @@ impl<'s> Lowering<'s> {
             }
             Operator::Power => self.part(&exponential::written_with_logarithm(a, b, &part.span)),
             Operator::Mod => Err(PlanRefusal::new(
-                "a remainder by a number that varies has no rule",
-                "write the remainder by a number, x % 1 for example",
+                "Glint cannot compute a remainder with a divisor that varies",
+                "use a constant divisor, for example x % 1",
             )),
             Operator::Mul | Operator::Div => {
                 let factor = [a, b].into_iter().find(|it| it.operands().is_empty());
@@ -472,7 +471,7 @@ impl<'s> Lowering<'s> {
         let (first, last) = domain;
         if last <= first {
             return Err(PlanRefusal::new(
-                "this part has a single value",
+                "this part has only one value",
                 "write the value as a number",
             ));
         }

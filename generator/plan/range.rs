@@ -18,7 +18,7 @@ const DIVISIONS_OF_AN_END: usize = 300;
 
 /// The remedy for a formula that has no finite value.
 pub(super) const LIMIT_THE_OPERANDS: &str =
-    "limit the operands by `where`, for example where = \"y > 0\", or by `from` and `to`";
+    "limit the operands with `where`, for example where = \"y > 0\", or with `from` and `to`";
 
 /// The reason why no interval for the values of a part was found.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,7 +39,7 @@ impl NoRange {
                 PlanRefusal::new(message, LIMIT_THE_OPERANDS).at(&part.span)
             }
             Self::NothingPromised => PlanRefusal::new(
-                "no operands of the domains satisfy `where`",
+                "no operands in the domains satisfy `where`",
                 "change `where`, or the domains of the operands",
             ),
         }

@@ -170,9 +170,9 @@ fn refusals_name_the_part_and_a_remedy() {
     for (formula, promise, message, remedy) in [
         ("1 + x / y", None, "this is not finite", "where"),
         ("z + x", None, "there is no operand `z`", "name an operand"),
-        ("x % (y + 2)", None, "a remainder by a number that varies", "x % 1"),
+        ("x % (y + 2)", None, "a remainder with a divisor that varies", "x % 1"),
         ("if(sin(x + 2) > cos(y), x, y)", None, "cannot be proved below", "where"),
-        ("x * y", Some("x > 7"), "no operands of the domains satisfy", "where"),
+        ("x * y", Some("x > 7"), "no operands in the domains satisfy", "where"),
         ("sqrt(x + y)", None, "this is not finite, or has no value", "where"),
         ("atan2(y, x)", None, "not finite, or has no value", "where"),
     ] {
@@ -366,7 +366,7 @@ fn stated_widths_refuse_saturate_or_wrap() {
     let refusal =
         find(&statement(narrow(StatedOverflow::Refuse))).expect_err("values from -2 to 1.75");
     assert!(
-        refusal.message.contains("`r` has 4 bits, s0.3, and its values need s1.3"),
+        refusal.message.contains("`r` has 4 bits (s0.3), but its values need s1.3"),
         "{refusal:?}"
     );
     assert!(refusal.remedy.contains("wrap"), "{refusal:?}");

@@ -93,14 +93,18 @@ impl Engine for Verilog {
         fs::write(dir.join(POINTS_FILE), list).context("cannot write the list of points")?;
         let run = self.bench.run(self.limit)?;
         ensure!(run.passed, "the bench fails:\n{}", run.transcript.trim());
-        let text = fs::read_to_string(dir.join(RESULTS_FILE)).context("the bench wrote nothing")?;
+        let text =
+            fs::read_to_string(dir.join(RESULTS_FILE)).context("the bench wrote no results")?;
         let mut out = Vec::with_capacity(points.result_count() * self.results.len());
         let (mut at, mut shown) = (0, 0);
         for line in text.lines() {
-            ensure!(at < points.len(), "there are too many results");
+            ensure!(at < points.len(), "the bench wrote too many results");
             if line == "." {
                 let wanted = points.results(at);
-                ensure!(shown == wanted, "there are {shown} results, not {wanted}");
+                ensure!(
+                    shown == wanted,
+                    "the bench wrote {shown} results for a point, not {wanted}"
+                );
                 (at, shown) = (at + 1, 0);
                 continue;
             }
@@ -113,7 +117,11 @@ impl Engine for Verilog {
                 out.push(format.raw(bits) as i64);
             }
         }
-        ensure!(at == points.len(), "results of {at} points, not {}", points.len());
+        ensure!(
+            at == points.len(),
+            "the bench wrote the results of {at} points, not {}",
+            points.len()
+        );
         Ok(out)
     }
 }

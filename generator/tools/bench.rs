@@ -156,7 +156,7 @@ impl BuiltBench {
                 let made = Tool::find_in("bench", built.as_os_str());
                 (
                     made.map_err(|_| {
-                        anyhow!("{simulator} ended well, and made no program of `{top}`")
+                        anyhow!("{simulator} succeeded, but made no program of `{top}`")
                     })?,
                     &[],
                 )
@@ -181,14 +181,14 @@ impl BuiltBench {
         let (program, arguments) = &self.program;
         let run = program
             .run(*arguments, self.directory(), limit)
-            .with_context(|| format!("the bench `{top}` under {simulator}"))?;
+            .with_context(|| format!("cannot run the bench `{top}` under {simulator}"))?;
         let transcript = run.output;
         let passed = match verdict(&transcript) {
             Some(passed) if run.status.success() => passed,
             // $fatal ends the simulation with an error status.
             Some(false) => false,
             Some(true) => bail!(
-                "the bench `{top}` under {simulator} printed PASS and then ended badly ({}){}",
+                "the bench `{top}` under {simulator} printed PASS and then failed ({}){}",
                 run.status,
                 capture::quote(&transcript)
             ),
@@ -221,7 +221,7 @@ fn write_files<'a, N: AsRef<str>, C: AsRef<[u8]>>(
             sources.push(name);
         }
     }
-    ensure!(!sources.is_empty(), "there is no Verilog file among those given");
+    ensure!(!sources.is_empty(), "none of the given files is a Verilog file");
     Ok(sources)
 }
 

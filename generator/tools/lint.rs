@@ -22,7 +22,7 @@ pub fn lint(
     let options: &[&str] = match tool.name() {
         "iverilog" => &["-g2005", "-Wall", "-t", "null", "-s", top],
         "verilator" => &["--lint-only", "-Wall", "--top-module", top],
-        other => bail!("`{other}` is no linter that Glint knows"),
+        other => bail!("Glint does not know the linter `{other}`"),
     };
     let sources = sources.iter().map(String::as_str);
     let arguments = options.iter().copied().chain(sources);

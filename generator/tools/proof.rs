@@ -35,7 +35,8 @@ pub fn prove(directory: &Path, file: &str, limits: impl Into<Limits>) -> Result<
         .collect();
     ensure!(
         commands.len() == 3,
-        "`{}` does not say how to make the problem, prove the base case, and prove the induction",
+        "`{}` does not have the three commands that make the problem, prove the base case and prove the \
+         induction",
         file.display()
     );
     for command in commands {
@@ -47,7 +48,7 @@ pub fn prove(directory: &Path, file: &str, limits: impl Into<Limits>) -> Result<
             continue;
         }
         let what = format!("{}{}", command.join(" "), capture::quote(&run.output));
-        ensure!(!run.status.success(), "without the line `Status: PASSED`: {what}");
+        ensure!(!run.status.success(), "the output has no line `Status: PASSED`: {what}");
         match limits.memory.filter(|_| ran_out_of_memory(&run.output)) {
             Some(bytes) => {
                 bail!(LimitReached(format!("a process took more than {} MB: {what}", bytes >> 20)))

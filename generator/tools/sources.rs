@@ -65,7 +65,7 @@ impl<'a> YosysSources<'a> {
     /// Fails if the file does not exist or is not UTF-8.
     pub fn text(&self, name: &str) -> Result<String> {
         fs::read_to_string(self.path().join(name))
-            .with_context(|| format!("a tool wrote no `{name}`"))
+            .with_context(|| format!("the tool did not write `{name}`"))
     }
 
     /// Parses a JSON file that a tool has written into the directory, and returns its value.
@@ -74,6 +74,7 @@ impl<'a> YosysSources<'a> {
     /// Fails if the file does not exist, or is no JSON.
     pub fn json(&self, name: &str) -> Result<Value> {
         let text = self.text(name)?;
-        serde_json::from_str(&text).with_context(|| format!("`{name}` of a tool is no JSON"))
+        serde_json::from_str(&text)
+            .with_context(|| format!("the file `{name}`, which the tool wrote, is not JSON"))
     }
 }

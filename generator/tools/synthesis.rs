@@ -46,11 +46,12 @@ pub fn statistics_commands(family: &Family) -> &'static str {
 pub fn usage(sources: &YosysSources, top: &str, family: &Family) -> Result<Usage> {
     let text = sources.text("statistics.json").context("`yosys` wrote no statistics")?;
     let statistics: Value =
-        serde_json::from_str(&text).context("the statistics of `yosys` are no JSON")?;
+        serde_json::from_str(&text).context("the statistics of `yosys` are not JSON")?;
     // The netlist is flat, so that the top module has all cells.
-    let cells = statistics["modules"][format!("\\{top}")]["num_cells_by_type"]
-        .as_object()
-        .with_context(|| format!("the statistics of `yosys` do not tell the cells of `{top}`"))?;
+    let cells =
+        statistics["modules"][format!("\\{top}")]["num_cells_by_type"].as_object().with_context(
+            || format!("the statistics of `yosys` do not contain the cells of `{top}`"),
+        )?;
     let count = |kinds: Kinds| {
         let number = |kind: &str| cells.get(kind).and_then(Value::as_u64).unwrap_or(0);
         kinds.iter().map(|(kind, weight)| number(kind) * weight).sum()
@@ -94,7 +95,9 @@ fn luts_of_products(
 fn number(cell: &Value, parameter: &str) -> Result<u64> {
     let digits = cell["parameters"][parameter].as_str();
     let value = digits.and_then(|digits| u64::from_str_radix(digits, 2).ok());
-    value.with_context(|| format!("the netlist of `yosys` does not tell the {parameter} of a cell"))
+    value.with_context(|| {
+        format!("the netlist of `yosys` does not contain the {parameter} of a cell")
+    })
 }
 
 /// Returns the major and the minor number of Yosys's version. For example, `Yosys 0.70 (git sha1 …)` gives 0 and 70. Returns

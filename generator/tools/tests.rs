@@ -167,7 +167,7 @@ fn the_verdict_is_a_line_and_the_exit_status_counts() {
         assert!(outcome.build.is_empty());
     }
     for (script, expected) in [
-        ("echo PASS; exit 1", "printed PASS and then ended badly"),
+        ("echo PASS; exit 1", "printed PASS and then failed"),
         ("echo PASSED", "without a PASS or FAIL line"),
         ("echo 'no PASS here'", "without a PASS or FAIL line"),
         ("", "printed nothing"),
@@ -202,7 +202,7 @@ fn only_plain_distinct_names_are_written() {
         assert!(message(run(names)).contains("not a plain file name"), "{names:?}");
     }
     assert!(message(run(&["a.v", "a.v"])).contains("two files"));
-    assert!(message(run(&["a.mem"])).contains("no Verilog file"));
+    assert!(message(run(&["a.mem"])).contains("is a Verilog file"));
 }
 
 #[test]

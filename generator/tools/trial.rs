@@ -45,16 +45,16 @@ impl Tool {
         for trial in trials.iter().filter(|trial| trial.tool == self.name) {
             let dir = Directory::new().context("cannot make a temporary directory")?;
             fs::write(dir.path().join(&trial.file), &trial.contents)
-                .context("cannot write a trial for a tool")?;
+                .context("cannot write the test file for a tool")?;
             let run = self.run(&trial.arguments, dir.path(), limit)?;
             let does = match (run.status.success(), trial.succeeds) {
                 (true, false) => "accepts",
                 (false, true) => "refuses",
-                _ if !says(&run.output, &trial.says) => "says nothing of",
+                _ if !says(&run.output, &trial.says) => "does not report",
                 _ => continue,
             };
             let said = run.output.lines().next().map_or_else(String::new, |it| format!(": {it}"));
-            bail!("`{self}` {does} {}, so that it is no {self} that works{said}", trial.what);
+            bail!("`{self}` {does} {}, so this {self} does not work{said}", trial.what);
         }
         Ok(())
     }

@@ -117,7 +117,7 @@ fn a_problem_of_a_key_that_is_not_given_names_it() {
     let problems = parse("meter.toml", "device = \"meter\"\nrange = 60\n", &[schema]);
     let text = problems.expect_err("a problem").to_string();
     assert!(
-        text.contains("`scale` = \"linear\", its default, since it is not given: a linear scale"),
+        text.contains("`scale` is not set and has the default \"linear\": a linear scale"),
         "{text}"
     );
     assert!(text.contains("meter.toml"), "{text}");

@@ -50,13 +50,13 @@ fn each_mistake_has_its_message_its_place_and_its_remedy() {
 fn what_is_not_said_in_the_file() {
     assert_eq!(
         of_file("a.toml", "strict = true\n"),
-        ["0:0 device | the file does not say which device it configures \
+        ["0:0 device | the file does not name the device that it configures \
           | add `device = \"…\"`; devices: lamp, mirror"]
     );
     assert_eq!(
         of_file("configs/3-lamps.toml", "device = \"lamp\"\n"),
         [
-            "0:0 name | the module name \"3_lamps\" starts with a digit; it comes from the name of the file \
+            "0:0 name | the module name \"3_lamps\" starts with a digit; the module has the name of the file \
           | set `name`: give a Verilog identifier of at most 60 letters, digits and _, as \"glint_3_lamps\""
         ]
     );
@@ -117,14 +117,14 @@ error: `cosine.signed` must be true or false, not the integer 1
     let problems = parse("a.toml", "# nothing\n", &schemas()).expect_err("no device");
     assert_eq!(
         problems.to_string(),
-        "error: the file does not say which device it configures\n--> a.toml\n \
+        "error: the file does not name the device that it configures\n--> a.toml\n \
          = help: add `device = \"…\"`; devices: lamp, mirror"
     );
 }
 
 #[test]
 fn empty_files_and_other_line_ends() {
-    let empty = "0:0  | the file is empty | `glint new DEVICE` writes a file to start from; \
+    let empty = "0:0  | the file is empty | write a configuration with `glint new DEVICE > FILE.toml`; \
                  devices: lamp, mirror";
     for text in ["", "\n\n", "\u{feff}", " \r\n"] {
         assert_eq!(of_file("lamp.toml", text), [empty]);
@@ -182,7 +182,7 @@ fn values_from_a_program_obey_the_same_rules() {
             "0:0 arithmetic | `arithmetic` must be a string, not the integer 1 \
              | give \"exact\" or \"patent\" (default \"exact\")",
             "0:0 sine.segments | `sine.segments` has no effect with sine.scheme = \"direct\" \
-             | remove it, or set sine.scheme = \"segmented\"",
+             | remove the key, or set sine.scheme = \"segmented\"",
         ]
     );
 }
@@ -195,23 +195,27 @@ fn files_that_cannot_be_read() {
         Ok(config) => vec![format!("accepted: {config:?}")],
         Err(problems) => lines(&problems),
     };
-    let new = "0:0  | there is no such file | `glint new DEVICE` writes a file to start from";
+    let new =
+        "0:0  | there is no such file | write a configuration with `glint new DEVICE > FILE.toml`";
     assert_eq!(of(&path("lamp.toml")), [new]);
     put(path("lamp-8.toml"), "device = \"lamp\"\n");
     let near = path("lamp-8.toml").display().to_string();
     let near = format!("0:0  | there is no such file | did you mean `{near}`?");
     assert_eq!(of(&path("lamp_9.toml")), [near]);
-    assert_eq!(of(directory.path()), ["0:0  | this is a directory | give the path of a TOML file"]);
+    assert_eq!(
+        of(directory.path()),
+        ["0:0  | the path is a directory | give the path of a TOML file"]
+    );
     for (name, contents, said) in [
         (
             "latin.toml",
             &b"device = \"lamp\"\n# gr\xfcn\n"[..],
-            "2:5  | the file is not UTF-8: byte 20 is 0xfc | save it as UTF-8 text",
+            "2:5  | the file is not UTF-8: byte 20 is 0xfc | save the file as UTF-8 text",
         ),
         (
             "wide.toml",
             b"\xff\xfed\0e\0",
-            "1:1  | the file is not UTF-8: byte 0 is 0xff | it looks like UTF-16; save it as UTF-8",
+            "1:1  | the file is not UTF-8: byte 0 is 0xff | save the file as UTF-8; the file looks like UTF-16",
         ),
         (
             "large.toml",

@@ -127,7 +127,7 @@ fn mistakes_in_a_schema_are_found() {
             "`package` is both a key and a table",
             "`twice` is declared twice",
             "`twice` depends on `later`, which is not declared before it",
-            "`later` depends on `twice` = maybe, which that can never be",
+            "`later` depends on `twice` = maybe, a value that the key cannot have",
         ]
     );
     let refused =

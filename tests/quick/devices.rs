@@ -175,7 +175,7 @@ fn a_narrow_normaliser_is_proved() {
         ("proved", &[][..])
     );
     let said = proof.words("");
-    assert!(said.starts_with("an output is off by 0."), "{said}");
+    assert!(said.starts_with("the error of an output is at most 0."), "{said}");
 }
 
 /// The worked example shows something, and hints lie within the domain.
@@ -276,7 +276,10 @@ fn results_that_depend_on_the_past_and_results_that_never_come_are_refused() {
     };
     let silent = Device { contract: |_| sum_model(false).contract(Sum), ..sum };
     for (device, expected) in [
-        (sum, "`sum_out` depends on what `earlier` held before the computation; load `earlier`"),
+        (
+            sum,
+            "`sum_out` depends on the value that `earlier` had before the computation; load `earlier`",
+        ),
         (silent, "shows no result within"),
     ] {
         let config = Config::defaults(&(device.schema)(), "sum");
@@ -346,14 +349,15 @@ fn a_reference_without_a_value_is_a_failure_everywhere() {
         let outcome = core.lockstep(1).and_then(|it| it.run(500, &|_| ())).expect("a run");
         for bound in [contract.bound(), Bound::of(Vec::new())] {
             let failures = outcome.failures(&bound).concat();
-            let expected = "the formula has no finite value for `copy_out` at x = ";
+            let expected =
+                "the formula has no finite value for `copy_out` at the raw operands x = ";
             assert!(failures.starts_with(expected), "{failures}");
         }
 
         let places = Places::of_f(contract);
         let peak = places.check(0..places.blocks(), &|_| ());
         let proof = Proof::new(contract, peak, Peak::NONE);
-        assert_eq!(proof.failures, ["the formula has no finite value at x = 5 (raw)"]);
+        assert_eq!(proof.failures, ["the formula has no finite value at the raw operands x = 5"]);
         assert_eq!(proof.verdict(contract, places.sweep()), "FAILS");
         // JSON has no infinite number.
         let kept = serde_json::to_string(&peak).expect("JSON");

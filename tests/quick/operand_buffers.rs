@@ -125,7 +125,7 @@ fn buffers_that_cannot_be_are_refused_with_their_place() {
     assert!(late.contains("declared before its buffer"), "{late}");
     let waits = refused(true, true);
     assert!(
-        waits.contains("`wait` waits for start") && waits.contains("operand_buffers.rs"),
+        waits.contains("`wait` waits for `start`") && waits.contains("operand_buffers.rs"),
         "{waits}"
     );
 }

@@ -98,7 +98,7 @@ fn a_result_that_decides_is_refused_with_its_place() {
     })
     .expect_err("it goes on by a condition");
     assert!(
-        mistakes.contains("microinstruction `result` sets valid and goes on by a condition"),
+        mistakes.contains("microinstruction `result` sets `valid` and decides on a condition"),
         "{mistakes}"
     );
     assert!(mistakes.contains("output_registers.rs"), "{mistakes}");

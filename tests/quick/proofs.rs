@@ -156,5 +156,5 @@ fn a_bound_is_proven_where_somebody_proved_it() {
     assert_eq!(backing(&honest, proofs.path()), Backing::Author);
     put(&certificate, &text[..text.len() / 2]);
     let damaged = format!("{:#}", honest.backing(proofs.path()).expect_err("half a file"));
-    assert!(damaged.contains("mine.json` is damaged: restore it"), "{damaged}");
+    assert!(damaged.contains("mine.json` is damaged: restore the record"), "{damaged}");
 }

@@ -40,7 +40,7 @@ fn colliding_names_in_the_map_are_refused() {
         let error: KeyError = error.downcast().expect("a key");
         assert_eq!(error.key, "interface.registers");
         assert_eq!(error.message, format!("two registers of `device` are named `{name}`"));
-        assert!(error.remedy.contains("another one in the description"), "{error}");
+        assert!(error.remedy.contains("rename the operand or the result"), "{error}");
     }
 }
 
@@ -88,7 +88,7 @@ fn a_model_that_does_not_know_the_registers_is_refused() {
     assert!(with_keys(by_hand, "").is_ok());
     for (key, toml) in KEYS {
         let error = with_keys(by_hand, toml).err().expect("no model").to_string();
-        let remedy = format!("leave {key} out");
+        let remedy = format!("remove {key}");
         assert!(error.contains("`threshold`") && error.contains(&remedy), "{error}");
     }
 }

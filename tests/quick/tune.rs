@@ -174,10 +174,10 @@ fn a_goal_out_of_reach_says_what_is_in_the_way() {
     let many = TuningGoal { rate: Some(500.0), ..within(0.9) };
     for (goal, said) in [
         // Rounding to eight bits costs half a unit, whatever f is.
-        (within(0.1), "no configuration keeps 0.1 output units"),
+        (within(0.1), "no configuration has an error of at most 0.1 output units"),
         (within(0.1), "rounding of the colour outputs (`output.rounding`), 0.500000"),
-        (fast, "5000.0 MHz are wanted"),
-        (many, "4000.0 MHz are wanted for 500 million points a second at 8 clocks a point"),
+        (fast, "5000.0 MHz are needed"),
+        (many, "4000.0 MHz are needed for 500 million points a second at 8 clocks a point"),
     ] {
         let refused = tuned("cosine-power", &goal).expect_err("out of reach");
         assert!(format!("{refused:#}").contains(said), "{refused:#}");

@@ -121,7 +121,7 @@ fn vectors_that_do_not_fit_are_refused() {
     let message = refused(|vectors| vectors.expected[0].truncate(3));
     assert_eq!(message, "clock 0 of the expected outputs has 3 values for 4 ports");
     let message = refused(|vectors| vectors.expected.truncate(3));
-    assert_eq!(message, "6 clocks of stimulus, 3 of expected outputs");
+    assert_eq!(message, "the stimulus has 6 clocks, but the expected outputs have 3");
     let message = refused(|vectors| vectors.known_from = 7);
-    assert_eq!(message, "results are compared from clock 7 on, but there are 6 clocks");
+    assert_eq!(message, "the outputs are compared from clock 7 on, but there are only 6 clocks");
 }

@@ -41,6 +41,6 @@ fn faulty_hardware_is_not_proved() {
     std::mem::swap(a, b);
     let finding = found(&core);
     assert_eq!(finding.verdict, CheckVerdict::Unconfirmed, "{}", finding.words);
-    assert!(finding.words.starts_with("Gappa has no proof of statement"), "{}", finding.words);
+    assert!(finding.words.starts_with("Gappa does not prove statement"), "{}", finding.words);
     assert_eq!(found(&core).words, finding.words);
 }

@@ -119,7 +119,7 @@ fn a_bound_is_found_where_none_is_stated() {
     let (design, contract) = of_user(smoothstep::SMOOTHSTEP);
     assert!(!contract.bound().is_stated());
     let step = statements(&design, contract.as_ref(), Duration::MAX).expect_err("no bound");
-    assert_eq!(step, "its contract states no bound");
+    assert_eq!(step, "the contract states no bound");
     let (bound, asked) = found(&design, contract.as_ref());
     // The square is cut by a sixteenth of a unit at most, three times that is left of it, and half a unit is rounded.
     assert!(bound <= 0.5 + 3.0 / 16.0, "{bound}");
@@ -137,7 +137,10 @@ fn the_bound_of_a_device_of_a_user_is_printed() {
     let file = dir.path().join("s.toml");
     let text = succeeded(cargo_example("smoothstep").arg("certify").arg(&file));
     assert!(text.contains("certified: |output - formula| <= 0.6"), "{text}");
-    assert!(text.contains("a bound that is found, as the contract states none"), "{text}");
+    assert!(
+        text.contains("with a bound that Gappa found, because the contract states none"),
+        "{text}"
+    );
 }
 
 /// A bound that is found for a device of the catalogue is no more than its author has proved, and no less than an error that is
@@ -224,7 +227,7 @@ fn faulty_lines_have_no_proof() {
     let (kept, _) = if a.index() == angle { (*a, *b) } else { (*b, *a) };
     (*a, *b) = (kept, kept);
     let why = statements(&design, contract.as_ref(), Duration::MAX).expect_err("no walk");
-    assert_eq!(why, "its points walk on by more than a sum");
+    assert_eq!(why, "the angle of the next point is not the sum of an angle and an operand");
 }
 
 /// The polynomial alone is no cosine, and a number beside pi/2 is none.
@@ -269,9 +272,9 @@ fn what_cannot_be_stated_says_which_step() {
         statements(&design, contract.as_ref(), Duration::MAX).map(|_| ())
     };
     let step = step_of("quad-cosine").expect_err("a power by a dictionary");
-    assert!(step.starts_with("`{` is no part of a formula, `{1: 1, 2: 2,"), "{step}");
+    assert!(step.starts_with("`{` cannot be a part of a formula, `{1: 1, 2: 2,"), "{step}");
     let step = step_of("rough").expect_err("a square root");
-    assert_eq!(step, "the function `sqrt` has no translation");
+    assert_eq!(step, "the function `sqrt` cannot be written for Gappa");
 }
 
 /// Returns the statements of a configuration as they are today, those of its record.

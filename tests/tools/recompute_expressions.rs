@@ -282,7 +282,10 @@ fn the_check_computes_as_many_combinations_as_the_effort_allows() {
     let too_wide = with_keys(device("expression"), &sum(17, "")).expect("a core");
     let found = finding(&too_wide, "recomputation", EFFORT);
     assert_eq!(found.verdict, CheckVerdict::NotApplicable, "{found:?}");
-    assert!(found.words.contains("17179869184 combinations, more than the 2^32"), "{found:?}");
+    assert!(
+        found.words.contains("17179869184 combinations, more than the limit of 2^32"),
+        "{found:?}"
+    );
 }
 
 #[test]
@@ -291,5 +294,5 @@ fn the_key_is_refused_where_there_are_too_many_combinations() {
     assert!(with_keys(device("expression"), &sum(16, asked)).is_ok());
     let refused = with_keys(device("expression"), &sum(17, asked));
     let message = refused.err().expect("an error").to_string();
-    assert!(message.contains("17179869184 combinations, more than the 2^32"), "{message}");
+    assert!(message.contains("17179869184 combinations, more than the limit of 2^32"), "{message}");
 }

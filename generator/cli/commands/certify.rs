@@ -26,21 +26,21 @@ use glint_tools::Tool;
 
 /// Prove the error bound of a contract with Gappa, from the netlist and the microprogram
 ///
-/// One computation is unrolled into its values. Each case of saturations, clamps and tables becomes a statement on
-/// real numbers with roundings: the output differs from the contract's formula by the bound at most. Gappa proves
-/// each statement. The cases cover the whole domain, so that the contract is proved if all of them are. With --coq
-/// the kernel of Coq checks each proof again. If a device has a step that cannot be stated so, the command names it,
-/// and the exit code is 1.
+/// The command unrolls one computation of the core into its values. For each case of the saturations, clamps and tables it
+/// writes a statement on real numbers with roundings: the output differs from the contract's formula by at most the bound.
+/// Gappa proves the statements. The cases cover the whole domain, so the contract is proved if Gappa proves all statements.
+/// With --coq, the kernel of Coq checks each proof again. If a step of the computation cannot be written as a statement, the
+/// command names the step, and the exit code is 1.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
   glint certify configs/cosine_power.toml
-  glint certify configs/cosine_power.toml --out certificates   the scripts too
-  glint certify configs/cosine_power.toml --coq                needs coqc, and Gappa's library for it")]
+  glint certify configs/cosine_power.toml --out certificates   also writes the Gappa scripts
+  glint certify configs/cosine_power.toml --coq                needs coqc, and Gappa's library for Coq")]
 pub struct Arguments {
     #[command(flatten)]
     configs: Configs,
-    /// Write each script as `DIR/<name>/<output>_<number>.g`, and what was proved as `DIR/<name>.json`
+    /// Write each Gappa script to `DIR/<name>/<output>_<number>.g`, and the results to `DIR/<name>.json`
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Have Coq check each of Gappa's proofs
@@ -61,7 +61,11 @@ const WITNESS: &str = "# The hypotheses hold at ";
 /// bounds of the parts are among the terms.
 fn tell_terms(bound: &Bound) {
     if bound.is_stated() {
-        say!("  the contract states {} units, which nothing here has checked:", bound.words());
+        say!(
+            "  the contract states a bound of {} units, which this command did not prove; the terms of the \
+             bound are:",
+            bound.words()
+        );
     }
     for Term { key, what, units } in &bound.terms {
         say!("  {}  {what} ({key})", text::rounded_up(*units, 3));
@@ -78,7 +82,7 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     let loaded = load_sequential(registry, &arguments.configs.paths, "certify")?;
     let limit = Duration::from_secs(arguments.time_limit);
     if let Some(out) = arguments.out.as_deref().filter(|out| out.exists() && !out.is_dir()) {
-        bail!("`{}` is no directory: give another directory with --out", out.display());
+        bail!("`{}` is not a directory: give a directory with --out", out.display());
     }
     let gappa = Tool::find("gappa")?;
     gappa.ensure_works(limit)?;
@@ -273,7 +277,7 @@ impl CommandReport for Certification<'_> {
             let origin = if self.is_stated {
                 ""
             } else {
-                ", a bound that is found, as the contract states none"
+                ", with a bound that Gappa found, because the contract states none"
             };
             say!(
                 "{path}: certified: |output - formula| <= {bound:.6} units over the whole domain{origin}; {proved} statements {by}{unknown}{empty}"
@@ -285,7 +289,7 @@ impl CommandReport for Certification<'_> {
             );
         }
         for (statement, why) in self.open.iter().take(3) {
-            say!("  {} of {}: {why}", statement.number, statement.output);
+            say!("  statement {} of output `{}`: {why}", statement.number, statement.output);
         }
         Ok(())
     }

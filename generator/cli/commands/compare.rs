@@ -25,17 +25,17 @@ use show::ComparisonReport;
 
 /// Compare all devices with cos^n gamma at one exponent, side by side
 ///
-/// Every device has its default configuration, with the widths below where it has such a key. Configurations
-/// that you name are compared as they are. Errors are those
-/// of the reflectance f, the largest and the mean over gamma = 0 to 90 degrees, as a whole and by cause: the
-/// source's formula, the quantised operands, the fixed point. LUTs, DSP blocks and block RAMs of iCE40, ECP5 and
-/// Xilinx 7, frequencies and points a second come from records of `glint synth`; without a record Yosys is asked for
-/// the former, if it is on PATH, which takes a minute or more.
+/// The command compares the default configurations of all devices. The options below set the widths of the devices that have
+/// such a key. Configurations that you name are compared unchanged. The tables show the largest and the mean error of the
+/// reflectance f over gamma = 0 to 90 degrees, in total and by cause: the source's formula, the quantised operands, the
+/// fixed point. The LUTs, DSP blocks and block RAMs of iCE40, ECP5 and Xilinx 7, the frequencies and the points per second
+/// come from records of `glint synth`. If there is no record and Yosys is on PATH, the command counts LUTs, DSP blocks and
+/// block RAMs with Yosys, which takes a minute or more.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
   glint compare --exponent 100                       errors, clocks, ROM and synthesis at n = 100
-  glint compare --no-synthesis --bits 10             in an instant; ten-bit colours
+  glint compare --no-synthesis --bits 10             takes no time; ten-bit colours
   glint compare --exponent 20 my_core.toml --csv     your configuration beside the devices
   glint compare --cosine-fraction 16 --json          coarser cosines, for scripts")]
 pub struct Arguments {
@@ -57,10 +57,10 @@ pub struct Arguments {
     /// Print CSV, for spreadsheets
     #[arg(long)]
     csv: bool,
-    /// Where records of `synth --out` are; that of a configuration is found by its digest
+    /// The directory with the records of `synth --out`; a record is found by the digest of its configuration
     #[arg(long, value_name = "DIR", default_value = glint_prove::synth::DIRECTORY)]
     figures: PathBuf,
-    /// Do not ask Yosys what the devices take
+    /// Do not run Yosys to count LUTs, DSP blocks and block RAMs
     #[arg(long)]
     no_synthesis: bool,
     #[command(flatten)]
@@ -95,7 +95,7 @@ struct ModelFigures {
 /// Fails if a configuration has problems, if the exponent is outside the domains of all devices, or if a record cannot be read.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     if arguments.csv && !output.is_for_people() {
-        wrong_usage!("--csv and --json are two ways to print the same: give one");
+        wrong_usage!("--csv and --json cannot be used together: give one of them");
     }
     let mut notes = Vec::new();
     let mut cores = Vec::new();
@@ -120,7 +120,9 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     let domains: Vec<(f64, f64)> = cores.iter().filter_map(|(_, core)| domain(core)).collect();
     if !domains.is_empty() && !domains.iter().any(|(low, high)| (low..=high).contains(&&n)) {
         let most = domains.iter().fold(0.0, |most: f64, (_, high)| most.max(*high));
-        wrong_usage!("--exponent {n} is in no device's domain; the largest is {most}");
+        wrong_usage!(
+            "--exponent {n} is outside the domain of every device; the largest exponent is {most}"
+        );
     }
     let mut records: Vec<Option<SynthesisRecord>> = Vec::new();
     for (_, core) in &cores {
@@ -129,7 +131,7 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     let mut usage: Vec<_> = records.iter().map(|it| recorded(it.as_ref())).collect();
     let missing = usage.iter().filter(|usage| usage.is_empty()).count();
     let yosys = match !arguments.no_synthesis && missing > 0 {
-        true => yosys("no LUTs, DSP blocks and block RAMs", &mut notes),
+        true => yosys("no LUTs, DSP blocks and block RAMs are shown", &mut notes),
         false => None,
     };
     let families = if yosys.is_some() { COMPARED.len() } else { 0 };
@@ -207,7 +209,7 @@ fn with_widths(device: &Device, widths: &[(&str, Option<i64>)], notes: &mut Vec<
                     None => String::new(),
                 };
                 notes.push(format!(
-                    "{}: {key} = {value} is not accepted, {} is compared{why}",
+                    "{}: {key} = {value} is not valid, so the comparison uses {}{why}",
                     device.name,
                     config.value(key).bare(),
                 ));
@@ -275,9 +277,11 @@ fn synthesise(
 fn outside(entry: &ComparisonEntry, n: u32) -> String {
     let label = &entry.label;
     match domain(&entry.core) {
-        None => format!("{label}: none of its operands stand for gamma and n = {n}"),
+        None => format!(
+            "{label}: no errors are shown, because the device has no operands for gamma and n = {n}"
+        ),
         Some((low, high)) => {
-            format!("{label}: n = {n} is not in its domain, n = {low} to {high}")
+            format!("{label}: n = {n} is outside the device's domain, n = {low} to {high}")
         }
     }
 }

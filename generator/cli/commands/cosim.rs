@@ -36,7 +36,7 @@ Examples:
   glint cosim my_core.toml --simulator icarus --json      the emitted Verilog, result for scripts
   glint cosim my_core.toml --points 20 --vcd wave.vcd     a waveform for a viewer
   glint cosim my_core.toml --exhaustive                   the accuracy contract, all operands
-  glint cosim configs/reduced/rough.toml --exhaustive     and every combination, every clock")]
+  glint cosim configs/reduced/rough.toml --exhaustive     also every register on every clock")]
 pub struct Arguments {
     #[command(flatten)]
     configs: Configs,
@@ -49,21 +49,21 @@ pub struct Arguments {
     /// The simulator of the hardware
     #[arg(long, value_enum, default_value_t = SimulatorChoice::RustHdl)]
     simulator: SimulatorChoice,
-    /// Prove the accuracy contract instead: f for every combination of control operands, and every f with every
-    /// colour. If all operands together have at most 26 bits, also compare every register on every clock for
-    /// every combination of operands
+    /// Prove the accuracy contract instead: compute f for every combination of control operands, and the outputs for every f
+    /// and every colour. If all operands together have at most 26 bits, also compare every register on every clock for every
+    /// combination of operands
     #[arg(long, conflicts_with_all = ["points", "seed", "simulator", "vcd"])]
     exhaustive: bool,
     /// With --exhaustive: save progress in FILE, and continue from it
     #[arg(long, value_name = "FILE", requires = "exhaustive")]
     resume: Option<PathBuf>,
-    /// With --exhaustive: do part I of N, for a job array; `glint merge` joins the parts
+    /// With --exhaustive: compute only part I of N, for a job array; `glint merge` joins the parts
     #[arg(long, value_name = "I/N", requires = "exhaustive", requires = "resume")]
     shard: Option<Shard>,
     #[command(flatten)]
     sweep: SweepValues,
-    /// Write a waveform (VCD) of one configuration (built-in simulator only), and beside it, unless they are there, the views of
-    /// GTKWave (.gtkw) and Surfer (.sucl)
+    /// Write a waveform (VCD) of one configuration (built-in simulator only), and next to it a view for GTKWave (.gtkw) and
+    /// a view for Surfer (.sucl) unless these files exist
     #[arg(long, value_name = "FILE")]
     vcd: Option<PathBuf>,
     #[command(flatten)]
@@ -75,8 +75,8 @@ pub struct Arguments {
 /// The values of an exhaustive check in place of the contract's.
 #[derive(Args)]
 pub struct SweepValues {
-    /// Visit these raw values of an operand in place of those of the contract, as `cos_dgamma=1000,2000..3000/50`;
-    /// may be given for several operands
+    /// Visit these raw values of an operand instead of the contract's values. For example, `cos_dgamma=1000,2000..3000/50`
+    /// has 1000, and 2000 to 3000 in steps of 50; repeat the option for other operands
     #[arg(long = "values", value_name = "OPERAND=VALUES")]
     others: Vec<AxisValues>,
 }
@@ -96,7 +96,7 @@ impl SweepValues {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum SimulatorChoice {
-    /// Built in: rust_hdl, inside this program
+    /// rust_hdl, the simulator that is built into this program
     RustHdl,
     /// Icarus Verilog, on the emitted files
     Icarus,
@@ -115,11 +115,14 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
         return exhaustive::run(registry, output, arguments);
     }
     if !arguments.sweep.others.is_empty() {
-        wrong_usage!("--values is for --exhaustive");
+        wrong_usage!("--values works only with --exhaustive: add --exhaustive, or remove --values");
     }
     let loaded = load(registry, &arguments.configs.paths)?;
     if arguments.vcd.is_some() && loaded.len() != 1 {
-        wrong_usage!("--vcd is for one configuration; here are {}", loaded.len());
+        wrong_usage!(
+            "--vcd needs exactly one configuration, and there are {}: name one configuration",
+            loaded.len()
+        );
     }
     if let Some(vcd) = &arguments.vcd
         && let Ok(there) = fs::canonicalize(vcd)
@@ -176,7 +179,8 @@ impl CommandReport for CheckedRun<'_> {
         // A difference from the golden model ends the run. Other failures do not end it.
         let compared = if outcome.mismatch.is_none() { "equal" } else { "compared with" };
         say!(
-            "{}: {} points, {} clocks; {} registers and {} outputs {compared} the golden model on each: {}",
+            "{}: {} points, {} clocks; {} registers and {} outputs {compared} the golden model on each \
+             clock: {}",
             one.path,
             text::grouped(outcome.points),
             text::grouped(outcome.clocks),

@@ -18,14 +18,14 @@ use glint_prove::synth::Yosys;
 use glint_show::evidence::hardware::Synthesis;
 use glint_show::pages::datasheet::{self, Subject};
 
-/// Write a datasheet, one HTML page that needs no network
+/// Write a datasheet, an HTML page that loads nothing from the network
 ///
-/// A page as a vendor's product guide: figures at a glance, block diagram, ports and formats, a worked
-/// example, a timing diagram from simulation, the microprogram by control lines, latency and throughput, the error
-/// bound with its proof and plots, a rendered highlight, an instance in Verilog, and the sources. Area,
-/// frequency, points a second and longest paths are those of a record of `glint synth`; without one it says what Yosys,
-/// if on PATH, makes of the device for iCE40, ECP5 and Xilinx 7, which takes a minute or more. A file
-/// that Glint did not write, or that was edited since, is left alone unless --force is given.
+/// The page resembles a vendor's product guide: key figures, block diagram, ports and formats, a worked example, a timing
+/// diagram from simulation, the microprogram with its control lines, latency and throughput, the error bound with its proof
+/// and plots, a rendered highlight, an instance in Verilog, and the sources. Area, frequency, points per second and longest
+/// paths come from a record of `glint synth`. If there is no record and Yosys is on PATH, the page shows what Yosys counts
+/// for iCE40, ECP5 and Xilinx 7, which takes a minute or more. A file that Glint did not write, or that was edited since, is
+/// replaced only with --force.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -39,19 +39,19 @@ pub struct Arguments {
     /// A directory, or for one configuration a file that ends in .html
     #[arg(long, value_name = "DIR|FILE.html", default_value = "datasheets")]
     out: PathBuf,
-    /// Where records of `cosim --exhaustive --json` are; that of the configuration is found by its digest
+    /// The directory with the records of `cosim --exhaustive --json`; a record is found by the digest of its configuration
     #[arg(long, value_name = "DIR", default_value = PROOFS)]
     proofs: PathBuf,
-    /// Where records of `synth --out` are; that of the configuration is found by its digest
+    /// The directory with the records of `synth --out`; a record is found by the digest of its configuration
     #[arg(long, value_name = "DIR", default_value = synth::DIRECTORY)]
     figures: PathBuf,
-    /// Write the timing diagram for WaveDrom too, beside the page
+    /// Also write the timing diagram for WaveDrom, next to the page
     #[arg(long)]
     wavedrom: bool,
-    /// Replace files that Glint did not write or that were edited since
+    /// Also replace files that Glint did not write or that were edited since
     #[arg(long)]
     force: bool,
-    /// Do not ask Yosys what a device takes of which there is no record
+    /// Do not run Yosys for a configuration that has no record
     #[arg(long)]
     no_synthesis: bool,
     #[command(flatten)]
@@ -68,7 +68,8 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     let single = arguments.out.extension().is_some_and(|it| it.eq_ignore_ascii_case("html"));
     if single && loaded.len() != 1 {
         wrong_usage!(
-            "--out {}: a file takes one configuration, and there are {}; give a directory",
+            "--out {}: one file holds the datasheet of one configuration, and there are {} configurations; \
+             give a directory",
             arguments.out.display(),
             loaded.len()
         );
@@ -84,7 +85,7 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     }
     let mut notes = Vec::new();
     let wanted = !arguments.no_synthesis;
-    let yosys = wanted.then(|| yosys("nothing is synthesised", &mut notes)).flatten();
+    let yosys = wanted.then(|| yosys("no configuration is synthesised", &mut notes)).flatten();
     let limit = arguments.time_limit.get();
     let steps = records.iter().map(|(_, _, it)| datasheet::steps(yosys.is_some() && it.is_none()));
     let steps: usize = steps.sum();
@@ -111,7 +112,8 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
         }
         for (path, text, seal) in files {
             let written = store::write_sealed(&path, &text, seal, arguments.force);
-            let written = written.with_context(|| format!("`{}` has no datasheet", one.path))?;
+            let written = written
+                .with_context(|| format!("the datasheet of `{}` was not written", one.path))?;
             report.push((one, path.display().to_string().replace('\\', "/"), written));
         }
     }

@@ -15,11 +15,11 @@ use glint_core::package::Seal;
 use glint_core::registry::Registry;
 use glint_show::pages;
 
-/// Print a page of documentation, in Markdown
+/// Print a page of documentation about a configuration, in Markdown
 ///
-/// Ports, blocks, microprogram, clocks, accuracy, a worked example and the keys of a configuration, from the
-/// description that the Verilog is made of. With --out, each configuration gets the file `DIR/<name>.md`; a page that
-/// Glint did not write, or that was edited since, is left alone unless --force is given.
+/// The page has the ports, blocks, microprogram, clocks, accuracy, a worked example and the keys of the configuration. It is
+/// made from the same description as the Verilog. With --out, the page of each configuration is written to `DIR/<name>.md`.
+/// A page that Glint did not write, or that was edited since, is replaced only with --force.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -31,7 +31,7 @@ pub struct Arguments {
     /// Write the pages into this directory
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Replace pages that Glint did not write or that were edited since
+    /// Also replace pages that Glint did not write or that were edited since
     #[arg(long, requires = "out")]
     force: bool,
 }
@@ -56,7 +56,10 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
                     Seal::Markup,
                     arguments.force,
                 );
-                Some(written.with_context(|| format!("`{}` was not described", one.path))?)
+                Some(
+                    written
+                        .with_context(|| format!("the page of `{}` was not written", one.path))?,
+                )
             }
             None => None,
         };

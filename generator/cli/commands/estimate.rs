@@ -14,9 +14,9 @@ use glint_prove::tune::Cost;
 
 /// Estimate area and clock on each FPGA family, without outside tools
 ///
-/// The estimate counts what the netlist is made of. Its weights were fitted to synthesis: half of the cores are within 9 % of the
-/// measured look-up tables on iCE40, and within 4 % on ECP5. DSP blocks and block RAMs follow from the widths. `glint synth` measures
-/// with Yosys and nextpnr.
+/// The estimate adds the weights of the cells in the netlist. The weights were fitted to synthesis results: for half of the
+/// cores, the look-up tables are within 9 % of the measurement on iCE40, and within 4 % on ECP5. DSP blocks and block RAMs
+/// follow from the widths. `glint synth` measures with Yosys and nextpnr.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -73,7 +73,7 @@ impl CommandReport for EstimateTable<'_> {
             }
         }
         tables::print("core | family | LUT: | DSP: | RAM: | MHz: | smallest chip", lines);
-        say!("These are estimates; `{Program} synth` measures.");
+        say!("These are estimates; `{Program} synth` measures area and clock.");
         Ok(())
     }
 }

@@ -20,7 +20,7 @@ use glint_core::cosim::Driven;
 use glint_core::registry::Registry;
 use glint_golden::{self as golden, Contract, Model, Operand};
 
-/// Compute one point: golden registers, outputs and the formula in f64
+/// Compute one point: registers and outputs of the golden model, and the formula in f64
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -28,21 +28,21 @@ Examples:
   glint eval my_core.toml cos_gamma=#1038090     a raw integer, as the port takes it
   glint eval my_core.toml --batch points.csv     a row of results for each row of operands
   glint setup my_core.toml --batch lines.csv | glint eval my_core.toml --batch -
-  glint eval my_core.toml --typical --json       a point at which results show, for scripts")]
+  glint eval my_core.toml --typical --json       a point with a visible highlight, for scripts")]
 pub struct Arguments {
-    /// A configuration
+    /// A configuration file
     config: PathBuf,
     /// Operands: `cos_gamma=0.99` is a value, `cos_gamma=#1038090` a raw integer. An operand that is not
     /// given is 0, or the value nearest to 0 in its domain
     #[arg(value_name = "OPERAND=VALUE")]
     operands: Vec<String>,
-    /// Compute many points: a CSV file with the names of operands in its first row, or - for standard input. The
-    /// results are CSV, or with --json a list; of a line, a row for each point. Operands on the command line hold for all
-    /// rows
+    /// Compute many points: read operands from a CSV file, or from standard input if the file is -. The first row has the
+    /// names of the operands. The results are printed as CSV, or with --json as a list; a line gives one row for each of its
+    /// points. Operands on the command line apply to all rows
     #[arg(long, value_name = "FILE.csv")]
     batch: Option<PathBuf>,
-    /// Give the operands that are not given values at which results show: a colour the largest, an angle at which the
-    /// highlight is half as bright
+    /// Choose values for the operands that you do not give, so that the highlight is visible: for a colour the largest
+    /// value, for an angle the value at which the highlight has half its brightness
     #[arg(long, conflicts_with = "batch")]
     typical: bool,
 }
@@ -61,7 +61,9 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
         .map_err(Failure::WrongUsage)?;
     match &arguments.batch {
         Some(path) if *path == arguments.config => {
-            wrong_usage!("configuration and --batch are one file")
+            wrong_usage!(
+                "the configuration and --batch name the same file: give --batch another file"
+            )
         }
         Some(path) => batch::batch(output, &one, &given, path),
         None => point(output, &one, &given, arguments.typical),
@@ -77,7 +79,7 @@ fn outside(operands: &[Operand], raw: &[i64]) -> Vec<String> {
         if !(low..=high).contains(&raw) {
             let [value, from, to] =
                 [raw, low, high].map(|raw| operand.format.to_f64(i128::from(raw)));
-            outside.push(format!("{} = {value} is not in {from} to {to}", operand.name));
+            outside.push(format!("{} = {value} is not between {from} and {to}", operand.name));
         }
     }
     outside
@@ -293,5 +295,5 @@ fn signals(model: Box<dyn Model>, operands: &[Operand], raw: &[i64]) -> Result<V
         }
         model.clock();
     }
-    bail!("the device does not raise `valid` within {LIMIT} clocks")
+    bail!("the golden model does not set `valid` within {LIMIT} clocks")
 }

@@ -15,9 +15,9 @@ use glint_core::registry::Registry;
 #[command(after_help = "\
 Examples:
   glint explain           all codes
-  glint explain G0201     what it means, and what to do")]
+  glint explain G0201     what the code means, and how to correct the mistake")]
 pub struct Arguments {
-    /// The code, as `error[G0201]` has it
+    /// The code in the brackets of a message: for example, G0201 for `error[G0201]`
     code: Option<String>,
 }
 
@@ -32,7 +32,7 @@ pub fn run(_: &Registry, output: OutputOptions, arguments: &Arguments) -> Result
     let pages: Vec<_> = codes::pages().filter(|page| wanted(page.0)).collect();
     if pages.is_empty() {
         let code = arguments.code.as_deref().unwrap_or_default();
-        wrong_usage!("there is no code `{code}`; `explain` alone lists all");
+        wrong_usage!("there is no code `{code}`; `explain` without a code lists all codes");
     }
     output.report(&Explanation { pages, single: arguments.code.is_some() })?;
     Ok(true)

@@ -20,28 +20,29 @@ use glint_prove::tune::Cost;
 
 /// Write Verilog, ROM contents, manifest, FuseSoC core and test bench
 ///
-/// Each configuration gets the directories `rtl_out/<name>/` and `testbench/<name>/`, and with
-/// `package.software` also `software/<name>/`. Their files are replaced when all are made, each as a whole. Files
-/// that Glint did not write, or that were edited since, are left alone unless --force is given.
+/// Each configuration gets the directories `rtl_out/<name>/` and `testbench/<name>/`, and with `package.software` also
+/// `software/<name>/`. The command generates all files of a configuration before it replaces the first old file, and it
+/// never leaves a file half-written. Files that Glint did not write, or that were edited since, are replaced only with
+/// --force.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
   glint generate                              everything in configs/, into rtl_out/ and testbench/
   glint generate my_core.toml --out build     one configuration, into build/
-  glint generate --check                      are the files up to date? Writes nothing")]
+  glint generate --check                      checks that the files are up to date; writes nothing")]
 pub struct Arguments {
     #[command(flatten)]
     configs: Configs,
-    /// The directory in which `rtl_out/` and `testbench/` are made
+    /// The directory in which `rtl_out/` and `testbench/` are created
     #[arg(long, value_name = "DIR", default_value = ".")]
     out: PathBuf,
     /// Write nothing; fail if a file differs from what would be written
     #[arg(long)]
     check: bool,
-    /// Write no test bench: a large core is generated in less time
+    /// Write no test bench; this makes the generation of a large core faster
     #[arg(long)]
     no_bench: bool,
-    /// Replace files that Glint did not write or that were edited since
+    /// Also replace files that Glint did not write or that were edited since
     #[arg(long)]
     force: bool,
 }
@@ -69,14 +70,15 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     for (one, Made { word_stride, .. }) in loaded.iter().zip(&made) {
         if *word_stride > 1 {
             failure::warn(&format!(
-                "{}: to keep the test bench short, it checks one of {word_stride} words of the memories; `{Program} cosim` checks more",
+                "{}: to stay short, the test bench checks only one in every {word_stride} words of the \
+                 memories; `{Program} cosim` checks more words",
                 one.path
             ));
         }
     }
     let misfits = loaded.iter().filter_map(|one| Some((one, misfit(one)?)));
     for (one, excess) in misfits {
-        failure::warn(&format!("{}: by the estimate {excess}", one.path));
+        failure::warn(&format!("{}: by the estimate, {excess}", one.path));
     }
     let shared = [package::driver().path];
     list.finish(|generated| Ok(json!({ "ok": true, "generated": generated, "shared": shared })))?;
@@ -123,12 +125,13 @@ fn print_next_step(out: &Path, loaded: &[Loaded], with_bench: bool) {
     }
     let directory = |folder: &str| out.join(folder).join(name).display().to_string();
     say!(
-        "{} is the driver that the benches in Python share.",
+        "The Python test benches share the driver {}.",
         out.join(package::driver().path).display()
     );
     say!(
-        "To simulate: `{Program} cosim {config} --simulator icarus`. By hand, copy {} and {} into one directory and run there, where \
-         the memories are found: iverilog -g2012 -s {name}_tb -o sim {name}*.v && ./sim",
+        "To simulate: `{Program} cosim {config} --simulator icarus`. By hand, copy the files of {} and {} \
+         into one directory, where the simulator finds the memories, and run in it: iverilog -g2012 -s \
+         {name}_tb -o sim {name}*.v && ./sim",
         directory("rtl_out"),
         directory("testbench"),
     );
@@ -198,7 +201,7 @@ pub fn write(out: &Path, one: &Loaded, files: &OutputFiles, force: bool) -> Resu
         store::may_write(&path, Seal::Hash, force)?;
     }
     let written = store::write(out, &one.core.config.name, files.as_slice(), force)
-        .with_context(|| format!("`{}` was not generated", one.path))?;
+        .with_context(|| format!("the files of `{}` were not written", one.path))?;
     store::write_sealed(&path, &driver.contents, Seal::Hash, force)?;
     Ok(written)
 }
@@ -232,7 +235,7 @@ impl CommandReport for Differences {
             say!("differs: {path}");
         }
         if self.0.is_empty() {
-            say!("everything is as it would be generated");
+            say!("all files are up to date");
         }
         Ok(())
     }

@@ -55,7 +55,8 @@ impl Inventory<'_> {
             return;
         }
         say!(
-            "\nA pipeline with the longest interval beats the sequential core of these (default keys, ECP5, estimated):"
+            "\nFor these devices, the pipeline with the longest interval beats the sequential core (default \
+             keys, estimated for ECP5):"
         );
         tables::print(
             "device | DSP, sequential: | M points/s, sequential: | interval: | DSP, pipeline: | M points/s, pipeline:",
@@ -100,8 +101,9 @@ impl CommandReport for Inventory<'_> {
         }
         tables::print("device | what it computes", rows);
         say!(
-            "Most are sequential cores or, with architecture = \"pipelined\", pipelines that take a point every clock or every few clocks; \
-             `{Program} tune DEVICE --error E --rate R` chooses."
+            "Most devices are sequential cores or, with architecture = \"pipelined\", pipelines that take a \
+             point every clock or every few clocks; `{Program} tune DEVICE --error E --rate R` chooses the \
+             architecture."
         );
         self.print_longest_intervals();
         for config in &self.configs {

@@ -13,7 +13,7 @@ use crate::OutputOptions;
 use glint_core::cosim::exhaustive::{Shard, ShardState};
 use glint_core::registry::Registry;
 
-/// Join the parts of a `cosim --exhaustive` that was divided by --shard
+/// Join the parts of a `cosim --exhaustive` that was split with --shard
 #[derive(Args)]
 #[command(after_help = "\
 Example, on four machines and then on one:
@@ -22,7 +22,7 @@ Example, on four machines and then on one:
 pub struct Arguments {
     /// The configuration
     config: PathBuf,
-    /// The files of all parts
+    /// The --resume files of all parts
     #[arg(value_name = "FILE", required = true)]
     files: Vec<PathBuf>,
     #[command(flatten)]
@@ -44,11 +44,12 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     let names: Vec<String> = files.iter().map(|path| path.display().to_string()).collect();
     let states = files
         .iter()
-        .map(|path| read(path)?.with_context(|| format!("there is no `{}`", path.display())))
+        .map(|path| read(path)?.with_context(|| format!("there is no file `{}`", path.display())))
         .collect::<Result<Vec<_>>>()?;
     ensure!(
         states.iter().any(|state| state.digest == fingerprint),
-        "these shards are not of `{}` as it stands, of another sweep (--values), or of another build of Glint",
+        "these shards do not belong to `{}`, or the file was changed since, or they belong to another sweep \
+         (--values) or another build of Glint: compute the shards again",
         one.path
     );
     let merged = job.merge(&states, &names)?;

@@ -70,7 +70,7 @@ impl Reproducer {
     /// Returns a phrase that tells the user in which clocks the difference is recorded, and how to record all clocks.
     pub fn text(&self, mismatch: &Mismatch) -> String {
         format!(
-            "`{}` shows clocks {} to {}; all of them: {}",
+            "`{}` shows clocks {} to {}; to see all clocks: {}",
             self.vcd.display(),
             self.from,
             mismatch.clock,
@@ -153,7 +153,8 @@ fn write<T>(
                 if there.is_ok_and(|there| there != text) {
                     let view = view.display();
                     failure::warn(&format!(
-                        "`{view}` stays as it is; remove it for one of this waveform"
+                        "`{view}` exists already and was not changed; to get a view of this waveform, remove \
+                         the file"
                     ));
                 }
             } else if let Err(error) = Destination::open(&view).and_then(|it| it.write(text)) {

@@ -70,7 +70,8 @@ fn paths(named: &[PathBuf]) -> Result<Vec<PathBuf>> {
         return Ok(named.to_vec());
     }
     let entries = std::fs::read_dir(CONFIGS).with_context(|| {
-        format!("cannot read `{CONFIGS}/`; name a configuration, or `{Program} new DEVICE` for one")
+        format!("cannot read `{CONFIGS}/`; name a configuration file, or create one with `{Program} new \
+                 DEVICE > FILE.toml`")
     })?;
     let mut paths = Vec::new();
     for entry in entries {
@@ -81,7 +82,10 @@ fn paths(named: &[PathBuf]) -> Result<Vec<PathBuf>> {
     }
     paths.sort();
     if paths.is_empty() {
-        bail!("there is no configuration in `{CONFIGS}/`; `{Program} new DEVICE` prints one");
+        bail!(
+            "there is no configuration in `{CONFIGS}/`; name a configuration file, or create one with \
+             `{Program} new DEVICE > FILE.toml`"
+        );
     }
     Ok(paths)
 }
@@ -92,7 +96,7 @@ fn paths(named: &[PathBuf]) -> Result<Vec<PathBuf>> {
 /// if two files name the same module, for example `rough`.
 fn load(registry: &Registry, named: &[PathBuf]) -> Result<Vec<Loaded>> {
     if named.iter().filter(|path| path.as_path() == Path::new(input::STDIN)).count() > 1 {
-        wrong_usage!("standard input, `-`, is read once: name it once");
+        wrong_usage!("standard input can be read only once: name `-` only once");
     }
     let schemas = registry.schemas();
     let mut loaded: Vec<Loaded> = Vec::new();
@@ -126,8 +130,8 @@ fn load_sequential(registry: &Registry, named: &[PathBuf], command: &str) -> Res
     match pipelines.first().filter(|_| !named.is_empty()) {
         None => Ok(loaded),
         Some(one) => bail!(
-            "`{}`: `{Program} {command}` is for cores with a microprogram; set architecture = \"sequential\", or see \
-             `{Program} schedule`",
+            "`{}`: `{Program} {command}` works only on cores with a microprogram, and this core is a \
+             pipeline; set architecture = \"sequential\", or see `{Program} schedule`",
             one.path
         ),
     }
@@ -137,13 +141,14 @@ fn load_one(registry: &Registry, schemas: &[config::Schema], path: &Path) -> Res
     let name = path.display().to_string().replace('\\', "/");
     if name.contains(char::is_control) {
         bail!(
-            "{name:?} has control characters in its name, which is written into files; rename it"
+            "the file name {name:?} has control characters, and Glint writes the name into other files; \
+             rename the file"
         );
     }
     let (config, locations) = config::read_located(path, schemas).map_err(Failure::Problems)?;
     let device = registry
         .device(&config.device)
-        .with_context(|| format!("no device `{}`", config.device))?;
+        .with_context(|| format!("there is no device `{}`", config.device))?;
     // If the file does not state a clock, Glint may choose a lower one.
     let core = if locations.gives(CLOCK_MHZ) {
         Core::new(*device, config)
@@ -224,8 +229,8 @@ impl Loaded {
         let config = &self.core.config;
         if config.name.contains("__") {
             failure::warn(&format!(
-                "{}: the module name `{}` has two underscores in a row, which Verilator's lint refuses beside a wrapper: give another \
-                 name",
+                "{}: the module name `{}` has two underscores in a row, and Verilator's lint rejects such a \
+                 name if the core has a wrapper: set another `name`",
                 self.path, config.name
             ));
         }
@@ -244,17 +249,21 @@ impl Loaded {
         let bound = self.core.contract.bound();
         if !bound.is_stated() {
             let message = format!(
-                "{}: its contract states no error bound; `{Program} certify` finds one where it can",
+                "{}: the contract states no error bound; `{Program} certify` can find a bound for some \
+                 configurations",
                 self.path
             );
             if self.core.config.strict {
-                bail!("{message}; `strict = true` refuses that");
+                bail!("{message}; `strict = true` makes this an error");
             }
             failure::warn(&message);
         } else if !bound.keeps() {
             let limit = bound.limiting().map_or_else(String::new, |term| {
                 let units = text::rounded_up(term.units, 3);
-                format!("; most of it, {units}, is of `{}` ({})", term.key, term.what)
+                format!(
+                    "; the largest part of the bound, {units} units, comes from `{}` ({})",
+                    term.key, term.what
+                )
             });
             let advice = match advice::of(&self.core) {
                 Some(advice) => {
@@ -268,7 +277,7 @@ impl Loaded {
                         false => format!("; {advice}: see {}", places.join(" and ")),
                     }
                 }
-                None => "; no single key that it depends on brings it down".to_owned(),
+                None => "; no change of a single key makes the bound smaller".to_owned(),
             };
             let message = format!(
                 "{}: outside the accuracy contract: the error bound is {} units, not below {}{limit}{advice}",
@@ -277,7 +286,7 @@ impl Loaded {
                 bound.limit
             );
             if self.core.config.strict {
-                bail!("{message}; `strict = true` refuses that");
+                bail!("{message}; `strict = true` makes this an error");
             }
             failure::warn(&message);
         }

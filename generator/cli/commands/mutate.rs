@@ -21,20 +21,20 @@ use glint_prove::mutate::{
     SignalDifference, TOLERATED, Tally, TextFault, TextScore, VerilogText,
 };
 
-/// Plant faults one at a time, and show which of them the tests notice
+/// Plant faults one at a time, and show which faults the tests notice
 ///
-/// Stuck and inverted bits, swapped mux inputs, wrong operators, constants, enables, every bit of every control
-/// word, a sample of ROM words: each fault is put into the netlist, and the default test of `cosim` is run on this
-/// mutant. The mutant is caught, or proved to change nothing that is compared, or undecided. How many of them the
-/// core's own bench notices is counted as well. The exit code is 0 if at most 1 % of the faults of each
+/// The faults are stuck and inverted bits, swapped mux inputs, wrong operators, constants and enables, every bit of every
+/// control word, and a sample of ROM words. The command plants each fault in the netlist, and runs the default test of
+/// `cosim` on this mutant. The mutant is caught, or proved to change nothing that is compared, or undecided. The command
+/// also counts the mutants that the shipped bench notices. The exit code is 0 if at most 1 % of the faults of each
 /// configuration are undecided.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
-  glint mutate my_core.toml                               the score, and what is undecided
+  glint mutate my_core.toml                               the score, and the undecided faults
   glint mutate my_core.toml --list                        the names of all faults
-  glint mutate my_core.toml --only 'result[3]:inverted'   one fault: where it shows, a waveform
-  glint mutate my_core.toml --full                        the emitted Verilog too
+  glint mutate my_core.toml --only 'result[3]:inverted'   one fault: the first difference, and a waveform
+  glint mutate my_core.toml --full                        also faults in the emitted Verilog
   glint mutate --out mutation                             a record of each configuration in configs/")]
 pub struct Arguments {
     #[command(flatten)]
@@ -42,10 +42,10 @@ pub struct Arguments {
     /// List the faults, and plant none
     #[arg(long, conflicts_with_all = ["only", "out"])]
     list: bool,
-    /// Plant this fault alone; where it is caught, write the waveform around it
+    /// Plant only this fault; if it is caught, write a waveform around the first difference
     #[arg(long, value_name = "ID", conflicts_with = "out")]
     only: Option<String>,
-    /// Plant faults in the emitted Verilog too; needs Icarus Verilog, Verilator and Yosys
+    /// Also plant faults in the emitted Verilog; needs Icarus Verilog, Verilator and Yosys
     #[arg(long, conflicts_with_all = ["list", "only"])]
     full: bool,
     /// Write the record of each configuration, `<name>.json`, into this directory
@@ -96,7 +96,10 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
         return match &loaded[..] {
             [one] => only(output, one, id),
             _ => {
-                wrong_usage!("--only is for one configuration; here are {}", loaded.len())
+                wrong_usage!(
+                    "--only needs exactly one configuration, and there are {}: name one configuration",
+                    loaded.len()
+                )
             }
         };
     }
@@ -203,7 +206,7 @@ fn only(output: OutputOptions, one: &Loaded, id: &str) -> Result<bool> {
     let faults = Faults::of(&one.core.design);
     let Some(fault) = faults.find(id) else {
         wrong_usage!(
-            "`{}` has no fault `{id}`; `{Program} mutate {} --list` names them",
+            "`{}` has no fault `{id}`; `{Program} mutate {} --list` lists all faults",
             one.path,
             one.path
         );
@@ -332,7 +335,7 @@ fn print(scored: &Scored) {
     say!(
         "  {:.2} % undecided: {}",
         100.0 * scored.share_undecided(),
-        if scored.holds() { "holds" } else { "FAILS, at most 1 % may be" }
+        if scored.holds() { "holds" } else { "FAILS, at most 1 % may be undecided" }
     );
 }
 

@@ -18,10 +18,10 @@ use glint_keys::presets;
 use glint_prove::synth::Target;
 use glint_prove::tune::architectures;
 
-/// Print a configuration of a device, or of a function by its name
+/// Print a configuration of a device, a function or an expression
 ///
-/// The file has a line for each key of the device. Keys that you do not set are comments: they show their defaults, which adjust to the
-/// keys that you set. The file generates as it is.
+/// The file has a line for each key of the device. Keys that you do not set are comments: they show their defaults, which
+/// adjust to the keys that you set. `glint generate` accepts the file unchanged.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -30,8 +30,9 @@ Examples:
   glint new cosine-power --set cosine.fraction=16 --set exponent.bits=8 > highlight.toml
   glint new rough --name my_core --all > my_core.toml     every key, with its meaning and its range")]
 pub struct Arguments {
-    /// A device of `glint list`, or a function: exp2, exp, log2, ln, reciprocal, rsqrt, sqrt, sin, cos, atan, sigmoid, tanh,
-    /// gelu, silu, softplus, gamma
+    /// A device of `glint list`; or a function: exp2, exp, log2, ln, reciprocal, rsqrt, sqrt, sin, cos, atan, sigmoid, tanh,
+    /// gelu, silu, softplus, gamma; or an expression: divide, hypot, atan2, polar, sincos, rotate, pow, multiply-add, lerp,
+    /// attenuation
     device: String,
     /// The name of the top module [default: the device's, with _ for -]
     #[arg(long)]
@@ -39,16 +40,17 @@ pub struct Arguments {
     /// Show every key with its meaning and the values that it accepts
     #[arg(long)]
     all: bool,
-    /// A key with its value, as `cosine.fraction=16`; may be repeated
+    /// Set a key to a value, for example `cosine.fraction=16`; may be repeated
     #[arg(long = "set", value_name = "KEY=VALUE")]
     set: Vec<String>,
-    /// A pipeline, which computes a point every clock: `architecture = "pipelined"`
+    /// Make a pipeline, which computes a point every clock: `architecture = "pipelined"`
     #[arg(long)]
     pipelined: bool,
-    /// An AXI4-Stream wrapper around the core: `interface.stream = true`
+    /// Add an AXI4-Stream wrapper around the core: `interface.stream = true`
     #[arg(long)]
     stream: bool,
-    /// The clock in MHz: of a pipeline the one that its stages must reach, of a sequential core the one in its constraints
+    /// The clock in MHz: for a pipeline, the clock that its stages must reach; for a sequential core, the clock in its
+    /// constraints file
     #[arg(long, value_name = "MHZ", value_parser = number)]
     clock: Option<f64>,
     /// The FPGA family whose delays a pipeline is scheduled for: `pipeline.target`
@@ -57,8 +59,8 @@ pub struct Arguments {
 }
 
 /// The comment by which editors find the JSON Schema of the keys, and the command that makes the file with the schema.
-const SCHEMA: &str =
-    "#:schema glint.schema.json\n# Editors check keys by it: glint schema > glint.schema.json\n\n";
+const SCHEMA: &str = "#:schema glint.schema.json\n# Editors check keys with this schema. To write the \
+                      schema: glint schema > glint.schema.json\n\n";
 
 /// Runs `glint new`, which prints a configuration file for a device, or for a function that is given by its name, such as
 /// `rsqrt`. Returns true, because the command checks nothing.
@@ -112,8 +114,7 @@ fn hint(device: &Device, config: &Config, given: &[String]) -> Option<String> {
         return None;
     }
     Some(format!(
-        "# Sequential, as below, it has {} (ECP5, estimated).\n\
-         # With {} it has {}.\n",
+        "# This sequential core has {} (estimated for ECP5).\n# With {}, the core has {}.\n",
         sequential.figures(),
         pipeline.keys()?,
         pipeline.figures()

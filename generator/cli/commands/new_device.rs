@@ -26,10 +26,10 @@ Example:
 pub struct Arguments {
     /// The name of the device and of its crate: lower-case letters, digits and `-`
     name: String,
-    /// The directory to make [default: the name]
+    /// The directory to create [default: the name]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// The checkout of Glint, as seen from the new directory
+    /// The path of Glint's checkout, relative to the new directory
     #[arg(long, value_name = "DIR", default_value = "../glint")]
     glint: String,
 }
@@ -87,7 +87,7 @@ impl CommandReport for NewCrate<'_> {
 fn write(directory: &Path, files: &[(&str, String)]) -> Result<()> {
     if directory.symlink_metadata().is_ok() {
         bail!(
-            "`{}` is there already; move it away, or name another directory with --out",
+            "`{}` exists already; move it away, or give another directory with --out",
             directory.display()
         );
     }
@@ -117,17 +117,20 @@ fn check_name(registry: &Registry, name: &str) -> Result<()> {
     let begins = name.starts_with(|c: char| c.is_ascii_lowercase());
     if !begins || !name.chars().all(is_letter) || name.ends_with('-') || name.contains("--") {
         wrong_usage!(
-            "`{name}`: a name has lower-case letters, digits and single `-`, and begins with a letter"
+            "`{name}` is not a valid name: use lower-case letters and digits with single `-` between them, \
+             and begin with a letter"
         );
     }
     if let Err(why) = identifier::check(&name.replace('-', "_")) {
         wrong_usage!("`{name}`: {why} of Verilog or SystemVerilog");
     }
     if ["anyhow", "glint-hdl"].contains(&name) {
-        wrong_usage!("`{name}` is a crate that the new one uses; choose another name");
+        wrong_usage!(
+            "`{name}` is the name of a crate that the new crate uses; choose another name"
+        );
     }
     if registry.device(name).is_some() {
-        wrong_usage!("there is a device `{name}` already; choose another name");
+        wrong_usage!("a device `{name}` exists already; choose another name");
     }
     Ok(())
 }

@@ -29,9 +29,10 @@ const LARGEST_FILE: u64 = 4 << 30;
 
 /// Draw a picture whose highlights are bit-accurate results of the device
 ///
-/// Ambient and diffuse light are f64, and so is all geometry; the specular term of every sample and light
-/// is a result of the device, and of one that takes normals (`shading`) the whole colour. Without a configuration it is the first device of `glint list` with its
-/// defaults. The same command gives the same bytes on every machine, whatever computes the points.
+/// The command computes the geometry, the ambient and the diffuse light in f64. The device computes the specular term of
+/// every sample and light; a device that takes normals (`shading`) computes the whole colour. Without a configuration, the
+/// command uses the first device of `glint list` with its defaults. The same command gives the same bytes on every machine,
+/// and with every engine of --through.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -52,7 +53,7 @@ pub struct Arguments {
     /// The engine that computes the specular term
     #[arg(long, value_enum, default_value_t = Through::Golden)]
     through: Through,
-    /// Add the picture with Blinn's cos^n in f64 and the difference of both; print its largest value and PSNR
+    /// Add the picture with Blinn's cos^n in f64, and a picture of the difference; print the largest difference and the PSNR
     #[arg(long)]
     compare: bool,
     /// Width and height in pixels
@@ -64,13 +65,15 @@ pub struct Arguments {
     /// The object that is shown
     #[arg(long, value_parser = choice::shape(), default_value = "sphere", conflicts_with = "mesh")]
     shape: BuiltIn,
-    /// Show the mesh of a Wavefront OBJ file; where it has no normals, they are computed
+    /// Show the mesh of a Wavefront OBJ file; missing normals are computed
     #[arg(long, value_name = "FILE")]
     mesh: Option<PathBuf>,
-    /// For a mesh without normals: edges with a larger angle stay sharp; 180 smooths every edge, 0 only flat ones
+    /// For a mesh without normals: edges with a larger angle stay sharp. 180 smooths all edges, and 0 smooths only edges
+    /// between faces in one plane
     #[arg(long, value_name = "DEGREES", default_value_t = render::CREASE, requires = "mesh", value_parser = crease)]
     crease: f64,
-    /// A height map, a grey PNG file, which perturbs the normals: through dgamma if the device has that operand
+    /// A height map (a grey PNG file) that perturbs the normals; a device with the operand dgamma gets the perturbation as
+    /// dgamma
     #[arg(long, value_name = "FILE")]
     height: Option<PathBuf>,
     /// The height of white over black, in per cent of the radius of the object
@@ -86,17 +89,17 @@ pub struct Arguments {
     /// How many times the height map is repeated
     #[arg(long, value_name = "TIMES", default_value_t = 4.0, requires = "height", value_parser = number)]
     height_repeat: f64,
-    /// A light: the direction toward it and its colour, x right, y up, z to the front [default: a white one
-    /// from the upper left, a weaker one from behind on the right]
+    /// A light: the direction toward the light, and its colour; x points right, y up, z to the front. May be repeated
+    /// [default: a white light from the upper left, and a weaker light from behind on the right]
     #[arg(long = "light", value_name = "X,Y,Z[,R,G,B]", allow_hyphen_values = true, value_parser = light)]
     lights: Vec<Light>,
     /// The specular exponent n [default: 80, or the largest that the device takes]
     #[arg(long, value_name = "N")]
     exponent: Option<u32>,
-    /// The value of an operand at every point: one of a device of your own that a picture does not have
+    /// The value of an operand at every point, for an operand of your own device that the scene does not give
     #[arg(long = "operand", value_name = "NAME=VALUE", value_parser = operand)]
     operands: Vec<(String, f64)>,
-    /// k_s, the share of the light that the device distributes, 0 to 1
+    /// k_s, the share of the light in the specular term, which the device computes, 0 to 1
     #[arg(long, value_name = "SHARE", default_value_t = Material::usual(0).specular, value_parser = share)]
     specular: f64,
     /// The share of the light in the diffuse term, 0 to 1
@@ -111,10 +114,10 @@ pub struct Arguments {
     /// The colour of the background
     #[arg(long, value_name = "R,G,B", default_value = "0.05,0.06,0.08", value_parser = colour)]
     background: Vector,
-    /// Where the camera stands [default: in front, a little above, so that everything is visible]
+    /// The position of the camera [default: in front of the scene, a little above, so that everything is visible]
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = vector)]
     camera: Option<Vector>,
-    /// The point that it looks at [default: the middle of everything]
+    /// The point that the camera looks at [default: the middle of the scene]
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = vector)]
     target: Option<Vector>,
     /// The vertical field of view, in degrees, 1 to 150
@@ -147,7 +150,7 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
         && !extension.eq_ignore_ascii_case("png")
     {
         wrong_usage!(
-            "--out {}: the picture is a PNG file, and its name should end so",
+            "--out {}: the picture is a PNG file; give a name that ends in .png",
             arguments.out.display()
         );
     }
@@ -193,7 +196,10 @@ fn settings(core: &Core, arguments: &Arguments) -> Result<Settings> {
     let exponent =
         arguments.exponent.unwrap_or_else(|| render::usual_exponent(core.contract.as_ref()));
     if !(least..=most).contains(&i64::from(exponent)) {
-        wrong_usage!("--exponent {exponent}: `{}` takes {least} to {most}", core.config.name);
+        wrong_usage!(
+            "--exponent {exponent}: `{}` accepts exponents from {least} to {most}",
+            core.config.name
+        );
     }
     Ok(Settings {
         size: arguments.size,
@@ -219,7 +225,7 @@ fn scene(arguments: &Arguments, coarse: bool) -> Result<Scene> {
             let cannot = || format!("the mesh `{}` cannot be used", path.display());
             let bytes = read(path).with_context(cannot)?;
             let text = String::from_utf8(bytes)
-                .map_err(|_| anyhow!("it is not text, which an OBJ file is"))
+                .map_err(|_| anyhow!("the file is not UTF-8 text, and an OBJ file must be text"))
                 .with_context(cannot)?;
             vec![Object {
                 shape: Shape::Mesh(
@@ -245,7 +251,7 @@ fn scene(arguments: &Arguments, coarse: bool) -> Result<Scene> {
         ] {
             // This limit is far larger than anything visible, and far below an overflow.
             if !(-1e6..=1e6).contains(&value) {
-                wrong_usage!("{option} {value}: not beyond a million");
+                wrong_usage!("{option} {value}: give a number from -1000000 to 1000000");
             }
         }
         let cannot = || format!("the height map `{}` cannot be used", path.display());
@@ -262,7 +268,7 @@ fn read(path: &Path) -> Result<Vec<u8>> {
     let mut bytes = Vec::new();
     input::open(path)?.take(LARGEST_FILE + 1).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > LARGEST_FILE {
-        bail!("it has more than {LARGEST_FILE} bytes");
+        bail!("the file has more than {LARGEST_FILE} bytes");
     }
     Ok(bytes)
 }
@@ -353,11 +359,11 @@ impl CommandReport for RenderedPicture<'_> {
             text::grouped(rendered.points)
         );
         if degenerate > 0 {
-            failure::warn(&format!("{degenerate} triangles are without area and were left out"));
+            failure::warn(&format!("{degenerate} triangles have no area and were left out"));
         }
         if rendered.beyond > 0 {
             failure::warn(&format!(
-                "at {} points the deviation exceeds the device's domain and was shortened to it",
+                "at {} points the deviation exceeds the device's domain, and was limited to the domain",
                 text::grouped(rendered.beyond)
             ));
         }
@@ -365,14 +371,14 @@ impl CommandReport for RenderedPicture<'_> {
             let difference = &comparison.difference;
             let psnr = match difference.psnr {
                 Some(psnr) => format!("PSNR {psnr:.2} dB"),
-                None => "the same picture".to_owned(),
+                None => "no difference".to_owned(),
             };
             say!(
                 "  from left to right: the device, Blinn in f64, their difference times {}",
                 difference.gain
             );
             say!(
-                "  against Blinn: largest difference {} of 255, {psnr} over what is lit",
+                "  against Blinn: largest difference {} of 255, {psnr} over the lit pixels",
                 difference.largest
             );
             say!(
@@ -390,7 +396,7 @@ impl CommandReport for RenderedPicture<'_> {
 fn size(text: &str) -> Result<(u32, u32), String> {
     let sides = text.split_once(['x', 'X']);
     let sides = sides.and_then(|(width, height)| Some((width.parse().ok()?, height.parse().ok()?)));
-    sides.ok_or_else(|| "a size is WxH in pixels, as in 640x480".to_owned())
+    sides.ok_or_else(|| "expected WxH in pixels, for example 640x480".to_owned())
 }
 
 /// Parses finite numbers that are separated by commas. For example, `1, 2.5` gives 1 and 2.5. Fails if a part is no finite
@@ -407,17 +413,18 @@ fn numbers(text: &str) -> Result<Vec<f64>, String> {
 /// Parses `NAME=VALUE`, in which the value must be one finite number. For example, `alpha2=0.04`. Fails if the text has another
 /// form.
 fn operand(text: &str) -> Result<(String, f64), String> {
-    let (name, value) = text.split_once('=').ok_or("it takes NAME=VALUE, as in alpha2=0.04")?;
+    let (name, value) =
+        text.split_once('=').ok_or("expected NAME=VALUE, for example alpha2=0.04")?;
     match numbers(value)?.as_slice() {
         &[value] => Ok((name.trim().to_owned(), value)),
-        _ => Err("it takes one number".to_owned()),
+        _ => Err("expected one number".to_owned()),
     }
 }
 
 fn vector(text: &str) -> Result<Vector, String> {
     match numbers(text)?.as_slice() {
         &[x, y, z] => Ok(Vector::new(x, y, z)),
-        _ => Err("it takes three numbers, x,y,z".to_owned()),
+        _ => Err("expected three numbers, x,y,z".to_owned()),
     }
 }
 
@@ -440,7 +447,7 @@ fn light(text: &str) -> Result<Light, String> {
     };
     let colour = of_light(Vector(colour))?;
     let direction = direction.unit();
-    Ok(Light { direction: direction.ok_or("0,0,0 is no direction")?, colour })
+    Ok(Light { direction: direction.ok_or("0,0,0 is not a direction")?, colour })
 }
 
 /// Parses a number from `low` to `high`, both included. Fails with the message `wanted` for anything else.

@@ -44,7 +44,10 @@ pub fn read<C, T>(
         });
         rows.push(row?);
     }
-    ensure!(!rows.is_empty(), "`{shown}` has no row of operands below the row with their names");
+    ensure!(
+        !rows.is_empty(),
+        "`{shown}` has no row of values below the row with the names; add a row"
+    );
     Ok(rows)
 }
 

@@ -18,24 +18,24 @@ use glint_show::pages::diagram;
 
 /// Show the stages of a pipeline
 ///
-/// For each stage: which microinstructions it is made of, what it computes, the delay of its longest path by the
-/// delays of the target, the slack (what the clock period leaves beside that and a register's own delay), and the
-/// bits of the registers behind it, and of the delay lines that pass there.
+/// The table shows for each stage: its microinstructions, the values that it computes, the delay of its longest path on the
+/// target, the slack (the clock period minus this delay and the delay of a register), the bits of the registers behind the
+/// stage, and the bits of the delay lines that pass through the stage.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
   glint schedule my_pipeline.toml
   glint schedule my_pipeline.toml --svg drawings   a drawing of the stages, drawings/<name>.svg
-  glint schedule my_pipeline.toml --passes         what each rewriting makes of the computation
-  glint schedule my_pipeline.toml --after split    the computation itself, a line for each value
+  glint schedule my_pipeline.toml --passes         the operations and products after each pass
+  glint schedule my_pipeline.toml --after split    the computation after a pass, a line for each value
   glint schedule my_pipeline.toml --json")]
 pub struct Arguments {
     #[command(flatten)]
     configs: Configs,
-    /// Draw the stages too, a file for each configuration
+    /// Also draw the stages, as one SVG file for each configuration
     #[arg(long, value_name = "DIR")]
     svg: Option<PathBuf>,
-    /// Replace drawings that Glint did not write or that were edited since
+    /// Also replace drawings that Glint did not write or that were edited since
     #[arg(long, requires = "svg")]
     force: bool,
     /// List the passes that rewrite the computation before it is scheduled
@@ -62,7 +62,7 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
                 continue;
             }
             bail!(
-                "`{}`: the architecture is sequential, and has no stages; set architecture = \"pipelined\"",
+                "`{}`: the core is sequential and has no stages; set architecture = \"pipelined\"",
                 one.path
             );
         };
@@ -71,7 +71,7 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
             let drawing = sealed(diagram::svg(&one.core.design)?, Seal::Markup);
             let path = directory.join(format!("{}.svg", one.core.config.name));
             store::write_sealed(&path, &drawing, Seal::Markup, arguments.force)
-                .with_context(|| format!("`{}` was not drawn", one.path))?;
+                .with_context(|| format!("the drawing of `{}` was not written", one.path))?;
         }
         match &arguments.after {
             _ if arguments.passes => list.add(&PassList::new(&one)?)?,
@@ -80,7 +80,10 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
         }
     }
     if shown == 0 {
-        bail!("none of {} configurations is pipelined; name one", named.len());
+        bail!(
+            "none of {} configurations is a pipeline; name the configuration of a pipeline",
+            named.len()
+        );
     }
     list.finish(|schedules| Ok(json!({ "ok": true, "schedules": schedules })))?;
     Ok(true)
@@ -145,7 +148,7 @@ impl<'a> PassText<'a> {
         let results = one.core.device.pass_results(&one.core.config)?;
         let Some(result) = results.iter().find(|result| result.name == pass) else {
             let names: Vec<&str> = results.iter().map(|result| result.name).collect();
-            bail!("`{}`: no pass `{pass}` runs; these do: {}", one.path, names.join(", "));
+            bail!("`{}` has no pass `{pass}`; its passes are: {}", one.path, names.join(", "));
         };
         Ok(Self { path: &one.path, pass, text: result.text() })
     }
@@ -189,7 +192,7 @@ fn print(one: &Loaded, pipeline: &Pipeline) {
     };
     let multipliers = match pipeline.registered.len() {
         0 => String::new(),
-        some => format!(" beside those in {}", counted(some, "multiplier")),
+        some => format!(" in addition to the registers in {}", counted(some, "multiplier")),
     };
     say!(
         "{}: {} stages for {:.1} MHz ({period:.2} ns) on {}, {bits} register bits{multipliers}{delayed}",
@@ -217,7 +220,10 @@ fn print(one: &Loaded, pipeline: &Pipeline) {
     if pipeline.units.is_empty() {
         return;
     }
-    say!("a point every {} clocks; the product of each slot:", pipeline.interval);
+    say!(
+        "the pipeline takes a point every {} clocks; each multiplier computes these products, by slot:",
+        pipeline.interval
+    );
     let mut headings = "multiplier".to_owned();
     for slot in 0..pipeline.interval {
         headings += &format!(" | {slot}");

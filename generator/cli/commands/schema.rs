@@ -9,8 +9,8 @@ use glint_core::registry::Registry;
 
 /// Print a JSON Schema of the configuration keys, for editors and validators
 ///
-/// It has names, types, ranges, defaults and descriptions. Conditions between keys are checked when a
-/// configuration is read.
+/// The schema has the names, types, ranges, defaults and descriptions of the keys. Glint checks conditions between keys when
+/// it reads a configuration.
 #[derive(Args)]
 #[command(after_help = "\
 Example:

@@ -20,12 +20,14 @@ impl KeyAssignment {
     /// `.`.
     pub fn parse(given: &str) -> Result<KeyAssignment> {
         let Some((key, value)) = given.split_once('=') else {
-            wrong_usage!("--set {given}: a key and a value are wanted, as cosine.fraction=16");
+            wrong_usage!("--set {given}: expected KEY=VALUE, for example cosine.fraction=16");
         };
         let (key, value) = (key.trim(), value.trim());
         let is_of_key = |c: char| c.is_ascii_alphanumeric() || "_-.".contains(c);
         if key.is_empty() || !key.chars().all(is_of_key) {
-            wrong_usage!("--set {given}: `{key}` is no name of a key, as cosine.fraction");
+            wrong_usage!(
+                "--set {given}: `{key}` cannot be the name of a key; a key is for example cosine.fraction"
+            );
         }
         let is_toml = value.parse::<f64>().is_ok()
             || value.starts_with(['[', '"'])

@@ -21,21 +21,22 @@ pub const REAL: &str = "real_";
 
 /// Compute a device's operands from vectors or angles, as a host does before it starts
 ///
-/// A device that walks scan lines takes the formulas (2) to (5) and (8) to (16) of seed 000: from normals N1, N2
-/// and half vectors H1, H2 at the ends of a line, gamma, P, lambda, A and C, and of these the angle at the first point
-/// and its step. A device that computes points takes the cosine of the angle between N and H, and its other operands.
+/// For a device that computes scan lines, the command applies the formulas (2) to (5) and (8) to (16) of seed 000. The
+/// normals N1, N2 and the half vectors H1, H2 at the ends of a line give gamma, P, lambda, A and C, and these give the angle
+/// at the first point and the step of the angle. For a device that computes single points, the command computes the cosine
+/// of the angle between N and H, and the other operands.
 ///
-/// The operands are in the formats of the configuration: an integer as the port takes it ("raw"), its value, and beside it
-/// the real number that was rounded. As CSV they go straight into `glint eval --batch`.
+/// The output has each operand in its format in the configuration: as the integer that the port takes ("raw"), as the value
+/// of this integer, and as the real number before rounding. `glint eval --batch` reads the output of --csv.
 #[derive(Args)]
 #[command(after_help = "\
 Inputs of a line:
   normal_1, normal_2       N at its first and last point, of any length, as 0,0,1
-  half_1, half_2           H there
-  light_1, view_1, ...     or the directions toward light and viewer, whose middle is H
+  half_1, half_2           H at these two points
+  light_1, view_1, ...     or the directions toward light and viewer; H is halfway between them
   theta_1, theta_2, gamma  or angles in degrees in place of vectors: from N1 to H1, from N2 to H2,
-                           and from H1 to H2 once N2 is turned into N1 and H2 with it
-  points                   how many points the line has, both ends included
+                           and from H1 to the H2 that a rotation of N2 into N1 gives
+  points                   the number of points of the line, both ends included
   exponent                 n
   intensity                the light times k_s, 0 to 1 [default: 1]
 Inputs of a point:
@@ -43,14 +44,15 @@ Inputs of a point:
   half                     H, or light and view
   perturbed                the normal of the rough surface, for devices with dgamma
   gamma, dgamma            or angles in degrees in place of vectors
-  exponent                 n, where the device takes it
+  exponent                 n, if the device has this operand
   red, green, blue         the light times k_s, 0 to 1 [default: 1]
 
 In a CSV file the first row has these names. A vector is one column, `0 0 1`, or three: normal_1_x,
-normal_1_y, normal_1_z. Inputs on the command line hold for all rows.
+normal_1_y, normal_1_z. Inputs on the command line apply to all rows.
 
-Formulas (13) and (16) of the seed multiply by the root of n/k, which its device does itself: the
-operands are without it. A device without an exponent takes its angles times a of (11).
+Formulas (13) and (16) of seed 000 multiply by the square root of n/k. The device does this
+multiplication itself, so the operands do not contain the factor. For a device without an exponent,
+the command multiplies the angles by a of (11).
 
 Examples:
   glint setup line.toml normal_1=0,0,1 half_1=1,0,3 normal_2=0,0,1 half_2=0,1,3 points=9 exponent=60
@@ -59,15 +61,15 @@ Examples:
   glint setup line.toml --batch lines.csv | glint eval line.toml --batch -
   glint setup line.toml exponent=60 --batch - --json < lines.csv
 
-Exit codes: 0 operands were printed; 1 a file is wrong; 2 an argument is.")]
+Exit codes: 0 operands were printed; 1 a file is not valid; 2 an argument is not valid.")]
 pub struct Arguments {
-    /// A configuration
+    /// A configuration file
     config: PathBuf,
-    /// Inputs, see below
+    /// The inputs, which are listed below
     #[arg(value_name = "INPUT=VALUE")]
     inputs: Vec<String>,
-    /// Set up many: a CSV file with the names of inputs in its first row, or - for standard input. The operands are CSV,
-    /// or with --json a list
+    /// Compute the operands of many points or lines: read inputs from a CSV file, or from standard input if the file is -.
+    /// The first row has the names of the inputs. The operands are printed as CSV, or with --json as a list
     #[arg(long, value_name = "FILE.csv")]
     batch: Option<PathBuf>,
     /// Print CSV, for `glint eval --batch`
@@ -126,7 +128,7 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     let mut given = vec![[None; 3]; host.inputs.len()];
     for setting in &arguments.inputs {
         let Some((name, text)) = setting.split_once('=') else {
-            wrong_usage!("`{setting}` is not input=value, as in exponent=20")
+            wrong_usage!("`{setting}` is not of the form input=value, for example exponent=20")
         };
         host.place(name)
             .and_then(|place| host.put(&mut given, place, text))
@@ -142,7 +144,7 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
         return Ok(true);
     };
     if *path == arguments.config {
-        wrong_usage!("configuration and --batch are one file");
+        wrong_usage!("the configuration and --batch name the same file: give --batch another file");
     }
     let set_ups = rows::read(
         path,
@@ -196,7 +198,8 @@ impl<'a> HostInputs<'a> {
         let feed = Feed::new(one.core.device.name, contract)?;
         ensure!(
             !feed.shades(),
-            "the operands of `{}` are vectors and colours themselves: there is nothing to set up",
+            "the operands of `{}` are themselves vectors and colours, so there is nothing to compute: give \
+             them to `eval`",
             one.core.device.name
         );
         let line = render::walks_lines(contract);
@@ -268,7 +271,9 @@ impl<'a> HostInputs<'a> {
         let whole_vector = vector && axis.is_none();
         let numbers = if whole_vector { components(text) } else { vec![text] };
         if whole_vector && numbers.len() != 3 {
-            return Err(format!("input `{name}`: `{text}` is not three numbers, as 0,0,1"));
+            return Err(format!(
+                "input `{name}`: `{text}` is not three numbers, for example 0,0,1"
+            ));
         }
         let first = axis.unwrap_or(0);
         for (offset, number) in numbers.into_iter().enumerate() {
@@ -300,7 +305,9 @@ impl<'a> HostInputs<'a> {
     fn whole(&self, given: &Given, name: &str, least: u32) -> Result<u32, String> {
         let value = self.needed(given, name)?;
         if value.fract() != 0.0 || !(f64::from(least)..=f64::from(u32::MAX)).contains(&value) {
-            return Err(format!("input `{name}` is {value}; it is a whole number from {least} on"));
+            return Err(format!(
+                "input `{name}` is {value}; give a whole number of at least {least}"
+            ));
         }
         Ok(value as u32)
     }
@@ -311,7 +318,7 @@ impl<'a> HostInputs<'a> {
         let value = self.number(given, name).unwrap_or(1.0);
         if !(0.0..=1.0).contains(&value) {
             return Err(format!(
-                "input `{name}` is {value}; it is a share of the full light, 0 to 1"
+                "input `{name}` is {value}; give a share of the full light, from 0 to 1"
             ));
         }
         Ok(value)
@@ -323,7 +330,7 @@ impl<'a> HostInputs<'a> {
         let degrees = self.needed(given, name)?;
         if !(low..=high).contains(&degrees) {
             return Err(format!(
-                "input `{name}` is {degrees} degrees; it lies between {low} and {high}"
+                "input `{name}` is {degrees} degrees; give an angle from {low} to {high} degrees"
             ));
         }
         Ok(degrees.to_radians())
@@ -337,7 +344,7 @@ impl<'a> HostInputs<'a> {
             [None, None, None] => Ok(None),
             _ => {
                 let axis = AXES[parts.iter().position(Option::is_none).unwrap_or(0)];
-                Err(format!("input `{name}` lacks its component {axis}"))
+                Err(format!("input `{name}` has no component {axis}; give all three components"))
             }
         }
     }
@@ -352,7 +359,11 @@ impl<'a> HostInputs<'a> {
     ) -> Result<(Vector, Vector), String> {
         let half_vector = match (self.vector(given, of_half)?, self.vector(given, light)?) {
             (Some(half), None) => half,
-            (Some(_), Some(_)) => return Err(format!("`{of_half}` and `{light}` are both given")),
+            (Some(_), Some(_)) => {
+                return Err(format!(
+                    "`{of_half}` and `{light}` are both given: give only one of them"
+                ));
+            }
             (None, Some(toward_light)) => {
                 let toward_viewer = self.needed_vector(given, view)?;
                 half([light, view, "the sum of light and view"], toward_light, toward_viewer)
@@ -378,7 +389,7 @@ impl<'a> HostInputs<'a> {
         let vector = vectors.find(|(_, parts)| parts.iter().any(Option::is_some));
         match (angle, vector) {
             (Some(angle), Some((vector, _))) => Err(format!(
-                "`{}` and `{angle}` are both given: vectors or angles, not both",
+                "`{}` and `{angle}` are both given: give either vectors or angles",
                 vector.name
             )),
             (angle, _) => Ok(angle.is_some()),
@@ -408,8 +419,8 @@ impl<'a> HostInputs<'a> {
             let operand = &self.one.core.contract.operands()[at];
             let (low, high) = operand.domain;
             return Err(format!(
-                "operand `{}` would be {}, and {} takes {} to {}; give other inputs, or a wider domain or format in the \
-                 configuration",
+                "operand `{}` would be {}, but {} accepts {} to {}; give other inputs, or set a wider domain \
+                 or format in the configuration",
                 operand.name,
                 set_up.real[at],
                 self.one.path,
@@ -497,7 +508,12 @@ impl<'a> HostInputs<'a> {
         if self.feed.takes_deviation() {
             let size = libm::acos(point.cos_dgamma).to_degrees();
             let dgamma = if point.dgamma_negative { -size } else { size };
-            quantities.push(("dgamma", "what roughness adds to it", dgamma, "degrees"));
+            quantities.push((
+                "dgamma",
+                "the angle that roughness adds to gamma",
+                dgamma,
+                "degrees",
+            ));
         }
         let real = self.feed.values(&point, exponent).collect();
         let raw = self.feed.raw(&point, exponent).0.collect();
@@ -515,7 +531,7 @@ impl<'a> HostInputs<'a> {
                 format!("{rounded} {unit}"),
             ]);
         }
-        tables::print("quantity | of seed 000 | value", quantities);
+        tables::print("quantity | meaning, or formula of seed 000 | value", quantities);
         let mut operands = Vec::new();
         let mut settings = Vec::new();
         for (at, operand) in self.one.core.contract.operands().iter().enumerate() {

@@ -29,37 +29,38 @@ use show::SynthesisReport;
 
 /// Measure area and frequency by synthesis, placement and routing
 ///
-/// iCE40 (UP5K), ECP5, Nexus and GateMate by Yosys and nextpnr over several seeds, Xilinx 7 and Gowin by Yosys (area
-/// alone, since no open tool times all of their cells), 0.18 µm standard cells by Yosys and OpenSTA (before layout; a
-/// gate is a NAND2X1). Registers stand around the core, so that pins do not count; the delay of a DSP block always
-/// counts. Points a second are the median frequency divided by the clocks a point. The critical path has the names of
-/// the description. Results are cached in `.glint/` beside the configuration, until the Verilog or the tools change.
+/// Yosys and nextpnr measure iCE40 (UP5K), ECP5, Nexus and GateMate with several seeds. Yosys measures Xilinx 7 and Gowin,
+/// but only the area, because no open tool has the delays of all their cells. Yosys and OpenSTA measure 0.18 µm standard
+/// cells, before layout; one gate is a NAND2X1. The command puts registers around the core, so the delays of pins do not
+/// count; the delay of a DSP block always counts. The points per second are the median frequency divided by the clocks per
+/// point. The critical path has the names of the description. Results are cached in `.glint/` next to the configuration
+/// until the Verilog or the tools change.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
-  glint synth my_core.toml                            every target whose tools are installed; of a pipeline its own
-  glint synth my_core.toml --target ecp5 --seeds 11   one of them, more seeds
+  glint synth my_core.toml                            every target whose tools are installed; for a pipeline, its own target
+  glint synth my_core.toml --target ecp5 --seeds 11   one target, more seeds
   glint synth my_core.toml --target gowin             area on a Tang Nano 20K
-  glint synth my_core.toml --front --rate 30          sequential core and every interval; the smallest with the rate
+  glint synth my_core.toml --front --rate 30          all architectures; marks the smallest with this rate
   glint synth --json                                  everything in configs/, for scripts
   glint synth --out synthesis                         a record of each configuration in configs/")]
 pub struct Arguments {
     #[command(flatten)]
     configs: Configs,
-    /// The technology to measure for; may be repeated [default: the target of the pipelines, or all of iCE40, ECP5, Xilinx 7 and
-    /// standard cells whose tools are installed]
+    /// The technology to measure for; may be repeated [default: the pipelines' targets, or those of iCE40, ECP5, Xilinx 7
+    /// and standard cells whose tools are installed]
     #[arg(long = "target", value_name = "TARGET", value_parser = choice::target())]
     targets: Vec<Target>,
-    /// Runs of place and route, of which the median counts
+    /// The number of runs of place and route; the result is their median
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=1000))]
     seeds: u32,
-    /// How many tools to run at the same time [default: the number of threads]
+    /// The number of tools to run at the same time [default: the number of threads]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
-    /// Measure again what is in the cache, `.glint/` beside each configuration
+    /// Ignore results in the cache, `.glint/` next to each configuration, and measure again
     #[arg(long)]
     no_cache: bool,
-    /// Write the figures of each configuration, `<name>.json`, into this directory
+    /// Write the results of each configuration, `<name>.json`, into this directory
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Measure one configuration in each architecture: the sequential core, and pipelines from the longest interval to a point
@@ -72,7 +73,7 @@ pub struct Arguments {
     /// With --front: plot area over rate as SVG into this file
     #[arg(long, value_name = "FILE.svg", requires = "front")]
     plot: Option<PathBuf>,
-    /// With --plot: replace a file that is there already
+    /// With --plot: replace an existing file
     #[arg(long, requires = "plot")]
     force: bool,
     /// The Liberty file of the standard cells
@@ -161,7 +162,7 @@ fn flows(arguments: &Arguments, loaded: &[Loaded]) -> Result<(Vec<Flow>, Vec<Str
     let search = std::env::var_os("PATH").unwrap_or_default();
     let find = |target: Target| {
         let flow = Flow::find(target, &search, &arguments.liberty);
-        flow.with_context(|| format!("nothing can be measured for {}", target.title()))
+        flow.with_context(|| format!("cannot measure for {}", target.title()))
     };
     let mut wanted = arguments.targets.clone();
     // A record must have all targets.

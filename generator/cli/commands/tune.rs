@@ -25,17 +25,19 @@ use glint_prove::tune::{self, Answer, Candidate, ErrorUnit, Objective, TuningGoa
 
 /// Find the smallest configuration of a device for an error
 ///
-/// The bound of the accuracy contract decides, so that the answer keeps the error for every operand of the domain.
-/// Keys that change neither ports nor formula are searched; those that add microinstructions, such as one multiplier for
-/// several products, with --rate, with --objective dsps, and where nothing else fits the chip. Of equal cost the
-/// smaller error is taken. Formats, domain and formula stay at their defaults, or as `--set` states them. Area and clock are estimates that were fitted to synthesis; `glint synth` measures the answer.
+/// The command compares the error bound of the accuracy contract with --error, so the result keeps the error for all
+/// operands of the domain. It searches the keys that change neither ports nor formula. It searches keys that add
+/// microinstructions, such as one multiplier for several products, only with --rate, with --objective dsps, or if nothing
+/// else fits the chip. If two configurations have equal cost, it takes the one with the smaller error. Formats, domain and
+/// formula keep their defaults or the values of --set. Area and clock are estimates that were fitted to synthesis results;
+/// `glint synth` measures the result.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
   glint tune cosine-power --error 0.75                     3/4 of the outputs' last bit, on ECP5
   glint tune blinn --error 0.0005 --unit f --target ice40
   glint tune rough --error 0.9 --set cosine.fraction=16 --set exponent.bits=7 --out small_rough.toml
-  glint tune cosine-power --error 0.75 --rate 30           sequential, or a pipeline with the interval that has the rate
+  glint tune cosine-power --error 0.75 --rate 30           a sequential core, or a pipeline that reaches the rate
   glint tune lyon --error 1.5 --rate 20 --max-multipliers 6
   glint tune gauss --error 0.001 --unit f --csv            the trade-off of error and area")]
 pub struct Arguments {
@@ -44,27 +46,27 @@ pub struct Arguments {
     /// The largest error
     #[arg(long, value_name = "E", value_parser = number)]
     error: f64,
-    /// The measure of the error: the reflectance f, 0 to 1, or the outputs' least significant bit
+    /// The unit of the error: the reflectance f, from 0 to 1, or the outputs' least significant bit
     #[arg(long, value_parser = choice::error_unit(), default_value = "output")]
     unit: ErrorUnit,
     /// The technology that area and clock are estimated for
     #[arg(long, value_name = "TARGET", value_parser = choice::target(), default_value = "ecp5")]
     target: Target,
-    /// The figure to minimise
+    /// The cost to minimise
     #[arg(long, value_parser = choice::objective(), default_value = "area")]
     objective: Objective,
-    /// The clock that the core must reach, by the estimate
+    /// The clock in MHz that the core must reach, by the estimate
     #[arg(long, value_name = "MHZ", value_parser = number)]
     clock: Option<f64>,
-    /// How many million points a second the core must compute, by the estimated clock and the clocks of a point. Without
-    /// `--set architecture=…` pipelines are looked at too, with the longest interval that has the rate
+    /// The million points per second that the core must compute, from the estimated clock and the clocks per point. Without
+    /// `--set architecture=…` the command also tries pipelines, and takes the longest interval that reaches the rate
     #[arg(long, value_name = "MPOINTS", value_parser = number)]
     rate: Option<f64>,
-    /// The most DSP blocks that the core may have. Without `--set architecture=…` pipelines are looked at too, with the longest
-    /// interval that does
+    /// The largest number of DSP blocks that the core may have. Without `--set architecture=…` the command also tries
+    /// pipelines, and takes the longest interval that reaches the goals
     #[arg(long, value_name = "N")]
     max_multipliers: Option<u64>,
-    /// A key with the value that it must have: a format, the domain, or any other; may be repeated
+    /// Fix a key to a value, for example a format or the domain; may be repeated
     #[arg(long = "set", value_name = "KEY=VALUE")]
     set: Vec<String>,
     /// The name of the module [default: the device's, with _ for -]
@@ -90,28 +92,29 @@ pub struct Arguments {
 /// Fails if an option is not valid, if no configuration reaches the goal, or if a file cannot be written.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     if arguments.csv && !output.is_for_people() {
-        wrong_usage!("--json and --csv are two forms of the same: give one");
+        wrong_usage!("--json and --csv cannot be used together: give one of them");
     }
     if !(arguments.error > 0.0 && arguments.error.is_finite()) {
-        wrong_usage!("--error {}: an error is a number above 0", arguments.error);
+        wrong_usage!("--error {}: give a number above 0", arguments.error);
     }
     for (option, wanted) in [("--clock", arguments.clock), ("--rate", arguments.rate)] {
         let Some(wanted) = wanted else { continue };
         let is_usable = wanted > 0.0 && wanted.is_finite();
         if !is_usable {
-            wrong_usage!("{option} {wanted}: a number above 0 is wanted");
+            wrong_usage!("{option} {wanted}: give a number above 0");
         }
     }
     if arguments.target.family().is_none() {
         wrong_usage!(
-            "--target {}: there is no estimate of what a configuration costs there; tune for an FPGA and see `{Program} synth`",
+            "--target {}: Glint cannot estimate the cost of a configuration for this target; tune for an \
+             FPGA, and measure with `{Program} synth`",
             arguments.target
         );
     }
     if let (Some(out), Some(plot)) = (&arguments.out, &arguments.plot)
         && std::path::absolute(out).ok() == std::path::absolute(plot).ok()
     {
-        wrong_usage!("--out and --plot both name `{}`", out.display());
+        wrong_usage!("--out and --plot both name `{}`: give different files", out.display());
     }
     let (device, base, fixed) = base(registry, arguments)?;
     let file = fresh_file(arguments.out.as_deref(), arguments.force)?;
@@ -143,7 +146,7 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     output.report(&TunedConfiguration { device: &device, answer: &answer, arguments, text })?;
     let excess = answer.best.cost.excess(arguments.target);
     if !excess.is_empty() {
-        failure::warn(&format!("{}: by the estimate {excess}", arguments.device));
+        failure::warn(&format!("{}: by the estimate, {excess}", arguments.device));
     }
     Ok(true)
 }
@@ -219,9 +222,9 @@ fn toml(device: &Device, best: &Candidate, arguments: &Arguments) -> String {
         None => String::new(),
     };
     let head = format!(
-        "# The smallest `{}` within {} {} that `{Program} tune` found for {}.\n\
-         # Bound, {}: {} of f, {} output units. Estimate: {:.0} LUTs, {} DSP blocks, {} block RAMs,\n\
-         # {} bits of ROM, {:.0} MHz{clocks}; `{Program} synth` measures.\n{}",
+        "# The smallest `{}` with an error of at most {} {} that `{Program} tune` found for {}.\n# Error \
+         bound ({}): {} of f, {} output units. Estimate: {:.0} LUTs, {} DSP blocks, {} block RAMs,\n# {} \
+         bits of ROM, {:.0} MHz{clocks}; `{Program} synth` measures.\n{}",
         device.name,
         arguments.error,
         arguments.unit,
@@ -236,7 +239,7 @@ fn toml(device: &Device, best: &Candidate, arguments: &Arguments) -> String {
         cost.mhz,
         match cost.excess(arguments.target).as_str() {
             "" => String::new(),
-            excess => format!("# By the estimate {excess}.\n"),
+            excess => format!("# By the estimate, {excess}.\n"),
         }
     );
     head + &best.config.to_toml(&(device.schema)())
@@ -277,7 +280,7 @@ fn print(device: &Device, answer: &Answer, arguments: &Arguments, text: &str) {
         rows,
     );
     say!(
-        "Bounds are {}; LUTs and MHz are estimates for {}. {} configurations were looked at.",
+        "Bounds are {}; LUTs and MHz are estimates for {}. The search tried {} configurations.",
         origin(device),
         arguments.target.title(),
         answer.looked_at

@@ -20,39 +20,40 @@ use glint_prove::verify::{
     VerificationRecord, page,
 };
 
-/// Verify configurations by every means that Glint has, and write a page about each
+/// Verify configurations with every check that Glint has, and write a page about each configuration
 ///
-/// Writes `DIR/<name>.html`, one page that needs no network, and `DIR/<name>.json` with the same for scripts: what was
-/// shown, by which check, over which domain, with which tools, and what is left open. Both are the same whenever they are
-/// made with the same tools, but for the page's last section: how long each check took, which `DIR/<name>.timings.json` has too.
-/// The exit code is 0 only if every check that asks something of the configuration, and that --without-tools does not leave
-/// out, was run to its end and holds: a tool that is missing, a solver that answers unknown or a time limit that is reached
-/// leaves the verification incomplete. So does a proof of the accuracy
-/// contract that takes more than some seconds, unless --full makes it or its record is in --proofs: that is found
-/// by the configuration's digest and checked again in part. Of the faults in a netlist 2048 are planted, or all with --full.
+/// The command writes `DIR/<name>.html`, a page that loads nothing from the network, and `DIR/<name>.json` with the same
+/// contents for scripts: what was shown, by which check, over which domain, with which tools, and what is left open. The
+/// same tools always give the same two files, except for the last section of the page, which has the duration of each check;
+/// `DIR/<name>.timings.json` has the durations too. The exit code is 0 only if every check that applies to the
+/// configuration, and that --without-tools does not leave out, ran to its end and holds. A missing tool, a solver that
+/// answers unknown or an exceeded time limit makes the verification incomplete. A proof of the accuracy contract that would
+/// take more than some seconds also makes it incomplete, unless --full runs the proof or --proofs has its record. A record
+/// is found by the digest of the configuration, and is checked again in part. The command plants 2048 faults in the netlist,
+/// or all faults with --full.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
   glint verify my_core.toml                       every check, in a minute or two
   glint verify my_core.toml --full                the whole proof, all faults: minutes to hours
-  glint verify my_core.toml --without-tools       what needs no simulator, solver or synthesiser
+  glint verify my_core.toml --without-tools       only checks without simulator, solver or synthesiser
   glint verify --json                             everything in configs/, for scripts
 
-Exit codes: 0 verified, or verified without what --without-tools leaves out; 1 a check fails, or could not be run to its end
+Exit codes: 0 verified, or verified without the checks that --without-tools leaves out; 1 a check fails, or could not be run to its end
 (\"verified but for …\"); 2 wrong usage.")]
 pub struct Arguments {
     #[command(flatten)]
     configs: Configs,
-    /// Do everything, however long it takes
+    /// Run every check in full, however long it takes
     #[arg(long)]
     full: bool,
-    /// Only the checks that need no tool outside Glint
+    /// Run only the checks that need no outside tool
     #[arg(long)]
     without_tools: bool,
-    /// Where the files go
+    /// The directory for the files
     #[arg(long, value_name = "DIR", default_value = "verification")]
     out: PathBuf,
-    /// Where records of `cosim --exhaustive --json` are, which stand for a long proof of the accuracy contract
+    /// The directory with records of `cosim --exhaustive --json`; a record replaces a long proof of the accuracy contract
     #[arg(long, value_name = "DIR", default_value = PROOFS)]
     proofs: PathBuf,
     #[command(flatten)]
@@ -143,7 +144,7 @@ fn one_configuration(
     let mut answers: Vec<CheckAnswer> = Vec::new();
     for check in CHECKS {
         if check.is_outside() && arguments.without_tools {
-            answers.push(check.left_out("--without-tools leaves it out."));
+            answers.push(check.left_out("--without-tools leaves this check out."));
             continue;
         }
         let bar = progress::bar(output, check.steps(&subject), check.title);
@@ -186,7 +187,7 @@ fn print_conclusion(one: &Loaded, record: &VerificationRecord) {
         tables::print_line(&format!("  {}: {}", verdict.words(), titles.join(", ")));
     }
     for command in commands {
-        say!("  complete it with: {}", command.replacen(&record.config, &one.path, 1));
+        say!("  to complete the verification: {}", command.replacen(&record.config, &one.path, 1));
     }
 }
 

@@ -20,26 +20,26 @@ use glint_core::registry::Registry;
 
 /// Search for the largest error of an output
 ///
-/// From points that the stimulus draws the operands are moved as long as the error grows; then a number of values around the
-/// highest places is looked at. What is found is a lower
-/// limit of the largest error there is, as the bound of the contract is an upper one. The same seed finds the same.
-/// The exit code is 0 if the bound holds.
+/// Each climb starts at a point of the stimulus, and changes the operands as long as the error grows. Then the command tries
+/// values around the points with the largest errors. The result is a lower limit of the largest error; the bound of the
+/// contract is an upper limit. The same seed gives the same result. The exit code is 0 if the error found does not exceed
+/// the bound.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
   glint worst my_core.toml
   glint worst my_core.toml --starts 1e5 --seed 7      longer, from other points
-  glint worst configs/rough.toml --out records/proofs/worst   a record; one of a larger error stays")]
+  glint worst configs/rough.toml --out records/proofs/worst   writes a record, unless an old record has a larger error")]
 pub struct Arguments {
     #[command(flatten)]
     configs: Configs,
-    /// How many climbs to begin
+    /// The number of climbs
     #[arg(long, value_name = "N", default_value = "1000", value_parser = count)]
     starts: u64,
-    /// Seed of the points from which they begin
+    /// The seed of the points at which the climbs start
     #[arg(long, value_name = "S", default_value_t = 1)]
     seed: u64,
-    /// Write the record of each configuration, `<name>.json`, into this directory; one of a larger error stays
+    /// Write the record of each configuration, `<name>.json`, into this directory; a record of a larger error is kept
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 }
@@ -144,12 +144,12 @@ fn known(one: &Loaded, arguments: &Arguments, found: &Reached) -> LargestError {
 fn print(report: &WorstReport) {
     let WorstReport { one, found, bound, holds, recorded } = report;
     let verdict = match (bound.is_finite(), holds) {
-        (false, _) => "of a contract that states no bound".to_owned(),
+        (false, _) => "and the contract states no bound".to_owned(),
         (true, true) => format!("within the bound of {bound:.4}"),
         (true, false) => format!("BEYOND the bound of {bound:.4}"),
     };
     say!(
-        "{}: {:.4} units, {verdict}, by {} from seed {}",
+        "{}: {:.4} units, {verdict}, found by {} from seed {}",
         found.config,
         found.units,
         climbs(found.starts),
@@ -161,7 +161,7 @@ fn print(report: &WorstReport) {
     say!("  {} is {} for {:.4} at {}", found.output, found.raw, found.exact, operands.join(" "));
     if let Some(recorded) = recorded {
         say!(
-            "  the record stays: {:.4} units, by {} from seed {}",
+            "  the existing record is kept: {:.4} units, found by {} from seed {}",
             recorded.units,
             climbs(recorded.starts),
             recorded.seed
@@ -187,7 +187,7 @@ fn record(one: &Loaded, arguments: &Arguments) -> Result<Option<(OwnFile, Option
 fn read(path: &Path) -> Result<Option<LargestError>> {
     let Some(text) = input::text(path)? else { return Ok(None) };
     let known: LargestError = serde_json::from_str(&text)
-        .with_context(|| format!("`{}` is no record of `{Program} worst`", path.display()))?;
-    ensure!(known.units.is_finite(), "`{}` has no error", path.display());
+        .with_context(|| format!("`{}` is not a record of `{Program} worst`", path.display()))?;
+    ensure!(known.units.is_finite(), "the error in `{}` is not a finite number", path.display());
     Ok(Some(known))
 }

@@ -32,7 +32,7 @@ impl Staging {
             let path = directory.path().join(&file.path);
             create_parent(&path)?;
             fs::write(&path, &file.contents).with_context(|| {
-                format!("cannot write `{}`; what was there before is unchanged", file.path)
+                format!("cannot write `{}`; the existing files are unchanged", file.path)
             })?;
         }
         Ok(Self { directory, made: files.iter().map(|file| file.path.clone()).collect() })
@@ -53,8 +53,8 @@ impl Staging {
             let own = above.join(parts.next().unwrap_or_default());
             ensure!(
                 !own.is_symlink(),
-                "`{}` is a symbolic link, through which Glint does not write; nothing was changed\n\
-                 give --out where it leads, or make a directory of it",
+                "`{}` is a symbolic link, and Glint does not write through links; nothing was changed\ngive \
+                 --out the directory to which the link leads, or replace the link by a directory",
                 own.display()
             );
         }

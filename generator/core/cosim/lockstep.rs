@@ -249,9 +249,7 @@ impl<'a> Lockstep<'a> {
             let wrong = stream.iter().position(|clock| clock.len() != inputs);
             if let Some(clock) = wrong {
                 let found = stream[clock].len();
-                bail!(
-                    "clock {clock} of recorded stream {number} has {found} inputs and not {inputs}"
-                );
+                bail!("clock {clock} of recorded stream {number} has {found} inputs, not {inputs}");
             }
         }
         let nowhere = AtomicU64::new(u64::MAX);

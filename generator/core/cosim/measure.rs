@@ -53,10 +53,14 @@ impl<'a> Measure<'a> {
         };
         let quantity = |(number, Output { name, format }): (usize, &Output)| {
             let at = |net| Some((nets.iter().position(|&it| it == net)?, net));
-            let (at, net) = (design.find(name).and_then(at))
-                .with_context(|| format!("the contract takes `{name}` for an output"))?;
+            let (at, net) = (design.find(name).and_then(at)).with_context(|| {
+                format!("the contract has an output `{name}`, and the design has no such net")
+            })?;
             let real = design.net(net).format;
-            ensure!(real == *format, "the contract takes `{name}` for {format}, and it is {real}");
+            ensure!(
+                real == *format,
+                "the output `{name}` has the format {format} in the contract and {real} in the design"
+            );
             Ok(OutputQuantity {
                 at,
                 format: real,

@@ -73,7 +73,7 @@ impl Outcome {
         if let Some(worst) = self.worst.as_ref().filter(|worst| worst.units.is_infinite()) {
             let operands = worst.operands.iter().map(|(name, raw)| format!("{name} = {raw}"));
             failures.push(format!(
-                "the formula has no finite value for `{}` at {} (raw)",
+                "the formula has no finite value for `{}` at the raw operands {}",
                 worst.output,
                 operands.collect::<Vec<_>>().join(", ")
             ));
@@ -83,7 +83,7 @@ impl Outcome {
             // The bound of this output.
             let own = bound.units * worst.units / worst.weighted;
             failures.push(format!(
-                "`{}` is off by {:.6} units, beyond the stated bound of {own:.6}",
+                "the error of `{}` is {:.6} units, above the stated bound of {own:.6}",
                 worst.output, worst.units
             ));
         }

@@ -86,12 +86,18 @@ impl Ports {
             let net = design.net(port.net);
             let name = net.name.clone();
             let place = contract.operands().iter().position(|operand| operand.name == name);
-            let at = place.with_context(|| format!("the contract has no operand `{name}`"))?;
+            let at = place.with_context(|| {
+                format!("the design has an operand `{name}`, and the contract does not")
+            })?;
             operands.push(OperandPort { name, data, strobe, format: net.format, at });
         }
         for operand in contract.operands() {
             let found = operands.iter().any(|port| port.name == operand.name);
-            ensure!(found, "the contract speaks of operand `{}`", operand.name);
+            ensure!(
+                found,
+                "the contract has an operand `{}`, and the design does not",
+                operand.name
+            );
         }
         let mut results = Vec::new();
         for output in contract.outputs() {

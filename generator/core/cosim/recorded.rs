@@ -86,7 +86,7 @@ mod tests {
             |streams: &[Vec<Vec<u64>>]| lockstep.replay(streams, 1).unwrap_err().to_string();
         assert_eq!(refused(&[vec![]]), "recorded stream 0 has no clock");
         let (fewer, inputs) = (vec![vec![0; 3]], core.design.inputs().count());
-        let message = format!("clock 0 of recorded stream 0 has 3 inputs and not {inputs}");
+        let message = format!("clock 0 of recorded stream 0 has 3 inputs, not {inputs}");
         assert_eq!(refused(&[fewer]), message);
     }
 }

@@ -45,7 +45,7 @@ impl SequentialModel {
     ) -> Result<(Self, Vec<NetId>)> {
         let find = |name: &String| {
             design.find(name).ok_or_else(|| {
-                anyhow!("the golden model speaks of `{name}`, which the design does not have")
+                anyhow!("the golden model has a signal `{name}`, and the design does not")
             })
         };
         let inputs: Vec<NetId> = design.inputs().map(|port| port.net).collect();
@@ -53,8 +53,9 @@ impl SequentialModel {
         for name in model.inputs() {
             let id = find(name)?;
             let at = inputs.iter().position(|&input| input == id);
-            order
-                .push(at.with_context(|| format!("the golden model takes `{name}` for an input"))?);
+            order.push(at.with_context(|| {
+                format!("`{name}` is an input of the golden model, but not of the design")
+            })?);
         }
         let mut compared = Vec::new();
         for name in model.signals() {

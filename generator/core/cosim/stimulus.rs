@@ -318,7 +318,7 @@ mod tests {
         let port = design.ports.iter_mut().find(|port| operand(port.role)).unwrap();
         port.role = Role::Operand { strobe: busy };
         let error = Ports::new(&design, &pulse).err().unwrap();
-        assert_eq!(error.to_string(), "`busy` is no input of `device`");
+        assert_eq!(error.to_string(), "`busy` is not an input of `device`");
     }
 
     #[test]

@@ -131,7 +131,8 @@ fn computation(
         contract.results(&operands, index as u64, &mut right);
         ensure!(
             right == *simulated,
-            "golden model and simulation of `{}` do not agree on result {index} of {}: {} and {}",
+            "golden model and simulation of `{}` differ in result {index} for {}: {} in the golden model and \
+             {} in the simulation",
             design.name,
             listed(contract.operands().iter().map(|it| it.name.as_str()), &operands),
             listed(contract.outputs().iter().map(|output| output.name.as_str()), &right),
@@ -140,7 +141,7 @@ fn computation(
         shown.push(TimedResult { clock: *clock, outputs: right });
     }
     Ok(Computation {
-        done: trial.timing.start_to_done.context("it is never done")?,
+        done: trial.timing.start_to_done.context("the computation never sets `done`")?,
         results: shown,
         operands,
     })
@@ -163,7 +164,7 @@ pub fn throughput(
     operands: &[i64],
 ) -> Result<(u32, u32)> {
     let trial = run(design, contract, operands, &mut |_| Ok(()))?;
-    let clocks = trial.timing.start_to_start.context("it does not end")?;
+    let clocks = trial.timing.start_to_start.context("the computation does not end")?;
     Ok((clocks, trial.results.len() as u32))
 }
 
@@ -181,9 +182,9 @@ pub fn line(design: &Design, contract: &dyn Contract) -> Result<Option<LineClock
     for length in [low, low + 1, low + 2, low + 3, high.min(low + LONG)] {
         operands[at] = length.min(high);
         let trial = run(design, contract, &operands, &mut |_| Ok(()))?;
-        let (last, _) = trial.results.last().context("it shows no result")?;
-        let done = trial.timing.start_to_done.context("it is never done")?;
-        let next = trial.timing.start_to_start.context("it does not end")?;
+        let (last, _) = trial.results.last().context("the computation shows no result")?;
+        let done = trial.timing.start_to_done.context("the computation never sets `done`")?;
+        let next = trial.timing.start_to_start.context("the computation does not end")?;
         seen.push((operands[at], [*last, done, next].map(i64::from)));
     }
     let [valid, done, next] = [0, 1, 2].map(|event| {
@@ -220,7 +221,7 @@ pub fn example(design: &Design, contract: &dyn Contract) -> Result<WorkedExample
     for (operand, &raw) in contract.operands().iter().zip(&operands) {
         given.push(quantity(&operand.name, operand.format, raw));
     }
-    let outputs = results.first().context("it shows no result")?.clone();
+    let outputs = results.first().context("the computation shows no result")?.clone();
     Ok(WorkedExample { operands: given, outputs, results })
 }
 
@@ -409,10 +410,10 @@ fn run(
             let interval = design.pipeline.as_ref().map(|pipeline| pipeline.interval as u32);
             let next = interval.unwrap_or(clock);
             trial.timing.start_to_start.get_or_insert(next);
-            ensure!(trial.timing.start_to_valid.is_some(), "`{}` never raises valid", design.name);
+            ensure!(trial.timing.start_to_valid.is_some(), "`{}` never sets `valid`", design.name);
             return Ok(trial);
         }
         instance.simulator.clock()?;
     }
-    anyhow::bail!("`{}` does not end within {LIMIT} clocks", design.name)
+    anyhow::bail!("the computation of `{}` does not end within {LIMIT} clocks", design.name)
 }

@@ -52,13 +52,13 @@ pub fn files(job: &EmitJob, vectors: &Vectors, files: &mut OutputFiles) -> Resul
     ensure!(!vectors.inputs.is_empty(), "a bench needs at least one clock of stimulus");
     ensure!(
         vectors.inputs.len() == vectors.expected.len(),
-        "{} clocks of stimulus, {} of expected outputs",
+        "the stimulus has {} clocks, but the expected outputs have {}",
         vectors.inputs.len(),
         vectors.expected.len()
     );
     ensure!(
         vectors.known_from <= vectors.inputs.len(),
-        "results are compared from clock {} on, but there are {} clocks",
+        "the outputs are compared from clock {} on, but there are only {} clocks",
         vectors.known_from,
         vectors.inputs.len()
     );

@@ -135,17 +135,18 @@ impl Map {
         let name = design.name.as_str();
         if design.pipeline.is_some() {
             bail!(registers_error(
-                format!("`{name}` is a pipeline, for which a bus is too slow"),
-                "remove it, or set architecture = \"sequential\"; interface.stream = true is for pipelines",
+                format!("`{name}` is a pipeline, and bus registers are too slow for a pipeline"),
+                "remove interface.registers, or set architecture = \"sequential\"; for a pipeline, set \
+                 interface.stream = true",
             ));
         }
         let length = inputs.accuracy.as_ref().and_then(|accuracy| accuracy.length.as_ref());
         if let Some(length) = length {
             bail!(registers_error(
                 format!(
-                    "`{name}` shows as many results as `{length}` says, which no register can hold"
+                    "`{name}` computes a line of `{length}` results, which bus registers cannot hold"
                 ),
-                "remove it; interface.stream = true is for such a core",
+                "remove interface.registers; for such a core, set interface.stream = true",
             ));
         }
         design.handshake()?;
@@ -162,8 +163,8 @@ impl Map {
         if operands.is_empty() || results.is_empty() {
             let what = if operands.is_empty() { "operand" } else { "result" };
             bail!(registers_error(
-                format!("`{name}` has no {what} to put into a register"),
-                "remove it"
+                format!("`{name}` has no {what}, so there is nothing for a bus register"),
+                "remove interface.registers"
             ));
         }
         let mut registers =
@@ -203,7 +204,8 @@ impl Map {
             if !names.insert(&register.name) {
                 bail!(registers_error(
                     format!("two registers of `{core}` are named `{}`", register.name),
-                    "remove it, or give the operand or the result of that name another one in the description",
+                    "remove interface.registers, or rename the operand or the result with this name in the \
+                     description",
                 ));
             }
         }

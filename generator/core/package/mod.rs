@@ -103,7 +103,10 @@ pub fn emit_core(design: &Design, inputs: &EmitInputs) -> Result<OutputFiles> {
 /// Fails if a net is named `clk`, if [`Design::verify_structure`] finds mistakes, or if a template fails.
 fn core_files(job: &EmitJob) -> Result<OutputFiles> {
     let EmitJob { design, inputs, naming, .. } = *job;
-    ensure!(design.find("clk").is_none(), "`clk` is the clock; no other net can have that name");
+    ensure!(
+        design.find("clk").is_none(),
+        "`clk` is the name of the clock, and no other net can have this name"
+    );
     let plan = Plan::new(design)?;
     let mut files = OutputFiles::new(&design.name);
     for file in verilog::modules(&plan, naming, &inputs.origin()) {

@@ -29,8 +29,9 @@ pub fn check(files: &[OutputFile]) -> Result<()> {
         for (at, token) in tokens.iter().enumerate() {
             if modules.contains(&token.text) && !names_module(&tokens, at) {
                 bail!(
-                    "a module cannot be named `{name}`: that is the name of something else in the emitted \
-                     Verilog (`{}`, line {}); set another `name` in the configuration, as \"{name}_core\"",
+                    "a module cannot be named `{name}`, because the emitted Verilog has something else with \
+                     this name (`{}`, line {}); set another `name` in the configuration, for example \
+                     \"{name}_core\"",
                     file.path,
                     token.line,
                     name = token.text,
@@ -56,7 +57,8 @@ pub fn check_together<'a>(
                 let other = *found.entry(module).or_insert(path);
                 if other != path {
                     bail!(
-                        "`{other}` and `{path}` both make a module `{module}`; set another `name` in one of them"
+                        "`{other}` and `{path}` both generate a module `{module}`; set another `name` in one \
+                         of the two files"
                     );
                 }
             }
@@ -168,6 +170,8 @@ mod tests {
         let two = [file(FileKind::Bench, "core_tb", "module core_tb;\nendmodule\n")];
         check_together([("a.toml", &one[..])]).unwrap();
         let refused = check_together([("a.toml", &one[..]), ("b.toml", &two[..])]).unwrap_err();
-        assert!(refused.to_string().contains("`a.toml` and `b.toml` both make a module `core_tb`"));
+        assert!(
+            refused.to_string().contains("`a.toml` and `b.toml` both generate a module `core_tb`")
+        );
     }
 }

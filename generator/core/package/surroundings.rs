@@ -56,10 +56,10 @@ pub fn check_rom_style(config: &Config, design: &Design) -> Result<(), KeyError>
     }
     if config.choice("package.memories") == "case" {
         let message = format!(
-            "`{ROM_STYLE}` = \"{style}\" has no effect with package.memories = \"case\": a ROM is a function there, which has \
-             no attribute"
+            "`{ROM_STYLE}` = \"{style}\" has no effect with package.memories = \"case\": a ROM is then a \
+             Verilog function, which cannot have an attribute"
         );
-        let remedy = "remove it, or set package.memories = \"files\" or \"inline\"";
+        let remedy = "remove the key, or set package.memories = \"files\" or \"inline\"";
         return Err(KeyError::new(ROM_STYLE, message, remedy));
     }
     if design.roms.iter().any(|rom| rom.synchronous) {
@@ -68,10 +68,10 @@ pub fn check_rom_style(config: &Config, design: &Design) -> Result<(), KeyError>
     Err(KeyError::new(
         ROM_STYLE,
         format!(
-            "`{ROM_STYLE}` = \"{style}\": `{}` has no ROM that is read on the clock",
+            "`{ROM_STYLE}` = \"{style}\" has no effect: `{}` has no ROM that is read at a clock edge",
             design.name
         ),
-        "remove it",
+        "remove the key",
     ))
 }
 

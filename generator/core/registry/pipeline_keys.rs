@@ -103,8 +103,10 @@ fn key_error(error: &PipelineError, keys: &Shared, name: &str) -> KeyError {
         }
         PipelineErrorKind::RateWithoutClock => {
             // The user knows the number of stages as `pipeline.stages`.
-            let words =
-                format!("pipeline.stages leaves the clock of `{name}` open, and with it the rate");
+            let words = format!(
+                "with pipeline.stages, the clock of `{name}` is not fixed, so no interval can be chosen for \
+                 pipeline.rate"
+            );
             let remedy = format!("set {CLOCK_MHZ} in place of pipeline.stages");
             KeyError::new("pipeline.rate", with_location(&words, diagnostic), remedy)
         }
@@ -119,7 +121,7 @@ fn key_error(error: &PipelineError, keys: &Shared, name: &str) -> KeyError {
             of_key("pipeline.max_multipliers", remedy).with_nearest(fewest as f64)
         }
         PipelineErrorKind::Unsolved => {
-            let remedy = format!("ask for another {CLOCK_MHZ} or pipeline.stages");
+            let remedy = format!("set another {CLOCK_MHZ} or pipeline.stages");
             of_key(CLOCK_MHZ, remedy)
         }
     }

@@ -71,7 +71,7 @@ impl Frame {
         let registered = model.clocked().and_then(|it| it.registered());
         let part = match registered {
             Some(part) if part.fixed.valid_delay == 0 => part,
-            _ => panic!("`{name}` is no part: it has no frame"),
+            _ => panic!("`{name}` cannot be a part: its model has no frame"),
         };
         let (it, base) = (&*part.fixed, self.slots);
         self.slots += part.state.len();

@@ -198,8 +198,8 @@ impl Reflectance for LyonArithmetic {
             return Vec::new();
         };
         vec![format!(
-            "scale = \"shift\" takes n for a power of two: at n = {n}, taken for {rounded}, the formula is off from cos^n by \
-             up to {error:.4}; with scale = \"multiplier\" by {exact:.4}"
+            "scale = \"shift\" rounds n to a power of two: at n = {n}, rounded to {rounded}, the formula \
+             differs from cos^n by up to {error:.4}; with scale = \"multiplier\", by up to {exact:.4}"
         )]
     }
 }

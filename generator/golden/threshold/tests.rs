@@ -35,5 +35,5 @@ fn levels_that_are_seen_are_remarked_on() {
     };
     assert!(remarks(&[50]).is_empty());
     let seen = remarks(&[50, 50, 320]);
-    assert!(seen.len() == 1 && seen[0].contains("n = 4 outputs up to 3"), "{seen:?}");
+    assert!(seen.len() == 1 && seen[0].contains("n = 4, outputs of up to 3"), "{seen:?}");
 }

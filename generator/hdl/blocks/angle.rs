@@ -39,10 +39,9 @@ pub fn fold<'d>(d: &'d Designer, angle: Signal<'d>, fraction: i32) -> Folded<'d>
         .bits((frac - fraction) as u32, Format::unsigned(0, fraction))
         .named(&format!("{name}_leading"));
     let complement = d.not(&format!("{name}_complement"), leading);
-    let magnitude = d.choose(&format!("{name}_magnitude"), sign, [leading, complement]).doc(
-        "absolute angle, because cos \
-                                                                                 is even",
-    );
+    let magnitude = d
+        .choose(&format!("{name}_magnitude"), sign, [leading, complement])
+        .doc("absolute angle, because cos is even");
     Folded { magnitude, within }
 }
 

@@ -60,15 +60,17 @@ impl<'d> Divider<'d> {
     ) -> Self {
         let part = |suffix: &str| format!("{name}_{suffix}");
         if bits < 2 {
-            let message = format!("divider `{name}` gives {bits} bits: ask for two or more");
+            let message = format!(
+                "divider `{name}` has a quotient of {bits} bits: request at least two bits"
+            );
             d.error(codes::WIDE, message);
         }
         for operand in [dividend, divisor] {
             let (low, high) = operand.range();
             if low < 0 {
                 d.error(codes::SIGN, format!(
-                    "divider `{name}`: `{}` has values from {low} to {high} ulp: divide magnitudes, or narrow it to a format \
-                     without a sign, which saturates at 0",
+                    "divider `{name}`: `{}` has values from {low} to {high} ulp: divide absolute values, or \
+                     narrow the operand to an unsigned format, which saturates at 0",
                     operand.name()
                 ));
             }

@@ -42,8 +42,11 @@ impl<'d> Instance<'d> {
         }
         if self.outputs.is_some() {
             let names: Vec<&str> = outputs.iter().map(|(name, _)| name.as_str()).collect();
-            let message =
-                format!("`{}` has no output `{output}`: it has {}", self.name, names.join(", "));
+            let message = format!(
+                "the part `{}` has no output `{output}`: its outputs are {}",
+                self.name,
+                names.join(", ")
+            );
             self.designer.error(codes::PART, message);
         }
         self.designer.raw_constant("nothing", 0, Format::BIT)
@@ -95,9 +98,12 @@ impl Designer {
     ) -> Instance<'d> {
         let wrong = Instance { designer: self, name: name.to_owned(), outputs: None };
         if self.depth == DEEPEST {
-            self.error(codes::PART, format!(
-                "`{name}` is a part of a part, {DEEPEST} deep: is a description an instance of itself?"
-            ));
+            self.error(
+                codes::PART,
+                format!(
+                    "the part `{name}` is nested {DEEPEST} deep: does a description contain itself?"
+                ),
+            );
             return wrong;
         }
         let load = format!("{name}_operands_load");
@@ -120,7 +126,7 @@ impl Designer {
             }
         };
         if let Some(why) = unfit(&design) {
-            self.error(codes::PART, format!("`{name}` is no part: {why}"));
+            self.error(codes::PART, format!("`{name}` cannot be a part: {why}"));
             return wrong;
         }
         let given: Vec<&str> = operands.iter().map(|(operand, _)| *operand).collect();
@@ -133,7 +139,8 @@ impl Designer {
         let same = given.len() == asked.len() && asked.iter().all(|it| given.contains(it));
         if !same {
             let [asked, given] = [asked, given].map(|names| names.join(", "));
-            let message = format!("`{name}` has the operands {asked}, and is given {given}");
+            let message =
+                format!("the part `{name}` has the operands {asked}, but is given {given}");
             self.error(codes::PART, message);
             return wrong;
         }
@@ -176,7 +183,8 @@ impl Designer {
             parts.push(Step { location: program.location, ..step("result", [valid(), end()]) });
             program.steps = parts;
         } else if let Some(first) = parts.get(2) {
-            let message = "a description with parts has a microprogram of its own: state `dataflow()` in its place";
+            let message = "a description with parts cannot have a microprogram of its own: call `dataflow()` \
+                           in place of `microprogram`";
             let found = Diagnostic::new(codes::PART, message.to_owned(), program.location);
             self.report(found.note("the first part".to_owned(), first.location));
         }
@@ -205,8 +213,8 @@ fn delayed(inner: &mut Inner) -> Vec<Diagnostic> {
         }
         let net = design.net(id);
         let message = format!(
-            "`{}` follows its input by a clock, which a dataflow does not wait for: read the memory at once, leave the \
-             register out, or make a part of it",
+            "`{}` follows its input after one clock, and `dataflow()` does not wait for this clock: read the \
+             memory without a clock, remove the register, or put it into a part",
             net.name
         );
         found.push(Diagnostic::new(codes::PART, message, net.location));
@@ -218,14 +226,16 @@ fn delayed(inner: &mut Inner) -> Vec<Diagnostic> {
 fn unfit(design: &Design) -> Option<String> {
     let control = &design.control;
     let Some(valid) = control.fields.iter().position(|field| field.name == "valid_word") else {
-        return Some("its `valid` follows a signal, for several results".to_owned());
+        return Some("`valid` follows a signal, because there are several results".to_owned());
     };
     let mut shown = false;
     for (at, it) in control.microprogram.iter().enumerate() {
         shown |= it.values[valid] == 1;
         let why = match it.sequence {
             Sequence::WaitStart => "waits for `start`",
-            Sequence::LoopWhile { to, .. } if shown && to <= at => "goes back for another result",
+            Sequence::LoopWhile { to, .. } if shown && to <= at => {
+                "goes back to compute another result"
+            }
             _ => continue,
         };
         return Some(format!("the microinstruction `{}` {why}", it.name));

@@ -347,7 +347,7 @@ impl Designer {
     fn program(&self, steps: Vec<Step>, of_parts: bool) {
         let program = MicroprogramSource { steps, of_parts, location: Location::caller() };
         if self.inner.borrow_mut().program.replace(program).is_some() {
-            self.error(codes::MICROPROGRAM, "a second microprogram".to_owned());
+            self.error(codes::MICROPROGRAM, "the description has a second microprogram".to_owned());
         }
     }
 
@@ -361,10 +361,11 @@ impl Designer {
     pub fn valid_after(&self, signal: Signal<'_>, clocks: u32) {
         let signal = self.own(signal);
         if signal.format().width() != 1 {
-            let message = format!("valid follows `{}`, which has more than one bit", signal.name());
+            let message =
+                format!("`valid` follows `{}`, which has more than one bit", signal.name());
             self.error(codes::VALID, message);
         } else if self.inner.borrow_mut().valid.replace((signal.id(), clocks)).is_some() {
-            let message = format!("valid follows `{}` and another signal", signal.name());
+            let message = format!("`valid` follows two signals: `{}` is the second", signal.name());
             self.error(codes::VALID, message);
         }
     }
@@ -443,7 +444,7 @@ impl Designer {
             let first = self.with(|inner| inner.parts.get(1).map(|step| step.location));
             let location = first.unwrap_or(self.net(self.start).location);
             let message = match first {
-                Some(_) => "nothing executes the parts: state `dataflow()` behind them",
+                Some(_) => "no microprogram executes the parts: call `dataflow()` after the parts",
                 None => "the design has no microprogram",
             };
             self.report(Diagnostic::new(codes::MICROPROGRAM, message.to_owned(), location));

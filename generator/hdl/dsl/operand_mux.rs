@@ -75,7 +75,8 @@ impl Designer {
         let (alike, other) = ((first.field, first.delay), (second.field, second.delay));
         if alike != other || first.inputs.len() != second.inputs.len() {
             self.error(codes::PRODUCT, format!(
-                "multiplier `{name}`: `{}` and `{}` must have as many inputs under the same select lines, both held or neither",
+                "multiplier `{name}`: `{}` and `{}` must have the same number of inputs and the same select \
+                 lines, and both or neither must hold the selection",
                 first.name, second.name
             ));
         }
@@ -214,7 +215,8 @@ impl<'d> SharedProduct<'d> {
         };
         if points.iter().any(|point| *point != frac) {
             d.error(codes::POINT, format!(
-                "the products of `{}` that are taken together have {points:?} fraction bits: append zeros to an operand",
+                "the selected products of `{}` have different numbers of fraction bits, {points:?}: append \
+                 zeros to an operand",
                 self.out.name()
             ));
         }

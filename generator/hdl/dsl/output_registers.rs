@@ -80,8 +80,8 @@ fn loaded(d: &Designer, steps: &mut Vec<Step>, load: &StepSetting) {
         if steps[at].sets(|kind| matches!(kind, SettingKind::Valid)) {
             if steps[at].sets(|kind| matches!(kind, SettingKind::LoopWhile { .. })) {
                 let message = format!(
-                    "microinstruction `{}` sets valid and goes on by a condition: its results cannot be taken into \
-                     registers before it goes on. Let another microinstruction decide",
+                    "microinstruction `{}` sets `valid` and decides on a condition, so there is no clock in \
+                     which output registers can load the results: let another microinstruction decide",
                     steps[at].name
                 );
                 d.report(Diagnostic::new(codes::OUTPUT_REGISTER, message, steps[at].location));

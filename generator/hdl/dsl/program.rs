@@ -97,7 +97,7 @@ impl StepSetting {
             return Self::sequence(SettingKind::Wrong);
         }
         let [at] = found else {
-            let how = if found.is_empty() { "is no input" } else { "is more than one input" };
+            let how = if found.is_empty() { "is not an input" } else { "is more than one input" };
             d.error(codes::PICK, format!("`{}` {how} of `{mux}`", input.name()));
             return Self::sequence(SettingKind::Wrong);
         };
@@ -193,7 +193,9 @@ pub(crate) fn assemble(d: &Designer, program: &MicroprogramSource) {
     let steps = &program.steps;
     if steps.len() < 2 {
         d.report(Diagnostic::new(
-            codes::MICROPROGRAM, "a microprogram needs at least two microinstructions: one that waits for start, one that ends"
+            codes::MICROPROGRAM,
+            "a microprogram needs at least two microinstructions: one waits for `start`, and one ends the \
+             computation"
                 .to_owned(),
             program.location,
         ));
@@ -266,7 +268,8 @@ fn foreign(d: &Designer, steps: &[Step]) -> bool {
                 _ => "a condition".to_owned(),
             };
             let message = format!(
-                "microinstruction `{}`: {what} belongs to the designer of `{name}`, not to that of `{}`",
+                "microinstruction `{}`: {what} belongs to the designer of `{name}`, not to the designer of \
+                 `{}`",
                 step.name, own.1
             );
             d.report(Diagnostic::new(codes::FOREIGN, message, setting.location));
@@ -291,8 +294,8 @@ fn sequence(d: &Designer, steps: &[Step], step: &Step) -> Sequence {
             SettingKind::WaitForStart => {
                 if d.with(|inner| inner.taken.is_some()) {
                     let message = format!(
-                        "microinstruction `{own}` waits for start, and the operands have buffers, which the start of a \
-                         computation alone empties"
+                        "microinstruction `{own}` waits for `start`, but the operands have buffers, and only \
+                         the start of a computation empties buffers"
                     );
                     d.report(wrong(codes::BUFFER, message));
                 }
@@ -311,7 +314,7 @@ fn sequence(d: &Designer, steps: &[Step], step: &Step) -> Sequence {
                     Some(to) => Sequence::LoopWhile { condition: *condition, to },
                     None => {
                         let message = format!(
-                            "microinstruction `{own}` goes to `{to}`, but no microinstruction has that name"
+                            "microinstruction `{own}` goes to `{to}`, but no microinstruction has this name"
                         );
                         d.report(wrong(codes::SUCCESSOR, message));
                         Sequence::Next
@@ -323,8 +326,8 @@ fn sequence(d: &Designer, steps: &[Step], step: &Step) -> Sequence {
         if let Some((first, location)) = &found
             && *first != sequence
         {
-            let message = format!("microinstruction `{own}` states two successors");
-            let note = "the other way".to_owned();
+            let message = format!("microinstruction `{own}` has two successors");
+            let note = "the other successor".to_owned();
             d.report(wrong(codes::SUCCESSOR, message).note(note, location));
         }
         found = Some((sequence, setting.location));
@@ -371,7 +374,8 @@ fn microinstructions(
                     Some(field) => (field, 1, "valid"),
                     None => {
                         let message = format!(
-                            "microinstruction `{own}` raises valid, which follows a signal in this design"
+                            "microinstruction `{own}` sets `valid`, but `valid` follows a signal in this \
+                             design"
                         );
                         d.report(Diagnostic::new(codes::VALID, message, setting.location));
                         continue;

@@ -82,12 +82,13 @@ impl Designer {
         let point = format.frac.clamp(-MAX_POINT, MAX_POINT);
         if !(1..=i64::from(MAX_WIDTH)).contains(&width) {
             let message = format!(
-                "`{name}` would be {width} bits wide ({format}); a net has 1 to {MAX_WIDTH}"
+                "`{name}` would have {width} bits ({format}); a net has 1 to {MAX_WIDTH} bits"
             );
             self.error(codes::WIDE, message);
         } else if point != format.frac {
             self.error(codes::WIDE, format!(
-                "`{name}` would have {} fraction bits ({format}); -{MAX_POINT} to {MAX_POINT} are possible",
+                "`{name}` would have {} fraction bits ({format}); a net has -{MAX_POINT} to {MAX_POINT} \
+                 fraction bits",
                 format.frac
             ));
         } else {
@@ -176,7 +177,7 @@ impl Designer {
         self.error(
             codes::FOREIGN,
             format!(
-                "`{}` is a signal of the designer of `{}`, and not of that of `{}`",
+                "`{}` is a signal of the designer of `{}`, not of the designer of `{}`",
                 signal.name(),
                 name(other),
                 name(self)
@@ -204,7 +205,8 @@ impl Designer {
         let (low, high) = source.range();
         if source.format().frac != format.frac || !format.holds(low) || !format.holds(high) {
             self.error(codes::FORMAT, format!(
-                "{what} is {format}, but `{}` is {} with values from {low} to {high} ulp: narrow it or change the format",
+                "{what} is {format}, but `{}` is {} with values from {low} to {high} ulp: narrow the signal \
+                 or change the format",
                 source.name(),
                 source.format(),
             ));

@@ -106,8 +106,9 @@ impl<'d> Signal<'d> {
             return self;
         }
         if places < 0 {
-            let message =
-                format!("`{own}` is {format}: {frac} fraction bits would drop some; narrow it");
+            let message = format!(
+                "`{own}` is {format}, and {frac} fraction bits would drop some of its bits: use `narrow`"
+            );
             self.designer.error(codes::POINT, message);
             return self;
         }
@@ -132,7 +133,9 @@ impl<'d> Signal<'d> {
         let format = self.designer.sound(&format!("{own}_bits"), format);
         if low.saturating_add(format.width()) > have {
             let last = u64::from(low) + u64::from(format.width()) - 1;
-            let message = format!("bits {low} to {last} of `{own}`, which has {have}");
+            let message = format!(
+                "bits {low} to {last} of `{own}` do not all exist: the signal has {have} bits"
+            );
             self.designer.error(codes::WIDTH, message);
             return self.designer.raw_constant("zeros", 0, format);
         }
@@ -161,7 +164,9 @@ impl<'d> Signal<'d> {
         let (own, other) = (self.name(), low.name());
         let format = self.designer.sound(&format!("{own}_above"), format);
         if width != format.width() {
-            let message = format!("`{own}` above `{other}` is {width} bits, which is not {format}");
+            let message = format!(
+                "`{own}` above `{other}` has {width} bits, and {format} has another number of bits"
+            );
             self.designer.error(codes::WIDTH, message);
             return self.designer.raw_constant("zeros", 0, format);
         }
@@ -338,8 +343,8 @@ impl Designer {
             let have = part.format();
             if have.signed {
                 self.error(codes::SIGN, format!(
-                    "`{name}` puts `{}`, which is {have}, beside other bits as a number without a sign: read its bits as one \
-                     (`read_as`), or join them (`join`)",
+                    "`{name}` puts `{}`, which is {have}, beside other bits of an unsigned number: convert \
+                     the signal with `read_as`, or use `join`",
                     part.name()
                 ));
                 *part = part.read_as(Format::unsigned(have.width() as i32, 0));
@@ -375,8 +380,10 @@ impl Designer {
         let width: u32 = parts.iter().map(|part| part.format().width()).sum();
         let format = self.sound(name, format);
         if width != format.width() {
-            let message =
-                format!("`{name}` joins {width} bits to a word of {} ({format})", format.width());
+            let message = format!(
+                "`{name}` joins {width} bits to a word of {} bits ({format})",
+                format.width()
+            );
             self.error(codes::WIDTH, message);
             return self.raw_constant("zeros", 0, format);
         }
@@ -495,7 +502,8 @@ impl Designer {
         let frac = first.format().frac;
         if let Some(other) = inputs.iter().find(|input| input.format().frac != frac) {
             self.error(codes::POINT, format!(
-                "mux `{name}`: `{}` is {} and `{}` is {}; their points differ (with_fraction aligns them, a bus carries both)",
+                "mux `{name}`: `{}` is {} and `{}` is {}; the binary points differ: align them with \
+                 `with_fraction`, or use a `bus`",
                 first.name(),
                 first.format(),
                 other.name(),
@@ -514,7 +522,7 @@ impl Designer {
     fn one_bit(&self, a: Signal<'_>) -> NetId {
         let a = self.own(a);
         if a.format().width() != 1 {
-            let message = format!("`{}` is {}: one bit is wanted here", a.name(), a.format());
+            let message = format!("`{}` is {}, but one bit is required here", a.name(), a.format());
             self.error(codes::WIDTH, message);
         }
         a.id()

@@ -33,7 +33,7 @@ impl Design {
     /// Fails if the net is no input.
     pub fn input_position(&self, net: NetId) -> Result<usize> {
         let at = self.inputs().position(|port| port.net == net);
-        at.with_context(|| format!("`{}` is no input of `{}`", self.net(net).name, self.name))
+        at.with_context(|| format!("`{}` is not an input of `{}`", self.net(net).name, self.name))
     }
 
     /// Returns the nets of the handshake ports: `rst_n`, `start`, `valid`, `busy` and `done`.

@@ -46,7 +46,9 @@ impl Design {
     fn references(&self, found: &mut Vec<Diagnostic>) {
         let mut missing = |index: usize, count: usize, what: &str, location: SourceLocation| {
             if index >= count {
-                let message = format!("{what} {index} is referred to, but there are {count}");
+                let message = format!(
+                    "the netlist refers to {what} {index}, but the number of such entries is {count}"
+                );
                 found.push(Diagnostic::new(codes::REFERENCE, message, location));
             }
         };
@@ -94,7 +96,7 @@ impl Design {
                 i64::from(format.int) + i64::from(format.frac) + i64::from(u8::from(format.signed));
             if !(1..=i64::from(MAX_WIDTH)).contains(&width) {
                 let message =
-                    format!("`{}` is {width} bits wide; {MAX_WIDTH} is the most", net.name);
+                    format!("`{}` has {width} bits; a net has 1 to {MAX_WIDTH} bits", net.name);
                 found.push(Diagnostic::new(codes::WIDE, message, net.location));
             }
         }
@@ -112,7 +114,7 @@ impl Design {
                 found.push(Diagnostic::new(codes::NAME, message.to_owned(), location));
             } else if name == module {
                 let message = format!(
-                    "`{name}` is the name of the device, and so of its module; choose another name"
+                    "`{name}` is the name of the device and of its module; choose another name"
                 );
                 found.push(Diagnostic::new(codes::NAME, message, location));
             } else if let Err(why) = identifier::check(name) {
@@ -152,9 +154,10 @@ impl Design {
                 Driver::Input if ports == 0 => {
                     Some(format!("`{}` is an input, but not among the ports", net.name))
                 }
-                _ if ports > 0 => {
-                    Some(format!("`{}` is not an input port, or is one twice", net.name))
-                }
+                _ if ports > 0 => Some(format!(
+                    "`{}` is an input port twice, or is an input port without being an input",
+                    net.name
+                )),
                 _ => None,
             };
             found.extend(
@@ -169,7 +172,10 @@ impl Design {
                 found.push(Diagnostic::new(codes::UNDRIVEN, message, net.location));
             }
             if register.reset.is_some() && !has_reset {
-                let message = format!("`{}` is reset, but no port is the reset", net.name);
+                let message = format!(
+                    "register `{}` has a reset, but the design has no reset port",
+                    net.name
+                );
                 found.push(Diagnostic::new(codes::REFERENCE, message, net.location));
             }
         }
@@ -226,13 +232,13 @@ impl Design {
         let own = width(id);
         let same = |operands: &[NetId]| operands.iter().all(|&operand| width(operand) == own);
         const EQUAL: &str = "the widths must be equal";
-        const BIT: &str = "the result is one bit";
+        const BIT: &str = "the result must have one bit";
         match op {
             Op::Relabel(a) | Op::Not(a) => ok(same(&[*a]), EQUAL),
             Op::Extend(a) => ok(width(*a) < own, "the result must be wider"),
             Op::Slice { of, low } => ok(
                 low.checked_add(own).is_some_and(|top| top <= width(*of)),
-                "the bits are not all there",
+                "the slice must lie within the operand",
             ),
             Op::Concat(parts) => ok(
                 parts.iter().map(|&part| width(part)).sum::<u32>() == own,
@@ -242,12 +248,15 @@ impl Design {
                 ok(same(&[*a, *b]), EQUAL)
             }
             Op::Add { a, b, carry } => {
-                ok(carry.is_none_or(|carry| width(carry) == 1), "the carry is one bit")?;
+                ok(carry.is_none_or(|carry| width(carry) == 1), "the carry must have one bit")?;
                 ok(same(&[*a, *b]), EQUAL)
             }
             Op::Mul(a, b) => {
-                ok(signed(*a) == signed(*b), "one operand is signed, the other is not")?;
-                ok(width(*a) + width(*b) == own, "the product is as wide as both together")
+                ok(signed(*a) == signed(*b), "both operands must be signed, or both unsigned")?;
+                ok(
+                    width(*a) + width(*b) == own,
+                    "the product must be as wide as both operands together",
+                )
             }
             Op::Equal(a, b) => {
                 ok(width(*a) == width(*b), EQUAL)?;
@@ -255,14 +264,14 @@ impl Design {
             }
             Op::Less(a, b) => {
                 ok(width(*a) == width(*b), EQUAL)?;
-                ok(signed(*a) == signed(*b), "one operand is signed, the other is not")?;
+                ok(signed(*a) == signed(*b), "both operands must be signed, or both unsigned")?;
                 ok(own == 1, BIT)
             }
             Op::Any(_) | Op::All(_) => ok(own == 1, BIT),
             Op::Mux { select, inputs } => {
-                ok(inputs.len() >= 2, "a mux has two inputs or more")?;
+                ok(inputs.len() >= 2, "a mux must have at least two inputs")?;
                 let needed = usize::BITS - (inputs.len() - 1).leading_zeros();
-                ok(width(*select) >= needed, "the select lines are too few")?;
+                ok(width(*select) >= needed, "the mux has too few select lines")?;
                 ok(same(inputs), EQUAL)
             }
         }
@@ -291,7 +300,8 @@ impl Design {
             let rom = self.rom(self.control.rom);
             let word = self.width(rom.data);
             if wide > word {
-                let message = format!("the fields take {wide} bits of a control word of {word}");
+                let message =
+                    format!("the fields take {wide} bits, but the control word has {word} bits");
                 found.push(Diagnostic::new(codes::WIDTH, message, rom.location));
             }
         }
@@ -325,7 +335,8 @@ impl Design {
         if let Some(idle) = microprogram.first() {
             if idle.sequence != Sequence::Next {
                 let message = format!(
-                    "microinstruction `{}`, in which the device waits for start, must go on to the next",
+                    "microinstruction `{}`, in which the device waits for `start`, must continue with the \
+                     next microinstruction",
                     idle.name
                 );
                 found.push(Diagnostic::new(codes::IDLE, message, idle.location));
@@ -333,7 +344,8 @@ impl Design {
             for (field, value) in control.fields.iter().zip(&idle.values) {
                 if *value != 0 && matches!(field.kind, FieldKind::Enable | FieldKind::Flag) {
                     let message = format!(
-                        "microinstruction `{}` sets `{}`, but the device also waits for start in it",
+                        "microinstruction `{}` sets `{}`, but the device waits for `start` in this \
+                         microinstruction",
                         idle.name, field.name
                     );
                     found.push(Diagnostic::new(codes::IDLE, message, idle.location));

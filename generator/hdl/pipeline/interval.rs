@@ -49,7 +49,8 @@ pub fn clocks<'a>(
     match options.interval {
         IntervalGoal::Clocks(interval) if interval > most => {
             let message = format!(
-                "`{name}` has no use for a point every {interval} clocks: its sequential core takes one every {most}"
+                "`{name}` cannot use an interval of {interval} clocks: its sequential core already accepts a \
+                 point every {most} clocks"
             );
             error(PipelineErrorKind::Interval { most }, message)
         }
@@ -57,14 +58,16 @@ pub fn clocks<'a>(
         IntervalGoal::Rate(rate) => {
             let Goal::ClockMhz(clock) = options.goal else {
                 let message = format!(
-                    "a number of stages leaves the clock of `{name}` open, and with it the rate"
+                    "with a number of stages, the clock of `{name}` is not fixed, so no interval can be \
+                     chosen for a rate"
                 );
                 return error(PipelineErrorKind::RateWithoutClock, message);
             };
             let longest = (clock / rate + 1e-9).floor() as usize;
             if longest == 0 {
                 let message = format!(
-                    "`{name}` takes {clock} million points a second at most: one every clock at {clock} MHz"
+                    "`{name}` accepts at most {clock} million points a second: one point every clock at \
+                     {clock} MHz"
                 );
                 return error(PipelineErrorKind::Rate { most: clock }, message);
             }
@@ -87,7 +90,7 @@ pub fn clocks<'a>(
                 return Ok(1);
             };
             let message = format!(
-                "`{name}` has {fewest} multipliers at the least: with a point every {interval} clocks"
+                "`{name}` needs at least {fewest} multipliers, with a point every {interval} clocks"
             );
             error(PipelineErrorKind::Multipliers { fewest }, message)
         }

@@ -87,7 +87,8 @@ impl<'a> Request<'a> {
         let most = problems.most_stages();
         if stages > most {
             let message = format!(
-                "`{name}` has no use for {stages} stages: more than {most} make it no faster on {target}"
+                "`{name}` cannot use {stages} stages: more than {most} stages do not make the pipeline \
+                 faster on {target}"
             );
             let limiting = problems.fastest().map(|it| it.limiting);
             return Err(self.error(PipelineErrorKind::TooManyStages { most }, message, limiting));
@@ -102,7 +103,8 @@ impl<'a> Request<'a> {
         if least > stages {
             let plural = if stages == 1 { "" } else { "s" };
             let message = format!(
-                "`{name}` cannot have {stages} stage{plural}: its registered memories and multipliers need {least} on {target}"
+                "`{name}` cannot have {stages} stage{plural}: its registered memories and multipliers need \
+                 at least {least} on {target}"
             );
             return Err(self.error(PipelineErrorKind::TooFewStages { least }, message, None));
         }
@@ -115,8 +117,8 @@ impl<'a> Request<'a> {
         let Unreachable { limiting, period } = *limit;
         let nearest = schedule::megahertz(period);
         let message = format!(
-            "`{}` cannot run at {clock} MHz: `{}` alone takes {period:.2} ns on {}, which allows {nearest} MHz at \
-             most",
+            "`{}` cannot run at {clock} MHz: `{}` alone takes {period:.2} ns on {}, which allows at most \
+             {nearest} MHz",
             self.sequential.name,
             self.unrolled.graph.node(limiting).label.name,
             self.options.target.name
@@ -140,7 +142,7 @@ impl<'a> Request<'a> {
     /// at which the solver's result is wrong, if known.
     fn unsolved(&self, why: &str, at: Option<NodeId>) -> PipelineError {
         let name = &self.sequential.name;
-        let message = format!("`{name}` has no schedule: {why}; this is a mistake of Glint's");
+        let message = format!("`{name}` has no schedule: {why}; this is a bug in Glint");
         self.error(PipelineErrorKind::Unsolved, message, at)
     }
 

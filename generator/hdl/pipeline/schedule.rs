@@ -499,7 +499,10 @@ impl<'a> ScheduleProblem<'a> {
         for &id in &self.live {
             let (at, last) = (stage[id.index()], self.last_stage(id.index(), latency));
             if at > last {
-                let message = format!("`{}` stands in stage {at}, behind stage {last}", name(id));
+                let message = format!(
+                    "`{}` is in stage {at}, but its last possible stage is {last}",
+                    name(id)
+                );
                 return Err(ScheduleRefusal::Unsolved(message, Some(id)));
             }
         }
@@ -507,8 +510,8 @@ impl<'a> ScheduleProblem<'a> {
             let (first, second) = (stage[from.index()], stage[to.index()]);
             if second < first + apart {
                 let message = format!(
-                    "`{}` stands in stage {second}, and `{}`, on which it depends, in stage {first}: \
-                     the least distance is {apart}",
+                    "`{}` is in stage {second}, and depends on `{}` in stage {first}: the least distance is \
+                     {apart} stages",
                     name(to),
                     name(from)
                 );
@@ -523,7 +526,7 @@ impl<'a> ScheduleProblem<'a> {
                 if used[slot] > kind.units {
                     let units = kind.units;
                     let message = format!(
-                        "`{}` is one product too many for {units} in slot {slot}",
+                        "`{}` is one product too many for {units} multipliers in slot {slot}",
                         name(id)
                     );
                     return Err(ScheduleRefusal::Unsolved(message, Some(id)));

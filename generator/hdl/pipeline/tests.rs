@@ -119,9 +119,9 @@ fn what_an_earlier_computation_left_cannot_be_a_result() {
         vec![step("add", [total.load()])]
     });
     let text = refused(&design, Goal::ClockMhz(100.0)).to_string();
-    assert!(text.contains("`total_out` depends on what `total` held before"), "{text}");
-    let carried = super::carried(&design).expect("a state between points").to_string();
-    assert!(carried.contains("has a state between points"), "{carried}");
+    assert!(text.contains("`total_out` depends on the value that `total` had before"), "{text}");
+    let carried = super::carried(&design).expect("a state from one point to the next").to_string();
+    assert!(carried.contains("carries a state from one point to the next"), "{carried}");
     assert!(super::carried(&power()).is_none());
 }
 
@@ -160,7 +160,7 @@ fn a_registered_multiplier_is_named_where_it_reaches_the_clock_and_holds_every_p
     assert_eq!(taken.filter(|net| products.contains(net)).count(), products.len());
     let beyond = Options { registered: true, ..options(Goal::ClockMhz(250.0)) };
     let error = pipeline(&power(), &beyond).expect_err("too fast");
-    assert!(error.to_string().contains("which allows 173.9 MHz"), "{error}");
+    assert!(error.to_string().contains("which allows at most 173.9 MHz"), "{error}");
     let kind = PipelineErrorKind::Clock { nearest: 173.9, needs_registered: false };
     assert_eq!(error.kind, kind);
 }

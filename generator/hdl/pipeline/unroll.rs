@@ -117,7 +117,7 @@ enum Iterations {
 /// Returns `None` if no result does, or if the microprogram cannot be unrolled.
 pub fn carried(design: &Design) -> Option<Diagnostic> {
     let (executor, results) = executed(design, Iterations::InPowers).ok()?;
-    executor.determined(&results, "has a state between points, which nothing here speaks of").err()
+    executor.determined(&results, "carries a state from one point to the next").err()
 }
 
 /// Unrolls the microprogram of a design, and checks that no result depends on a value of an earlier computation.
@@ -147,8 +147,8 @@ fn executed(
     let Some(results) = executor.shown.take() else {
         let place =
             design.control.microprogram.last().map_or(design.nets[0].location, |it| it.location);
-        let message =
-            "no microinstruction sets `valid`: a pipeline needs to know when the results are there";
+        let message = "no microinstruction sets `valid`, so the pipeline cannot know when the results are \
+                       ready";
         return Err(Diagnostic::new(codes::UNROLL, message.to_owned(), place));
     };
     Ok((executor, results))
@@ -224,7 +224,7 @@ impl<'a> Executor<'a> {
                         None => {
                             let body = At { state: after.clone(), address: at.address + 1 };
                             let Some(executed) = self.follow(body, Some(to))? else {
-                                let why = "is skipped by some points, and shows results";
+                                let why = "shows results, but some points skip it";
                                 return Err(self.cannot(at.address, why));
                             };
                             let state = self.either(again, &executed, &after);
@@ -283,13 +283,16 @@ impl<'a> Executor<'a> {
                 None => {
                     return Err(self.cannot(
                         last,
-                        "goes on by a condition for which no bound is found: it depends on more than 16 bits",
+                        "repeats a loop for which no largest trip count is found: the condition depends on \
+                         more than 16 bits",
                     ));
                 }
             }
             let at = At { state: entry.clone(), address: to };
             let Some(before) = self.follow(at, Some(last))? else {
-                return Err(self.cannot(last, "is executed under a condition, and shows results"));
+                return Err(
+                    self.cannot(last, "shows results, but is executed only under a condition")
+                );
             };
             let (after, loop_condition) = self.execute(&At { state: before, address: last })?;
             let again = loop_condition.expect("a loop has a condition");
@@ -419,7 +422,8 @@ impl<'a> Executor<'a> {
                 None => {
                     return Err(self.cannot(
                         at.address,
-                        "has `valid` follow a signal: a computation with several results is not unrolled",
+                        "is in a description with `valid_after`: a computation with several results cannot \
+                         be unrolled",
                     ));
                 }
             }
@@ -468,8 +472,8 @@ impl<'a> Executor<'a> {
                 if let Cell::Unknown(register) = &graph.node(id).cell {
                     let (design, result) = (&self.design.name, &self.design.net(port).name);
                     let message = format!(
-                        "`{design}` {what}: `{result}` depends on what `{register}` held before the computation; \
-                         load `{register}` in each before it is read"
+                        "`{design}` {what}: `{result}` depends on the value that `{register}` had before the \
+                         computation; load `{register}` in each computation before it is read"
                     );
                     let place = graph.node(id).label.location;
                     return Err(Diagnostic::new(codes::UNROLL, message, place));

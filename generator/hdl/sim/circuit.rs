@@ -100,7 +100,7 @@ impl<const LANES: usize> Circuit<LANES> {
             microprogram: MicroinstructionNames::new(design),
         };
         circuit.connect_all();
-        check_all(&circuit).map_err(|error| anyhow!("rust_hdl refuses the circuit: {error:?}"))?;
+        check_all(&circuit).map_err(|error| anyhow!("rust_hdl rejects the circuit: {error:?}"))?;
         Ok(circuit)
     }
 

@@ -174,7 +174,11 @@ impl<const LANES: usize> Simulator<LANES> {
     #[inline]
     fn half(&mut self, level: bool) -> Result<()> {
         self.circuit.clock.next = level.into();
-        ensure!(simulate(&mut self.circuit, UPDATES), "`{}` does not settle", self.name);
+        ensure!(
+            simulate(&mut self.circuit, UPDATES),
+            "the signals of `{}` do not settle within a clock",
+            self.name
+        );
         match &mut self.trace {
             None => Ok(()),
             Some(trace) => {

@@ -104,7 +104,7 @@ pub fn cases(
             }
         }
         if looked_at + pending.len() > MOST {
-            return Err(format!("there are more than {MOST} ways to go through it"));
+            return Err(format!("the computation has more than {MOST} cases"));
         }
     }
     Ok(found)

@@ -151,7 +151,7 @@ fn power_of_two(value: f64) -> Option<i32> {
 
 /// Returns the error message for a function in a contract's formula that the prover Gappa does not have.
 pub fn untranslated(function: Function) -> String {
-    format!("the function `{}` has no translation", function.name())
+    format!("the function `{}` cannot be written for Gappa", function.name())
 }
 
 /// Returns all branches of a contract's formula, as terms for a Gappa script. A formula without conditions has one branch.
@@ -175,12 +175,14 @@ pub fn branches(
             Ok(unconditional(terms.number(literal.nearest())))
         }
         Kind::Number(literal) => Err(format!(
-            "the number `{}` is no binary fraction: it has no translation",
+            "the number `{}` is not a binary fraction and cannot be written for Gappa",
             literal.digits()
         )),
         Kind::Operand(name) => Ok(unconditional(operand(name, setting, terms)?)),
         Kind::Word(rom, place) => Ok(unconditional(word(rom, place, setting, terms)?)),
-        Kind::Constant(name, _) => Err(format!("the constant `{name}` has no translation")),
+        Kind::Constant(name, _) => {
+            Err(format!("the constant `{name}` cannot be written for Gappa"))
+        }
         Kind::Unary(Function::Negate, a) => {
             let zero = Expression::new(Kind::Number(Literal::zero()), formula.span.clone());
             operation([&zero, a], RealTerm::Sub, setting, terms)
@@ -191,14 +193,16 @@ pub fn branches(
         Kind::Binary(Operator::Mul, a, b) => operation([a, b], RealTerm::Mul, setting, terms),
         Kind::Binary(Operator::Div, a, b) => operation([a, b], RealTerm::Div, setting, terms),
         Kind::Binary(Operator::Power, base, exponent) => {
-            let exponent =
-                constant(exponent, setting).ok_or("a power with an exponent that varies")?;
+            let exponent = constant(exponent, setting)
+                .ok_or("a power with a varying exponent cannot be written for Gappa")?;
             if let Some(power) = scaling(constant(base, setting), exponent) {
                 return Ok(unconditional(terms.number(power)));
             }
             let is_natural = exponent.fract() == 0.0 && (0.0..=MOST_EXPONENT).contains(&exponent);
             if !is_natural {
-                return Err(format!("a power with the exponent {exponent} has no translation"));
+                return Err(format!(
+                    "a power with the exponent {exponent} cannot be written for Gappa"
+                ));
             }
             let mut found = branches(base, setting, terms)?;
             for branch in &mut found {
@@ -206,9 +210,11 @@ pub fn branches(
             }
             Ok(found)
         }
-        Kind::Binary(Operator::Mod, ..) => Err("the operator `%` has no translation".to_owned()),
+        Kind::Binary(Operator::Mod, ..) => {
+            Err("the operator `%` cannot be written for Gappa".to_owned())
+        }
         Kind::Binary(Operator::Atan2, ..) => {
-            Err("the function `atan2` has no translation".to_owned())
+            Err("the function `atan2` cannot be written for Gappa".to_owned())
         }
         Kind::Binary(operator @ (Operator::Max | Operator::Min), a, b) => {
             let mut found = Vec::new();
@@ -315,11 +321,13 @@ fn word(
     let (name, range) = match &place.kind {
         Kind::Operand(name) => (name.as_str(), setting.ranges.get(name).copied()),
         Kind::Number(literal) => ("", Some((literal.nearest(), literal.nearest()))),
-        _ => return Err(format!("`{rom}` is read at an address that is computed")),
+        _ => return Err(format!("the formula reads `{rom}` at a computed address")),
     };
     let (low, high) = range.ok_or_else(|| format!("there is no operand `{name}`"))?;
     if setting.operands.iter().any(|operand| operand.name == name && operand.format.frac != 0) {
-        return Err(format!("`{rom}` is read at an operand with a fraction, `{name}`"));
+        return Err(format!(
+            "the formula reads `{rom}` at an operand with fraction bits, `{name}`"
+        ));
     }
     let Some(read) = words.get(low as usize..=high as usize) else {
         return Err(format!("there is no word {high} in `{rom}`"));
@@ -372,18 +380,23 @@ fn scaling(base: Option<f64>, exponent: f64) -> Option<f64> {
     is_power_of_two.then(|| exp2(exponent as i32))
 }
 
-/// Returns the value of a number or operand with a single value in this case. Returns `None` for any other formula.
+/// Returns the value of a number, or of an operand that has a single value in this case, with or without a minus before it.
+/// Returns `None` for any other formula.
 fn constant(formula: &Expression, setting: &FormulaContext) -> Option<f64> {
     let (low, high) = known_range(formula, setting)?;
     if low == high { Some(low) } else { None }
 }
 
-/// Returns the smallest and the largest value of a number or an operand in this case. Returns `None` for any other formula, and
-/// for a number that no `f64` represents, such as 0.1.
+/// Returns the smallest and the largest value of a number or an operand in this case, with or without a minus before it.
+/// Returns `None` for any other formula, and for a number that no `f64` represents, such as 0.1.
 fn known_range(formula: &Expression, setting: &FormulaContext) -> Option<(f64, f64)> {
     match &formula.kind {
         Kind::Number(literal) if literal.is_exact() => Some((literal.nearest(), literal.nearest())),
         Kind::Operand(name) => setting.ranges.get(name).copied(),
+        Kind::Unary(Function::Negate, a) => {
+            let (low, high) = known_range(a, setting)?;
+            Some((-high, -low))
+        }
         _ => None,
     }
 }

@@ -71,7 +71,7 @@ fn answer(
 ) -> Result<Result<Option<f64>, String>> {
     let place = Directory::new().context("cannot make a temporary directory")?;
     let Statement { output, number, .. } = statement;
-    let mut why = format!("Gappa finds no limit for statement {number} of {output}");
+    let mut why = format!("Gappa finds no error bound for statement {number} of {output}");
     let (mut least, mut asks) = (None, false);
     for script in statement.scripts.iter().filter(|script| script.contains(ASKED)) {
         asks = true;

@@ -216,7 +216,7 @@ impl<'a> Hardware<'a> {
                 return Ok(NodeValue::Term { id, scale });
             }
             Cell::Read { rom, address } => return Ok(self.read(terms, id, *rom, *address)),
-            _ => return Err(format!("`{name}` is nothing that the operands determine")),
+            _ => return Err(format!("the operands do not determine `{name}`")),
         };
         let case = self.case;
         let range = |id: &NodeId| case.ranges[id.index()];
@@ -329,7 +329,7 @@ impl<'a> Hardware<'a> {
             | NodeOp::Less(..)
             | NodeOp::Any(_)
             | NodeOp::All(_) => {
-                Err(format!("`{name}` is logic whose result is taken for a number"))
+                Err(format!("`{name}` is logic, but its result is used as a number"))
             }
         }
     }
@@ -364,7 +364,7 @@ fn wrap_of(node: &Node, range: Interval) -> Result<i128, String> {
     let Some(amount) = wrap(range, node.format) else {
         let ((low, high), format, name) = (range, node.format, &node.label.name);
         return Err(format!(
-            "`{name}` is {format}, and {low} to {high} ulp come to it as far as intervals tell"
+            "`{name}` is {format}, but by intervals its values can be from {low} to {high} ulp"
         ));
     };
     Ok(amount)

@@ -52,7 +52,7 @@ pub fn statements(
     if bound.is_stated() {
         within(design, contract, Some(bound.units), limit)
     } else {
-        Err("its contract states no bound".to_owned())
+        Err("the contract states no bound".to_owned())
     }
 }
 
@@ -114,7 +114,7 @@ fn within(
                 let so_far = statements.list.len();
                 let limit = limit.as_secs();
                 return Err(format!(
-                    "to write its statements takes more than {limit} s, with {so_far} written"
+                    "writing the statements takes more than {limit} s, and {so_far} were written"
                 ));
             }
             task.state(&case, &mut statements)?;
@@ -131,7 +131,7 @@ fn formulas(contract: &dyn Contract) -> Result<Vec<Expression>, String> {
         None => (contract.expressions(), contract.outputs().len()),
     };
     if expressions.len() < wanted {
-        return Err("its contract has no formula in words".to_owned());
+        return Err("the contract does not have its formulas as text".to_owned());
     }
     let parsed = expressions.iter().map(|text| {
         let formula = parse(text).map_err(|fault| {

@@ -68,13 +68,20 @@ pub fn prove(
         if !run.status.success() || assumed {
             let mut lines =
                 run.output.lines().filter(|line| line.contains("rror") || line.contains("best"));
-            why = lines.next_back().unwrap_or("Gappa assumes a step").trim().to_owned();
+            why = lines
+                .next_back()
+                .unwrap_or("Gappa assumes a step without a proof")
+                .trim()
+                .to_owned();
             continue;
         }
         if let Some(coq) = coq {
             let proof = gappa.run(["-Bcoq", "statement.g"], dir.path(), limit)?;
             if !proof.status.success() {
-                bail!("Gappa proves a statement, and cannot write it for Coq: {}", proof.output);
+                bail!(
+                    "Gappa proves a statement, but cannot write the proof for Coq: {}",
+                    proof.output
+                );
             }
             // Gappa writes warnings between the lines of the proof.
             let lines = proof.output.lines().filter(|line| !line.starts_with("Warning:"));
@@ -83,7 +90,10 @@ pub fn prove(
                 .context("cannot write a proof for Coq")?;
             let check = coq.run(["statement.v"], dir.path(), limit * 10)?;
             if !check.status.success() {
-                why = format!("Coq refuses: {}", check.output.lines().next().unwrap_or_default());
+                why = format!(
+                    "Coq rejects the proof: {}",
+                    check.output.lines().next().unwrap_or_default()
+                );
                 continue;
             }
         }

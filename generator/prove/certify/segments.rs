@@ -62,16 +62,20 @@ struct WordSegment {
 /// Fails if the task has no bound, or if the contract is no highlight. Fails also if the formula or the netlist does not have
 /// the expected form: a table with a power of a cosine, whose address is an angle that grows from point to point.
 pub fn statements(task: &Task, walk: &[WalkRegister]) -> Result<Vec<Statement>, String> {
-    let bound = task.bound.ok_or("a table is stated by segment with a stated bound alone")?;
+    let bound = task
+        .bound
+        .ok_or("statements for the words of a table need a contract with a stated bound")?;
     if task.contract.highlight().is_none() {
-        return Err("a line is stated of highlights alone".to_owned());
+        return Err(
+            "for lines of points, statements can be written only about highlights".to_owned()
+        );
     }
     let scale = exp2(PLACES);
     let of_f = libm::floor(task.contract.bound().f * scale) / scale;
     let [formula] = task.formulas else {
-        return Err("its formula has several values".to_owned());
+        return Err("the formula has several values".to_owned());
     };
-    let (angle, power) = lobe(formula).ok_or("its formula is no power of a cosine")?;
+    let (angle, power) = lobe(formula).ok_or("the formula is not a power of a cosine")?;
     let walk = AngleWalk::new(task, walk)?;
     let angle = walk.angle(angle);
     let (colours, table, outputs) = table(task)?;
@@ -117,7 +121,8 @@ impl AngleWalk {
     /// register must begin with one operand, and another operand must be added to it modulo its format. Fails otherwise.
     fn new(task: &Task, walk: &[WalkRegister]) -> Result<Self, String> {
         let graph = task.graph();
-        let is_more_than_a_sum = "its points walk on by more than a sum";
+        let is_more_than_a_sum =
+            "the angle of the next point is not the sum of an angle and an operand";
         let [WalkRegister { first, before, next }] = *walk else {
             return Err(is_more_than_a_sum.to_owned());
         };
@@ -173,7 +178,7 @@ fn table(task: &Task) -> Result<ProductsByColour, String> {
     let mut reads = graph.cone(pending.iter().copied());
     reads.retain(|&id| matches!(graph.node(id).cell, Cell::Read { .. }));
     let [table] = reads[..] else {
-        return Err("its outputs are made of several words of tables".to_owned());
+        return Err("the outputs depend on several table words".to_owned());
     };
     // After the word is read, the outputs may depend on colours only, and nothing may be selected.
     let before = graph.cone([table]);
@@ -192,12 +197,12 @@ fn table(task: &Task) -> Result<ProductsByColour, String> {
             _ => false,
         };
         if selects {
-            return Err(format!("`{}` decides behind the table", node.label.name));
+            return Err(format!("`{}` selects a value after the table", node.label.name));
         }
         pending.extend(node.cell.operands());
     }
     if colours.len() != outputs.len() {
-        return Err("its outputs are no products by a colour".to_owned());
+        return Err("the outputs are not products of a table word and a colour".to_owned());
     }
     Ok((colours, table, outputs))
 }
@@ -221,14 +226,19 @@ fn words(
     let Cell::Read { rom, address } = graph.node(table).cell else {
         return Err("there is no table".to_owned());
     };
-    let operand = task.operand(&walk.start).ok_or("its words do not depend on the walk")?;
+    let operand = task
+        .operand(&walk.start)
+        .ok_or("the table words do not depend on the angle of the point")?;
     for id in graph.cone([address]) {
         if id != operand && matches!(graph.node(id).cell, Cell::Operand(_)) {
-            return Err(format!("its words are read at more than `{}`", walk.start));
+            return Err(format!(
+                "the table address depends on more operands than `{}`",
+                walk.start
+            ));
         }
     }
     let start = task.contract.operands().iter().find(|operand| operand.name == walk.start);
-    let (low, high) = start.ok_or("its contract has no angle")?.domain;
+    let (low, high) = start.ok_or("the contract has no angle")?.domain;
     // Along lines, the register takes every angle of its format, even if the domain of the first angle is smaller.
     let format = graph.node(operand).format;
     if (i128::from(low), i128::from(high)) != format.range() {
@@ -242,7 +252,9 @@ fn words(
         let end_angle = high as f64 * exp2(-format.frac);
         let Some(at) = decided_address(task, (operand, (low, high)), address) else {
             if low == high {
-                return Err(format!("at {start_angle} it is not decided which word is read"));
+                return Err(format!(
+                    "at the angle {start_angle}, it is not determined which table word is read"
+                ));
             }
             let middle = (low + high).div_euclid(2);
             pending.extend([(middle + 1, high), (low, middle)]);
@@ -250,7 +262,11 @@ fn words(
         };
         let (from, to) = match enclosed(angle, (start_angle, end_angle)) {
             Some(Enclosure { low, high }) if low >= 0.0 && high <= 1.0 => (low, high),
-            _ => return Err("its angle does not lie between 0 and a right angle".to_owned()),
+            _ => {
+                return Err(
+                    "the angle of the formula is not between 0 and a right angle".to_owned()
+                );
+            }
         };
         let value = data.to_f64((task.view.words)(rom, at as u64));
         let segment = found.entry(at).or_insert(WordSegment { value, from, to });
@@ -358,14 +374,14 @@ fn about_output(
     let (unscaled, out_scale) = hardware::placed(&mut terms, out_value, 0);
     let real_out = hardware::scaled(&mut terms, unscaled, out_scale, "out");
     let NodeValue::Term { id: word, scale } = hardware.value(&mut terms, table)? else {
-        return Err("its table has a single word".to_owned());
+        return Err("the table has only one word".to_owned());
     };
     if scale != graph.node(table).format.frac {
-        return Err("the point of its words has moved".to_owned());
+        return Err("the binary point of the table words has moved".to_owned());
     }
     let mut presupposed = hardware.facts.clone();
     let found = task.contract.operands().iter().find(|operand| operand.name == *colour);
-    let operand = found.ok_or("its contract lacks a colour")?;
+    let operand = found.ok_or("the contract lacks a colour")?;
     let (low, high) = operand.domain;
     let unit = exp2(-operand.format.frac);
     let factor = terms.insert(RealTerm::Variable(colour.to_owned()), colour);

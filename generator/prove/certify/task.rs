@@ -66,7 +66,7 @@ impl Task<'_> {
             if let Some(node) = self.operand(&operand.name)
                 && !self.learn(&mut known, node, (low.into(), high.into()))
             {
-                return Err(format!("the domain of `{}` is not in its format", operand.name));
+                return Err(format!("the domain of `{}` exceeds its format", operand.name));
             }
         }
         Ok(known)
@@ -79,7 +79,7 @@ impl Task<'_> {
             let mut results = self.unrolled.results.iter();
             let found = results.find(|(port, _)| self.design.net(*port).name == output.name);
             let Some((_, node)) = found else {
-                return Err(format!("no port is `{}`", output.name));
+                return Err(format!("there is no port `{}`", output.name));
             };
             outputs.push((output.name.clone(), *node));
         }

@@ -189,7 +189,7 @@ impl WireValues {
                 return Ok(vec![if kind == "$xnor" { terms.not(word) } else { word }]);
             }
             "$mul" => {
-                ensure!(width <= MAX_WIDTH as usize, "it has more than 64 bits");
+                ensure!(width <= MAX_WIDTH as usize, "its value has more than 64 bits");
                 let (a, b) = self.both_extended(terms, [a, b], both, MAX_WIDTH as usize)?;
                 let product = terms.make(VectorTerm::Product(a, b), MAX_WIDTH);
                 return Ok(vec![terms.slice(product, 0, width as u32)]);
@@ -226,9 +226,9 @@ impl WireValues {
                 }
                 all
             }
-            _ => bail!("is not known here"),
+            _ => bail!("Glint does not know cells of this kind"),
         };
-        ensure!(width <= MAX_WIDTH as usize, "it has more than 64 bits");
+        ensure!(width <= MAX_WIDTH as usize, "its value has more than 64 bits");
         Ok(vec![terms.resized(bit, width as u32)])
     }
 
@@ -241,7 +241,7 @@ impl WireValues {
         signed: bool,
         width: usize,
     ) -> Result<VectorTermId> {
-        ensure!(bits.len().max(width) <= MAX_WIDTH as usize, "it has more than 64 bits");
+        ensure!(bits.len().max(width) <= MAX_WIDTH as usize, "its value has more than 64 bits");
         let word = self.word(terms, bits);
         Ok(match signed && width > bits.len() {
             true => terms.sign_extended(word, width as u32),
@@ -271,6 +271,6 @@ impl WireValues {
             any.push(terms.not(none));
         }
         let joined = any.into_iter().reduce(|a, b| terms.make(VectorTerm::Or(a, b), 1));
-        joined.context("it has no input")
+        joined.context("the cell has no input")
     }
 }

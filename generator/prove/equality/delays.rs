@@ -79,8 +79,9 @@ impl Counters {
             }
         }
         let delays: Option<Vec<_>> = delays.into_iter().collect();
-        let delays =
-            delays.context("a memory of the text is no delay of a fixed number of clocks")?;
+        let delays = delays.context(
+            "a memory of the emitted Verilog does not delay by a fixed number of clocks",
+        )?;
         Ok(Self { slots, delays })
     }
 
@@ -133,7 +134,7 @@ fn slots(
         let ready = constants(module, roles, 1, known)?.ready;
         ensure!(
             ready == Some(u64::from(slot == 0)),
-            "no counter of the text decides that `in_ready` is 1 every {interval} clocks"
+            "no counter of the emitted Verilog determines that `in_ready` is 1 every {interval} clocks"
         );
     }
     Ok(slots)

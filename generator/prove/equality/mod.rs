@@ -290,12 +290,14 @@ impl<'p> PipelineComparison<'p> {
             stages.push(values);
         }
         stages.remove(0);
-        let valid =
-            pair.pipeline.port(|role| role == Role::Valid).context("no output `out_valid`")?;
+        let valid = pair
+            .pipeline
+            .port(|role| role == Role::Valid)
+            .context("the pipeline has no output `out_valid`")?;
         let shown = stages[pair.latency][valid.net.index()];
         ensure!(
             self.terms.constant_of(shown) == Some(1),
-            "no result is shown {} clocks after a point",
+            "the pipeline shows no result {} clocks after a point",
             pair.latency
         );
         Ok(stages)
@@ -407,7 +409,7 @@ impl<'p> PipelineComparison<'p> {
         let condition = match *self.terms.term(undecided) {
             VectorTerm::Choice(condition, ..) => condition,
             _ if self.terms.width(undecided) == 1 => undecided,
-            _ => bail!("the sequencer depends on operands otherwise than by a choice"),
+            _ => bail!("the sequencer depends on operands in another way than by a choice"),
         };
         for value in [false, true] {
             let mut conditions = way.conditions.clone();

@@ -82,7 +82,7 @@ fn bits(value: &Value) -> Result<Connection> {
             (_, Some("0")) => Bit::Known(false),
             (_, Some("1")) => Bit::Known(true),
             (_, Some("x" | "z")) => Bit::Any,
-            _ => bail!("a bit of the netlist is `{bit}`"),
+            _ => bail!("a bit of the netlist has the unknown value `{bit}`"),
         });
     }
     Ok(bits)
@@ -97,7 +97,7 @@ fn parameter(cell: &Value, name: &str) -> Result<usize> {
     {
         return Ok(number);
     }
-    let number = value.as_u64().context("a parameter of the netlist is no number")?;
+    let number = value.as_u64().context("a parameter of the netlist is not a number")?;
     Ok(number as usize)
 }
 
@@ -135,20 +135,27 @@ impl Module {
             memories: Vec::new(),
             wires: 0,
         };
-        let ports = json["ports"].as_object().context("the netlist of the text has no ports")?;
+        let ports =
+            json["ports"].as_object().context("the netlist of the emitted Verilog has no ports")?;
         for (name, port) in ports {
             let port_bits = bits(&port["bits"])?;
             match port["direction"].as_str() {
                 Some("input") => module.inputs.push((name.clone(), port_bits)),
                 Some("output") => module.outputs.push((name.clone(), port_bits)),
-                _ => bail!("the port `{name}` of the text has another direction than in or out"),
+                _ => bail!(
+                    "the port `{name}` of the emitted Verilog is neither an input nor an output"
+                ),
             }
         }
         let clock_at = module.inputs.iter().position(|(name, _)| name == "clk");
-        let (_, clock) = module.inputs.remove(clock_at.context("the text has no `clk`")?);
-        let cells = json["cells"].as_object().context("the netlist of the text has no cells")?;
+        let (_, clock) =
+            module.inputs.remove(clock_at.context("the emitted Verilog has no `clk`")?);
+        let cells =
+            json["cells"].as_object().context("the netlist of the emitted Verilog has no cells")?;
         for (name, cell) in cells {
-            module.add(cell, &clock).with_context(|| format!("the cell `{name}` of the text"))?;
+            module
+                .add(cell, &clock)
+                .with_context(|| format!("the cell `{name}` of the emitted Verilog"))?;
         }
         module.order()?;
         Ok(module)
@@ -161,7 +168,7 @@ impl Module {
                 let at_clock = optional_connection(cell, "CLK")? == *clock;
                 ensure!(
                     at_clock && parameter(cell, "CLK_POLARITY")? == 1,
-                    "it does not change at the rising edge of `clk`"
+                    "the register does not change at the rising edge of `clk`"
                 );
                 self.registers.push(ModuleRegister {
                     data: optional_connection(cell, "D")?,
@@ -196,8 +203,8 @@ impl Module {
         let read_data = connection(cell, "RD_DATA")?;
         let read_addresses = connection(cell, "RD_ADDR")?;
         let clocked = cell["parameters"]["RD_CLK_ENABLE"].as_str().unwrap_or("1");
-        ensure!(!clocked.contains('1'), "it is read by a clocked port");
-        ensure!(parameter(cell, "OFFSET")? == 0, "it does not begin at address 0");
+        ensure!(!clocked.contains('1'), "the memory has a clocked read port");
+        ensure!(parameter(cell, "OFFSET")? == 0, "the memory does not begin at address 0");
         let contents = if writes == 0 { words(cell, width)? } else { Vec::new() };
         let memory = self.memories.len();
         let mut ports = Vec::new();
@@ -217,11 +224,11 @@ impl Module {
             });
         }
         if writes > 0 {
-            ensure!(writes == 1, "it is written by {writes} ports");
+            ensure!(writes == 1, "the memory has {writes} write ports");
             let at_clock = connection(cell, "WR_CLK")? == *clock;
             ensure!(
                 at_clock && parameter(cell, "WR_CLK_POLARITY")? == 1,
-                "it is not written at the rising edge of `clk`"
+                "the memory is not written at the rising edge of `clk`"
             );
             self.memories.push(Memory {
                 addresses,
@@ -286,7 +293,10 @@ impl Module {
                 }
                 match unplaced_driver(&self.cells[at], &driver, &place) {
                     Some(before) => {
-                        ensure!(!open[at] || !open[before], "the text has a combinational loop");
+                        ensure!(
+                            !open[at] || !open[before],
+                            "the emitted Verilog has a combinational loop"
+                        );
                         open[at] = true;
                         pending.push(before);
                     }
@@ -340,7 +350,7 @@ impl Module {
                 }
                 What::Cell { kind, signed } => values
                     .cell(terms, kind, *signed, &cell.inputs, cell.output.len())
-                    .with_context(|| format!("a cell `{kind}` of the text"))?,
+                    .with_context(|| format!("a cell `{kind}` of the emitted Verilog"))?,
             };
             values.set(&cell.output, &result);
         }
@@ -419,14 +429,17 @@ fn unknown(terms: &mut VectorTerms, width: usize) -> Vec<VectorTermId> {
 /// or if the number of words is wrong.
 fn words(cell: &Value, width: usize) -> Result<Vec<u64>> {
     let contents = cell["parameters"]["INIT"].as_str().unwrap_or_default();
-    ensure!(width <= MAX_WIDTH as usize, "its words have more than 64 bits");
+    ensure!(width <= MAX_WIDTH as usize, "the memory words have more than 64 bits");
     let mut words = Vec::new();
     for digits in contents.as_bytes().rchunks(width) {
         let Ok(word) = u64::from_str_radix(&String::from_utf8_lossy(digits), 2) else {
-            bail!("it is never written, and has words without contents")
+            bail!("the memory is never written, but has words without contents")
         };
         words.push(word);
     }
-    ensure!(words.len() == parameter(cell, "SIZE")?, "its contents have another size");
+    ensure!(
+        words.len() == parameter(cell, "SIZE")?,
+        "the contents of the memory have another number of words"
+    );
     Ok(words)
 }

@@ -28,7 +28,7 @@ impl<'a> DesignPair<'a> {
     /// Fails if `pipeline` is no pipeline, if the designs have different operands, or if the core lacks an output of the
     /// pipeline.
     pub fn new(sequential: &'a Design, pipeline: &'a Design) -> Result<Self> {
-        let stages = pipeline.pipeline.as_ref().context("the design is no pipeline")?;
+        let stages = pipeline.pipeline.as_ref().context("the design is not a pipeline")?;
         let mut operands = Vec::new();
         let mut outputs = Vec::new();
         for port in &pipeline.ports {

@@ -65,7 +65,7 @@ pub fn compare_text(
     solver: &Tool,
     limit: Duration,
 ) -> Result<TextVerdict> {
-    let pipeline = design.pipeline.as_ref().context("the design is no pipeline")?;
+    let pipeline = design.pipeline.as_ref().context("the design is not a pipeline")?;
     let latency = pipeline.stages.len();
     let roles = design.ports.iter().map(|it| (design.net(it.net).name.clone(), it.role)).collect();
     let read = || -> Result<(Module, Counters)> {
@@ -215,7 +215,7 @@ impl TextComparison<'_> {
         let ready = ready.context("the pipeline has no output `in_ready`")?.0;
         let shown = [&any, &taken].map(|it| module.shown(&mut self.terms, it).get(ready).copied());
         let [Some(ready), Some(ready_if_taken)] = shown else {
-            return Err(anyhow!("the text has no output `{ready}`").into());
+            return Err(anyhow!("the emitted Verilog has no output `{ready}`").into());
         };
         let (moves, moved) = match self.counters.slots[slot].keys().next() {
             None => (ready, ready_if_taken),
@@ -249,7 +249,7 @@ impl TextComparison<'_> {
             // A read gives the same word in both only if the address is the same.
             let reads = 1..=memory.reads.len();
             if one[reads.clone()] != other[reads.clone()] {
-                let why = "a memory of the text is read by what is no register";
+                let why = "the read address of a memory in the emitted Verilog depends on more than registers";
                 return Err(TextVerdict::Unread(why.to_owned()).into());
             }
             let enables = reads.end() + 1..one.len();
@@ -344,7 +344,7 @@ impl TextComparison<'_> {
         }
         if let Some(ready) = design.port(|role| role == Role::InReady) {
             let taken = self.terms.constant_of(nets[0][ready.net.index()]);
-            ensure!(taken == Some(1), "the netlist does not take a point in slot 0");
+            ensure!(taken == Some(1), "the netlist does not accept a point in slot 0");
         }
         Ok(nets)
     }
@@ -410,8 +410,9 @@ impl TextComparison<'_> {
         let shown = self.module.shown(&mut self.terms, values);
         for port in self.design.outputs().filter(|port| port.role != Role::InReady) {
             let name = &self.design.net(port.net).name;
-            let own =
-                shown.get(name).with_context(|| format!("the text has no output `{name}`"))?;
+            let own = shown
+                .get(name)
+                .with_context(|| format!("the emitted Verilog has no output `{name}`"))?;
             self.must_equal(None, *own, nets[port.net.index()], &format!("`{name}`"))?;
             self.proof.outputs += 1;
         }
@@ -431,7 +432,7 @@ impl TextComparison<'_> {
         what: &str,
     ) -> Result<(), EarlyEnd> {
         if self.terms.width(one) != self.terms.width(other) {
-            return Err(anyhow!("{what} has another width").into());
+            return Err(anyhow!("{what} has another width in the netlist").into());
         }
         let mut both = [one, other];
         if let Some((bit, value)) = condition {
@@ -508,7 +509,7 @@ impl TextComparison<'_> {
             inputs.map(|((name, _), id)| format!(" {name}={:#x}", values[id])).collect();
         inputs.sort();
         Some(format!(
-            "{what}: {:#x} in the text and {:#x} in the netlist for{}",
+            "{what}: {:#x} in the emitted Verilog and {:#x} in the netlist for{}",
             values[&one],
             values[&other],
             inputs.concat()

@@ -71,7 +71,10 @@ impl PointSearch {
         let operands = contract.operands().iter().map(|operand| {
             let mut inputs = sound.inputs();
             let at = inputs.position(|port| sound.net(port.net).name == operand.name);
-            Ok((at.with_context(|| format!("no operand `{}`", operand.name))?, operand.clone()))
+            Ok((
+                at.with_context(|| format!("the design has no operand `{}`", operand.name))?,
+                operand.clone(),
+            ))
         });
         let mut stages = vec![StageNets::default(); pipeline.stages.len() + 1];
         for register in sound.registers.iter().filter(|it| !pipeline.handshake.contains(&it.q)) {

@@ -39,8 +39,8 @@ impl CellLibrary {
     pub fn read(path: &Path) -> Result<Self> {
         if !path.is_file() {
             bail!(
-                "`{}`, which describes cells of 0.18 µm, is not there; install it (Debian, Ubuntu: `apt install \
-                 qflow-tech-osu018`), or name another with --liberty",
+                "the Liberty file `{}`, which describes cells of 0.18 µm, does not exist; install it \
+                 (Debian, Ubuntu: `apt install qflow-tech-osu018`), or name another file with --liberty",
                 path.display()
             );
         }
@@ -68,7 +68,10 @@ pub fn measure(
     done: &(dyn Fn() + Sync),
 ) -> Result<Figures> {
     let gate = gate(text).with_context(|| {
-        format!("`{}` tells no area of the cell {GATE}, the unit of gates", path.display())
+        format!(
+            "`{}` does not state the area of the cell {GATE}, the unit of gates",
+            path.display()
+        )
     })?;
     let workspace = Workspace::new(yosys, subject)?;
     let (sources, library) = (&workspace.sources, "cells.lib");
@@ -91,7 +94,7 @@ pub fn measure(
     sources.run(&commands.join("; "))?;
     done();
     let area = area(&sources.text(STATISTICS)?, gate)
-        .context("`yosys` does not tell the area of the cells")?;
+        .context("`yosys` does not report the area of the cells")?;
     let netlist = workspace.netlist()?;
     let (period, path) = timing(sta, subject, sources, &netlist)?;
     done();
@@ -149,7 +152,7 @@ fn timing(
     let slack = said
         .lines()
         .find_map(|line| line.trim().strip_suffix("slack (MET)")?.trim().parse::<f64>().ok());
-    let slack = slack.context("`sta` does not tell the longest path")?;
+    let slack = slack.context("`sta` does not report the longest path")?;
     Ok((PERIOD - slack, steps(netlist, &said)))
 }
 

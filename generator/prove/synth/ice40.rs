@@ -89,7 +89,7 @@ fn route(
     let nanoseconds = said.lines().find_map(|line| {
         line.strip_prefix("Total path delay: ")?.split(' ').next()?.parse::<f64>().ok()
     });
-    let nanoseconds = nanoseconds.context("`icetime` does not tell the longest path")?;
+    let nanoseconds = nanoseconds.context("`icetime` does not report the longest path")?;
     let (path, placed) = (workspace.sources.json(&timing)?, workspace.sources.json(&placed)?);
     Ok((1000.0 / nanoseconds, steps(netlist, &path, &placed)))
 }

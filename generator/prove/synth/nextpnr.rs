@@ -84,7 +84,7 @@ fn route(
         .filter(|(name, _)| !name.contains("PACKER"))
         .find_map(|(name, clock)| Some((name, clock["achieved"].as_f64()?)));
     let (clock, frequency) =
-        clock.with_context(|| format!("`{nextpnr}` does not tell the frequency of the clock"))?;
+        clock.with_context(|| format!("`{nextpnr}` does not report the frequency of the clock"))?;
     Ok((frequency, steps(netlist, &report, &format!("posedge {clock}"))))
 }
 

@@ -101,7 +101,7 @@ impl Cost {
         if lacking.is_empty() {
             return String::new();
         }
-        format!("it does not fit the {}: it takes {}", chip.name, lacking.join(", "))
+        format!("the core does not fit the {}: it takes {}", chip.name, lacking.join(", "))
     }
 }
 

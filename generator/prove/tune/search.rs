@@ -80,7 +80,7 @@ impl<'a> Search<'a> {
     /// # Errors
     /// Fails if `base` makes no design, or if no neighbour comes nearer to the goal before it is met.
     pub fn run(&self, base: &Config) -> Result<Answer> {
-        let base = self.look(base).context("the configuration to start from makes no design")?;
+        let base = self.look(base).context("no design can be made of the initial configuration")?;
         let mut best = self.reach(base)?;
         // Single changes first; pairs, which are many, only if no single change helps.
         while let Some(better) = self.descend(&best, 1).or_else(|| self.descend(&best, 2)) {
@@ -114,7 +114,7 @@ impl<'a> Search<'a> {
         let mut all: Vec<Vec<(&'static str, Value)>> = vec![Vec::new()];
         for (name, values) in values {
             let known = self.space.schema().key(name);
-            let key = known.with_context(|| format!("no key `{name}`"))?.name;
+            let key = known.with_context(|| format!("there is no key `{name}`"))?.name;
             let mut longer = Vec::new();
             for start in &all {
                 for value in values {
@@ -278,11 +278,11 @@ impl<'a> Search<'a> {
             (Some(rate), Some(clocks)) => {
                 format!("for {rate} million points a second at {clocks} clocks a point")
             }
-            _ => "as --clock".to_owned(),
+            _ => "for --clock".to_owned(),
         };
         bail!(
-            "the estimate of the fastest clock that keeps the error is {:.1} MHz, {:.1} MHz are wanted {wanted}; \
-             `--set architecture=pipelined` computes a point a clock",
+            "the fastest clock that was found with this error is {:.1} MHz by the estimate, but {:.1} MHz \
+             are needed {wanted}; try `--set architecture=pipelined`, which computes a point every clock",
             fastest.cost.mhz,
             self.wanted_mhz(fastest)
         )
@@ -291,7 +291,8 @@ impl<'a> Search<'a> {
     /// Fails with the smallest number of DSP blocks that was found, which is too large for the goal.
     fn too_many_dsps(&self, fewest: &Candidate) -> Result<Candidate> {
         bail!(
-            "the fewest DSP blocks that were found with the error are {}, {} are allowed; a longer pipeline.interval has fewer",
+            "the smallest number of DSP blocks that was found with this error is {}, but {} are allowed; a \
+             longer pipeline.interval needs fewer DSP blocks",
             fewest.cost.dsps,
             self.goal.most_dsps.unwrap_or_default()
         )
@@ -311,12 +312,13 @@ impl<'a> Search<'a> {
         }
         let way = match largest {
             Some(Term { what, key, units, .. }) => {
-                format!("; in the way: {what} (`{key}`), {units:.6} output units")
+                format!("; its largest part is {what} (`{key}`), {units:.6} output units")
             }
             None => String::new(),
         };
         bail!(
-            "no configuration keeps {} {unit}; the smallest bound that was found is {} {unit}{way}",
+            "no configuration has an error of at most {} {unit}; the smallest bound that was found is {} \
+             {unit}{way}",
             self.goal.error,
             above(self.error(nearest), self.goal.error)
         )

@@ -42,7 +42,7 @@ impl SearchSpace {
     /// Fails if `base` makes no design.
     pub fn new(device: &Device, base: &Config, fixed: &[&str], slower: bool) -> Result<Self> {
         let schema = (device.schema)();
-        let design = device.design(base).context("this configuration makes no design")?;
+        let design = device.design(base).context("no design can be made of this configuration")?;
         let outside = CoreInterface::new(&design, (device.contract)(base).as_ref());
         let mut space = Self { schema, free: Vec::new(), outside, slower };
         let mut free = Vec::new();

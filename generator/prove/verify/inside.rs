@@ -72,7 +72,7 @@ pub const DESIGN: Check = Check {
 pub const LOCKSTEP: Check = Check {
     id: "lockstep",
     title: "Golden model against simulation",
-    question: "Has every register and output the value that the golden model predicts, on every clock?",
+    question: "Does every register and output have the value that the golden model predicts, on every clock?",
     reads: "the netlist and the golden model",
     tools: &[],
     steps: points,
@@ -88,7 +88,7 @@ fn lockstep(subject: &CheckSubject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Resu
     let bound = subject.core.contract.bound();
     let worst = outcome.worst.as_ref().map_or_else(String::new, |worst| {
         format!(
-            " The largest error against the formula in f64 is {:.3} units, of a stated {}.",
+            " The largest error against the formula in f64 is {:.3} units; the stated bound is {}.",
             worst.units,
             bound.words()
         )
@@ -121,7 +121,7 @@ pub const CONTRACT: Check = Check {
     id: "contract",
     title: "Golden model against the formula",
     question: "Is no output further from the formula in f64 than the stated bound, for any operands?",
-    reads: "the golden model, which the check of it against simulation ties to the netlist",
+    reads: "the golden model, which another check compares with the simulation of the netlist",
     tools: &[],
     steps: |subject| match evaluations(subject) {
         all if is_short(subject, all) => all,
@@ -156,8 +156,9 @@ fn record(subject: &CheckSubject<'_>) -> Result<Option<Record>> {
 fn contract(subject: &CheckSubject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Result<Finding> {
     let contract = subject.core.contract.as_ref();
     if !contract.bound().is_stated() {
-        let why =
-            format!("The contract states no bound: `{Program} certify` finds one where it can.");
+        let why = format!(
+            "The contract states no bound; `{Program} certify` can find a bound for some configurations."
+        );
         return Ok(Finding::without(CheckVerdict::NotApplicable, &why));
     }
     let all = evaluations(subject);
@@ -195,12 +196,12 @@ fn recorded(record: &Record, contract: &dyn Contract, progress: &(dyn Fn(u64) + 
     let (again, failures) = record.recheck(contract, AGAIN, progress);
     let path = record.path.display().to_string().replace('\\', "/");
     let words = format!(
-        "The stated bound is {} units; by the record `{path}` {}. Of it, {} evaluations, spread evenly, and the one with the \
-         largest error{} were made again.",
+        "The stated bound is {} units; according to the record `{path}`, {}. This check repeated {} \
+         evaluations of the record, spread evenly, and the evaluation with the largest error{}.",
         contract.bound().words(),
         record.words(contract),
         grouped(again),
-        if job.colours.count() > 0 { ", and all colour products," } else { "" },
+        if job.colours.count() > 0 { ", and all colour products" } else { "" },
     );
     let verdict = of_sweep(job.f.sweep());
     let finding = Finding::new(verdict, domain(&job), words).failures(failures);
@@ -210,7 +211,7 @@ fn recorded(record: &Record, contract: &dyn Contract, progress: &(dyn Fn(u64) + 
 fn without_record(subject: &CheckSubject<'_>, evaluations: u64) -> Finding {
     let without_tools = if subject.effort.without_tools { " --without-tools" } else { "" };
     let why = format!(
-        "It has {} evaluations, and in `{}` there is no record of them for this configuration.",
+        "The check needs {} evaluations, and `{}` has no record of them for this configuration.",
         grouped(evaluations),
         subject.proofs.display(),
     );
@@ -223,7 +224,8 @@ fn without_record(subject: &CheckSubject<'_>, evaluations: u64) -> Finding {
 pub const CLOCKS: Check = Check {
     id: "clocks",
     title: "Golden model against simulation, every operand",
-    question: "Has every register and output the value that the golden model predicts, on every clock, for every combination of operands?",
+    question: "Does every register and output have the value that the golden model predicts, on every clock, \
+               for every combination of operands?",
     reads: "the netlist and the golden model",
     tools: &[],
     steps: |subject| {
@@ -265,7 +267,9 @@ pub const MUTATION: Check = Check {
     },
     run: |subject, _, progress| {
         if subject.core.design.pipeline.is_some() {
-            let why = format!("Of a pipeline this check plants none; `{Program} mutate` does.");
+            let why = format!(
+                "This check plants no faults in a pipeline; `{Program} mutate` plants them."
+            );
             return Ok(Finding::without(CheckVerdict::NotApplicable, &why));
         }
         let (faults, all_faults) = faults(subject);
@@ -278,12 +282,15 @@ pub const MUTATION: Check = Check {
         let mut open = vec![undecided];
         if all_faults > all.planted {
             domain += &format!(", spread evenly among {}", grouped(all_faults as u64));
-            open.push(format!("The faults between them; `{Program} verify --full` plants all."));
+            open.push(format!(
+                "The faults that were not planted; `{Program} verify --full` plants all faults."
+            ));
         }
         let open = open.into_iter().filter(|it| !it.is_empty()).collect::<Vec<_>>().join(". ");
         let words = format!(
-            "{caught} are caught, {equivalent} are proved to change nothing that is compared, {} are undecided ({:.2} %). \
-             The shipped bench by itself notices {:.1} % of those that anything notices.",
+            "{caught} faults are caught, {equivalent} are proved to change nothing that is compared, and {} \
+             are undecided ({:.2} %). The shipped bench alone notices {:.1} % of the faults that any test \
+             notices.",
             all.undecided,
             100.0 * all.share_undecided(),
             100.0 * all.of_shipped().value()
@@ -299,13 +306,17 @@ pub const MUTATION: Check = Check {
         let unreached = mutate::unreached(subject.core, &unnoticed)?;
         let ids: Vec<String> = unreached.iter().map(|fault| fault.id.clone()).collect();
         let words = format!(
-            "{words} More than 1 %: the test is too weak to say much; it shows nothing against the core. {}To add stimulus, \
-             widen the keys of `domain`, or have the device's contract say where the formula is largest \
-             (`Contract::peak`); `{Program} mutate --only ID` shows what becomes of one fault.",
+            "{words} More than 1 % are undecided: the test is too weak, but this does not show a mistake in \
+             the core. {}To add stimulus, widen the keys of `domain`, or state in the device's contract \
+             where the formula is largest (`Contract::peak`); `{Program} mutate --only ID` shows the result \
+             of one fault.",
             match ids.is_empty() {
                 true => String::new(),
-                false =>
-                    format!("To {} of them its stimulus never comes: {}. ", ids.len(), named(&ids)),
+                false => format!(
+                    "The stimulus never reaches {} of these faults: {}. ",
+                    ids.len(),
+                    named(&ids)
+                ),
             }
         );
         Ok(Finding::new(CheckVerdict::Undecided, domain, words).open(open))
@@ -332,6 +343,6 @@ fn named(ids: &[String]) -> String {
     let named = ids[..ids.len().min(NAMED)].join(", ");
     match ids.len() - ids.len().min(NAMED) {
         0 => named,
-        more => format!("{named} and {more} more; `{Program} mutate` names all"),
+        more => format!("{named} and {more} more; `{Program} mutate` lists all"),
     }
 }

@@ -55,8 +55,8 @@ pub const CERTIFICATE: Check = Check {
     run: |subject, tools, _| {
         let Core { design, contract, .. } = subject.core;
         if design.pipeline.is_some() {
-            let why =
-                "It is made of a microprogram: see the sequential core of the same description.";
+            let why = "The proof needs a microprogram, which a pipeline does not have: verify the sequential \
+                       core of the same description.";
             return Ok(Finding::without(CheckVerdict::NotApplicable, why));
         }
         let own = if subject.effort.full { subject.effort.time_limit } else { STATEMENT };
@@ -64,7 +64,7 @@ pub const CERTIFICATE: Check = Check {
         let statements = match statements(design, contract.as_ref(), limit) {
             Ok(statements) => statements,
             Err(step) => {
-                let why = format!("Gappa is not asked: {step}.");
+                let why = format!("No statements can be written for Gappa: {step}.");
                 return Ok(Finding::without(CheckVerdict::Unconfirmed, why));
             }
         };
@@ -81,7 +81,7 @@ pub const CERTIFICATE: Check = Check {
         if let Some((statement, outcome)) = statements.par_iter().map(outcome).find_first(open) {
             outcome?;
             let why = format!(
-                "Gappa has no proof of statement {} of `{}` within {} s, among {} statements.",
+                "Gappa does not prove statement {} of `{}` within {} s; there are {} statements.",
                 statement.number,
                 statement.output,
                 limit.as_secs(),
@@ -93,7 +93,7 @@ pub const CERTIFICATE: Check = Check {
             CheckVerdict::Proved,
             "all operands of the domain",
             format!(
-                "Gappa proves {} statements{}: an output differs from its formula by {:.3} units at most.",
+                "Gappa proves {} statements{}: every output differs from its formula by at most {:.3} units.",
                 statements.len(),
                 match empty.into_inner() {
                     0 => String::new(),
@@ -102,7 +102,7 @@ pub const CERTIFICATE: Check = Check {
                 contract.bound().units
             ),
         )
-        .open("The words of tables are taken as they are."))
+        .open("The words of tables: the statements use them unchecked."))
     },
 };
 
@@ -111,14 +111,15 @@ pub const CERTIFICATE: Check = Check {
 pub const EQUALITY: Check = Check {
     id: "equality",
     title: "Equal to the sequential core",
-    question: "Does the pipeline show for every point what the sequential core of the same description shows?",
+    question: "Does the pipeline have the same results as the sequential core of the same description, for \
+               every point?",
     reads: "the netlists of pipeline and sequential core",
     tools: &["z3"],
     steps: |_| 1,
     run: |subject, tools, _| {
         let (core, effort) = (subject.core, subject.effort);
         if core.design.pipeline.is_none() {
-            let why = "It is the sequential core.";
+            let why = "This core is the sequential core.";
             return Ok(Finding::without(CheckVerdict::NotApplicable, why));
         }
         let sequential = core.device.sequential(&core.config)?;
@@ -128,13 +129,15 @@ pub const EQUALITY: Check = Check {
                 CheckVerdict::Proved,
                 "every point: all bits of all operands",
                 format!(
-                    "{} and {} of the core on its way to them are equal, whatever {} and the words of memories are.",
+                    "{} and {} of the core on the way to the outputs are equal, for any values of {} and of \
+                     the words of memories.",
                     counted(proof.outputs, "output"),
                     counted(proof.registers, "register value"),
                     counted(proof.products, "product"),
                 ),
             )
-            .open("Stalls and resets: a value of a stage is made of this stage alone, and the handshake is proved by induction."),
+            .open("Stalls and resets: the values of a stage depend on this stage alone, and another check \
+                   proves the handshake by induction."),
             equality::Verdict::Different(difference) => {
                 Finding::default().failures(vec![difference.to_string()])
             }
@@ -148,14 +151,16 @@ pub const EQUALITY: Check = Check {
 pub const TEXT: Check = Check {
     id: "text",
     title: "Emitted Verilog equal to the netlist",
-    question: "Does the emitted Verilog of the pipeline, memories of delay lines and all, show for every point what its netlist shows?",
+    question: "Does the emitted Verilog of the pipeline, including the memories of delay lines, have the \
+               same outputs as its netlist, for every point?",
     reads: "the Verilog and memory files of the core, and the netlist",
     tools: &["yosys", "z3"],
     steps: |_| 1,
     run: |subject, tools, _| {
         let (core, effort) = (subject.core, subject.effort);
         if core.design.pipeline.is_none() {
-            let why = "It is asked of pipelines; the Verilog of a microprogram is simulated.";
+            let why = "This check is only for pipelines; the Verilog of a core with a microprogram is \
+                       simulated.";
             return Ok(Finding::without(CheckVerdict::NotApplicable, why));
         }
         let limit = if effort.full { effort.time_limit } else { EQUAL.min(effort.time_limit) };
@@ -164,9 +169,10 @@ pub const TEXT: Check = Check {
         Ok(match equality::compare_text(&core.design, &text, &tools[1], limit)? {
             equality::TextVerdict::Equal(proof) => Finding::new(
                 CheckVerdict::Proved,
-                "every point, stalls too, from any state of registers, valid bits and memories after a reset",
+                "every point, with stalls, from any state of registers, valid bits and memories after a reset",
                 format!(
-                    "{} of the text equal those of the netlist{}; the check above has the netlist.",
+                    "{} of the emitted Verilog equal the outputs of the netlist{}; the check above is about \
+                     the netlist.",
                     counted(proof.outputs, "output"),
                     match proof.delays.len() {
                         0 => String::new(),
@@ -177,7 +183,8 @@ pub const TEXT: Check = Check {
                     }
                 ),
             )
-            .open("Resets between points, which the handshake's proof has; how other tools than Yosys read the text."),
+            .open("Resets between points, which the proof of the handshake covers; how tools other than \
+                   Yosys read the Verilog."),
             equality::TextVerdict::Different(difference) => {
                 Finding::default().failures(vec![difference])
             }
@@ -194,7 +201,8 @@ fn undecided(subject: &CheckSubject<'_>, open: equality::Open, limit: Duration) 
     match open {
         equality::Open::Unknown => Finding::without(
             CheckVerdict::Undecided,
-            "Unknown: z3 gives up or proposes values of products that there are not, and no point was found that differs.",
+            "Unknown: z3 gives up, or proposes impossible values of products. No point with a difference was \
+             found.",
         ),
         equality::Open::Limit => Finding {
             complete_with: Some(format!(
@@ -204,7 +212,9 @@ fn undecided(subject: &CheckSubject<'_>, open: equality::Open, limit: Duration) 
             )),
             ..Finding::without(
                 CheckVerdict::LimitReached,
-                format!("z3 has no proof within {limit} s, and no point was found that differs."),
+                format!(
+                    "z3 finds no proof within {limit} s. No point with a difference was found."
+                ),
             )
         },
     }
@@ -214,7 +224,7 @@ fn undecided(subject: &CheckSubject<'_>, open: equality::Open, limit: Duration) 
 pub const LINT: Check = Check {
     id: "lint",
     title: "Lint",
-    question: "Have linters at their strictest nothing to say about the emitted Verilog?",
+    question: "Do the linters, with their strictest settings, report nothing about the emitted Verilog?",
     reads: "the Verilog and memory files of the core",
     tools: &["iverilog", "verilator"],
     steps: |_| 1,
@@ -243,7 +253,7 @@ pub const LINT: Check = Check {
         Ok(Finding::new(
             CheckVerdict::Passed,
             sources.join(", "),
-            "Neither Icarus Verilog nor Verilator has a remark.",
+            "Neither Icarus Verilog nor Verilator reports anything.",
         )
         .failures(failures))
     },
@@ -301,7 +311,8 @@ fn bench(subject: &CheckSubject<'_>, simulator: VerilogSimulator) -> Result<Find
 pub const SYNTHESIS: Check = Check {
     id: "synthesis",
     title: "Synthesis",
-    question: "Is the emitted Verilog synthesised for each family of FPGAs, and what does it take?",
+    question: "Can Yosys synthesise the emitted Verilog for each family of FPGAs, and how many cells does \
+               the core take?",
     reads: "the Verilog and memory files of the core",
     tools: &["yosys"],
     steps: |_| COMPARED.len() as u64,
@@ -322,7 +333,7 @@ pub const SYNTHESIS: Check = Check {
         Ok(Finding::new(
             CheckVerdict::Passed,
             "before placement",
-            format!("It takes {}.", taken.join("; ")),
+            format!("The core takes {}.", taken.join("; ")),
         ))
     },
 };
@@ -333,7 +344,7 @@ pub const FORMAL: Check = Check {
     id: "formal",
     title: "Proof of the handshake",
     question: "Do valid, busy and done come exactly when they should, for all inputs and from any state, and are operands stable meanwhile?",
-    reads: "the files as they are, from which products and ROMs of the datapath are cut",
+    reads: "the emitted files, in which products and ROMs of the datapath are replaced by arbitrary values",
     tools: &["yosys", "yosys-smtbmc", "z3"],
     steps: |_| 1,
     run: |subject, _, _| {
@@ -358,7 +369,7 @@ pub const FORMAL: Check = Check {
             "all inputs, any state, any number of clocks",
             format!("The properties of {} are proved by k-induction.", files.join(", ")),
         )
-        .open("Values: products and ROMs of the datapath are cut away."))
+        .open("Values: products and ROMs of the datapath are replaced by arbitrary values."))
     },
 };
 
@@ -366,8 +377,8 @@ pub const FORMAL: Check = Check {
 pub const COCOTB: Check = Check {
     id: "cocotb",
     title: "Emitted Verilog driven from Python",
-    question: "Does the core do what its manifest says, for a bench in Python that knows nothing else of it?",
-    reads: "the files as they are",
+    question: "Does the core do what its manifest says, in a Python test bench that knows only the manifest?",
+    reads: "the emitted files",
     tools: &["python3", "iverilog"],
     steps: |_| 1,
     run: |subject, tools, _| {
@@ -377,8 +388,9 @@ pub const COCOTB: Check = Check {
             python.run(["-c", "import cocotb; print(cocotb.__version__)"], here, limit)?;
         if !version.status.success() {
             let why = format!(
-                "{0} has no cocotb; `{0} -m pip install cocotb=={COCOTB_VERSION}` installs it. Where Python is managed by the \
-                 system: `python3 -m venv env`, `env/bin/pip install cocotb=={COCOTB_VERSION}`, and env/bin first on PATH",
+                "{0} has no cocotb; install it with `{0} -m pip install cocotb=={COCOTB_VERSION}`. If the \
+                 system manages Python: `python3 -m venv env`, `env/bin/pip install \
+                 cocotb=={COCOTB_VERSION}`, and put env/bin first on PATH",
                 python.path().display()
             );
             return Ok(Finding::without(CheckVerdict::NotRun, why));
@@ -415,7 +427,7 @@ fn written(subject: &CheckSubject<'_>) -> Result<Directory> {
 pub(super) fn directory_of<'f>(
     files: impl IntoIterator<Item = &'f OutputFile>,
 ) -> Result<Directory> {
-    let dir = Directory::new().context("cannot make a directory for what is emitted")?;
+    let dir = Directory::new().context("cannot make a directory for the emitted files")?;
     for file in files {
         let path = dir.path().join(&file.path);
         path.parent()
@@ -431,8 +443,8 @@ pub(super) fn directory_of<'f>(
 pub const GATES: Check = Check {
     id: "gates",
     title: "Netlists at gate level",
-    question: "Do the netlists that synthesis makes for FPGAs and of standard cells, ROM contents and all, pass the bench of \
-               their source?",
+    question: "Do the netlists that Yosys makes for FPGAs and of standard cells, including ROM contents, \
+               pass the bench of the emitted Verilog?",
     reads: "netlists that Yosys makes of the Verilog and memory files of the core, and the shipped bench with other points",
     tools: &["yosys", "iverilog", "vvp"],
     steps: |_| simulated().count() as u64 + 1,
@@ -487,7 +499,7 @@ pub const GATES: Check = Check {
             "Every output is right on every clock.",
         )
         .failures(failures)
-        .open("Timing: the models of the cells have none. Families without models of all cells."))
+        .open("Timing: the models of the cells have no delays. Families for which not all cells have models."))
     },
 };
 

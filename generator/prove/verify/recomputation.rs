@@ -37,7 +37,8 @@ const SOME_UNDECIDED: i32 = 3;
 pub const RECOMPUTATION: Check = Check {
     id: "recomputation",
     title: "Every combination of operands recomputed with MPFR",
-    question: "Does a program outside Glint find no larger error than the bound, with the formula in MPFR and the memories as they are?",
+    question: "Does a program outside Glint find no error above the bound, with the formula in MPFR and the \
+               emitted memories?",
     reads: "the memory files, the model in C, and the program that `package.recomputation` writes",
     tools: &["cc"],
     steps: |_| 1,
@@ -46,7 +47,7 @@ pub const RECOMPUTATION: Check = Check {
             Ok(files) => files,
             Err(error) => {
                 let KeyError { message, .. } = error.downcast()?;
-                let why = format!("The program is not written: {message}.");
+                let why = format!("The program cannot be written: {message}.");
                 return Ok(Finding::without(CheckVerdict::NotApplicable, why));
             }
         };
@@ -58,7 +59,8 @@ pub const RECOMPUTATION: Check = Check {
         let program = programs.first().context("no program that recomputes every operand")?;
         let compiler = ProgramCompiler { tool: &tools[0], dir: dir.path(), subject };
         if !compiler.has_mpfr()? {
-            let why = "MPFR is not installed for the C compiler: package libmpfr-dev, say";
+            let why = "MPFR is not installed for the C compiler: install it, for example the package \
+                       libmpfr-dev";
             return Ok(Finding::without(CheckVerdict::NotRun, why));
         }
         compiler.compile_program(&program.path)?;
@@ -132,7 +134,7 @@ fn run(subject: &CheckSubject<'_>, program: &OutputFile, dir: &Path) -> Result<F
     let lines: Vec<&str> = run.output.lines().filter(|line| !is_about_memories(line)).collect();
     let said = lines.join("; ");
     if run.status.code() == Some(SOME_UNDECIDED) {
-        let why = format!("{said}: MPFR does not tell on which side of a jump they are.");
+        let why = format!("{said}: MPFR cannot decide on which side of a jump these results are.");
         return Ok(Finding::without(CheckVerdict::Unconfirmed, &why));
     }
     let failures = if run.status.success() { Vec::new() } else { vec![said.clone()] };

@@ -55,7 +55,7 @@ struct AxisPlaces {
 impl AxisPlaces {
     fn new(axis: &ChartAxis) -> Result<Self> {
         let (Some(from), Some(to)) = (axis.place(axis.range.0), axis.place(axis.range.1)) else {
-            return Err(anyhow!("an end of `{}` has no place on it", axis.label));
+            return Err(anyhow!("an end of the axis `{}` has no position on the axis", axis.label));
         };
         let mut places = Vec::new();
         for tick in ticks(axis) {

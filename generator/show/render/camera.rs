@@ -50,7 +50,9 @@ impl Camera {
         let target = view.target.unwrap_or(middle);
         let from = view.eye.map_or(DIRECTION, |eye| eye - target);
         let back = from.unit();
-        let back = back.context("the camera stands where it looks at: --camera and --target")?;
+        let back = back.context(
+            "the camera is at the point that it looks at: give --camera and --target different points",
+        )?;
         // If the camera looks straight up or down, the upper edge of the picture is toward −z.
         let upward = if back.0[0] == 0.0 && back.0[2] == 0.0 {
             Vector::new(0.0, 0.0, -1.0)

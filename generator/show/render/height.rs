@@ -33,11 +33,11 @@ impl Relief {
         let limits = Limits { bytes: MEMORY };
         let mut decoder = Decoder::new_with_limits(std::io::Cursor::new(png), limits);
         decoder.set_transformations(Transformations::EXPAND);
-        let mut reader = decoder.read_info().context("it is not a PNG file")?;
+        let mut reader = decoder.read_info().context("the file is not a PNG file")?;
         let (width, height) = (reader.info().width, reader.info().height);
         ensure!(
             width <= LARGEST_SIDE && height <= LARGEST_SIDE,
-            "it has {width}x{height} pixels; at most {LARGEST_SIDE}x{LARGEST_SIDE} are possible"
+            "the picture has {width}x{height} pixels; at most {LARGEST_SIDE}x{LARGEST_SIDE} are possible"
         );
         let (colour, bits) = reader.output_color_type();
         let kind = match colour {
@@ -47,11 +47,12 @@ impl Relief {
             ColorType::Indexed => "in colour, from a palette",
         };
         if !kind.is_empty() {
-            bail!("it is {kind}; a height map is grey alone, with 1 to 16 bits");
+            bail!("the picture is {kind}; a height map must be grey, with 1 to 16 bits");
         }
-        let size = reader.output_buffer_size().context("it is too large for this machine")?;
+        let size =
+            reader.output_buffer_size().context("the picture is too large for this machine")?;
         let mut bytes = vec![0; size];
-        reader.next_frame(&mut bytes).context("it is not a whole PNG file")?;
+        reader.next_frame(&mut bytes).context("the PNG file is not complete")?;
         let heights: Vec<f32> = match bits {
             BitDepth::Sixteen => bytes
                 .chunks_exact(2)
@@ -60,7 +61,7 @@ impl Relief {
             _ => bytes.iter().map(|&byte| f32::from(byte) / 255.0).collect(),
         };
         let (width, height) = (width as usize, height as usize);
-        ensure!(heights.len() == width * height, "it is not a whole PNG file");
+        ensure!(heights.len() == width * height, "the PNG file is not complete");
         Ok(Self { slopes: slopes(&heights, width, height), width, height, depth, repeat })
     }
 

@@ -93,8 +93,8 @@ impl Mesh {
         let all = triangles.len();
         let mut kept = triangles;
         kept.retain(|corners| area_vector(&positions, corners).unit().is_some());
-        ensure!(all > 0, "there is no triangle");
-        ensure!(!kept.is_empty(), "all {all} triangles are without area");
+        ensure!(all > 0, "the mesh has no triangle");
+        ensure!(!kept.is_empty(), "all {all} triangles have no area");
         // The given normals, scaled to length 1; `None` for a normal of length 0.
         let given: Vec<Option<Vector>> = normals.iter().map(|normal| normal.unit()).collect();
         let is_complete =

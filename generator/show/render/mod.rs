@@ -196,7 +196,7 @@ pub fn render(
     let feed = Feed::with(core.device.name, contract, &settings.operands)?;
     ensure!(
         feed.longest().is_none() || scene.relief.is_none(),
-        "the device `{}` walks lines of points, which a height map cannot perturb",
+        "the device `{}` computes lines of points, and a height map cannot perturb lines",
         core.device.name
     );
     let raster = Raster::new(width as usize * samples, height as usize * samples, &camera);

@@ -63,7 +63,11 @@ impl ObjReader {
                 self.corner(word).with_context(|| format!("`{word}` is not a corner of a face"))
             })
             .collect::<Result<_>>()?;
-        ensure!(corners.len() >= 3, "a face has {} corners; it takes three", corners.len());
+        ensure!(
+            corners.len() >= 3,
+            "a face has {} corners, but needs at least three",
+            corners.len()
+        );
         let fan = corners[1..].windows(2);
         self.triangles.extend(fan.map(|pair| [corners[0], pair[0], pair[1]]));
         Ok(())
@@ -80,7 +84,7 @@ impl ObjReader {
         };
         let texture = optional("texture coordinate", self.textures.len())?;
         let normal = optional("normal", self.normals.len())?;
-        ensure!(parts.next().is_none(), "there are more than two `/`");
+        ensure!(parts.next().is_none(), "the corner has more than two `/`");
         Ok(RawCorner {
             position: index(position, "vertex", self.positions.len())?,
             normal,
@@ -98,7 +102,7 @@ fn numbers<'a, const N: usize>(
     let mut values = [0.0; N];
     for value in &mut values {
         let word = words.next();
-        let word = word.ok_or_else(|| anyhow!("a {what} takes {N} numbers"))?;
+        let word = word.ok_or_else(|| anyhow!("a {what} needs {N} numbers"))?;
         *value = number(word).with_context(|| format!("not a {what}"))?;
     }
     Ok(values)
@@ -119,13 +123,13 @@ fn number(word: &str) -> Result<f64> {
 fn index(part: &str, what: &str, count: usize) -> Result<u32> {
     let given: i64 = part.parse().map_err(|_| anyhow!("`{part}` is not an integer"))?;
     let index = match given {
-        0 => bail!("there is no {what} 0: they count from 1"),
+        0 => bail!("there is no {what} 0: the numbers begin at 1"),
         1.. => given - 1,
         _ => count as i64 + given,
     };
     match u32::try_from(index) {
         Ok(index) if (index as usize) < count => Ok(index),
-        _ => bail!("there is no {what} {given}: there are {count} so far"),
+        _ => bail!("there is no {what} {given}: {count} were declared before this line"),
     }
 }
 
@@ -163,7 +167,7 @@ mod tests {
     #[test]
     fn mistakes_have_their_line() {
         for (text, expected) in [
-            ("v 0 0\n", "line 1: a vertex takes 3 numbers"),
+            ("v 0 0\n", "line 1: a vertex needs 3 numbers"),
             ("\nv 0 0 x\n", "line 2: not a vertex: `x` is not a number"),
             ("v 0 0 nan\n", "line 1: not a vertex: `nan` is not a finite number"),
             ("vn 0 inf 0\n", "line 1: not a normal: `inf` is not a finite number"),
@@ -171,12 +175,15 @@ mod tests {
             assert_eq!(message(text), expected);
         }
         for (face, expected) in [
-            ("f 1 2", "a face has 2 corners; it takes three"),
-            ("f 1 2 5", "`5` is not a corner of a face: there is no vertex 5: there are 4 so far"),
+            ("f 1 2", "a face has 2 corners, but needs at least three"),
+            (
+                "f 1 2 5",
+                "`5` is not a corner of a face: there is no vertex 5: 4 were declared before this line",
+            ),
             ("f 1 2 -5", "there is no vertex -5"),
-            ("f 0 1 2", "there is no vertex 0: they count from 1"),
-            ("f 1 2 3//2", "there is no normal 2: there are 1 so far"),
-            ("f 1 2 3/1/1/1", "there are more than two `/`"),
+            ("f 0 1 2", "there is no vertex 0: the numbers begin at 1"),
+            ("f 1 2 3//2", "there is no normal 2: 1 were declared before this line"),
+            ("f 1 2 3/1/1/1", "the corner has more than two `/`"),
             ("f 1 2 three", "`three` is not an integer"),
             ("f 1 2 99999999999999999999", "is not an integer"),
         ] {
@@ -184,7 +191,7 @@ mod tests {
             assert!(found.starts_with("line 8: "), "{found}");
             assert!(found.contains(expected), "{found}");
         }
-        assert_eq!(message(""), "there is no triangle");
-        assert_eq!(message(&format!("{SQUARE}f 1 1 2\n")), "all 1 triangles are without area");
+        assert_eq!(message(""), "the mesh has no triangle");
+        assert_eq!(message(&format!("{SQUARE}f 1 1 2\n")), "all 1 triangles have no area");
     }
 }

@@ -193,8 +193,8 @@ impl Feed {
         if !unknown.is_empty() {
             let known: Vec<&str> = names.iter().map(|(name, _)| *name).collect();
             bail!(
-                "a host cannot supply {} of the device `{device}`; it supplies {}; `{Program} render --operand NAME=VALUE` gives \
-                 an operand that stays the same",
+                "Glint cannot compute {} of the device `{device}` from a scene; it computes only {}; \
+                 `{Program} render --operand NAME=VALUE` sets an operand to a constant",
                 unknown.join(", "),
                 known.join(", ")
             );
@@ -396,8 +396,9 @@ impl Feed {
             let mut ends = ends.map(|zeta| self.stretch(line) * zeta / FRAC_PI_2).into_iter();
             if let Some(right_angles) = ends.find(|right_angles| right_angles.abs() > room) {
                 bail!(
-                    "an angle of the line, times the root of n/2, is {right_angles:.1} right angles, for which the \
-                     device has no room; a smaller exponent helps, or a larger `angle.integer`"
+                    "an angle of the line, times the square root of n/2, is {right_angles:.1} right angles, \
+                     more than the format of the device holds; give a smaller exponent, or set a larger \
+                     `angle.integer`"
                 );
             }
         }
@@ -438,10 +439,13 @@ fn fixed(operand: &Operand, value: f64) -> Result<OperandMeaning> {
     let name = &operand.name;
     let [low, high] =
         [operand.domain.0, operand.domain.1].map(|raw| operand.format.to_f64(i128::from(raw)));
-    ensure!(!operand.colour, "--operand {name}: it is a colour, which the light gives");
+    ensure!(
+        !operand.colour,
+        "--operand {name}: the operand is a colour, and the light determines its value"
+    );
     ensure!(
         (low..=high).contains(&value),
-        "--operand {name}={value}: its domain is {low} to {high}"
+        "--operand {name}={value}: the domain of the operand is {low} to {high}"
     );
     Ok(OperandMeaning::Given(value))
 }

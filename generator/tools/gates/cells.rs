@@ -77,7 +77,7 @@ pub fn models(start: Start) -> Result<Vec<(String, String)>> {
     let flip_flop = models.split_once("module DFFPOSX1 ");
     let (before, after) = flip_flop
         .and_then(|(before, rest)| Some((before, rest.split_once("endmodule\n")?.1)))
-        .with_context(|| format!("the models beside `{LIBERTY}` have no DFFPOSX1"))?;
+        .with_context(|| format!("the cell models next to `{LIBERTY}` have no DFFPOSX1"))?;
     let initial = match start {
         Start::Unknown => "",
         Start::Zeros => "initial Q = 1'b0;",

@@ -102,7 +102,7 @@ pub fn models(yosys: &Tool, family: &Family) -> Result<Vec<(String, String)>> {
             shipped
         }
         "gatemate" => shipped,
-        _ => bail!("there are no models of all cells of {}", family.title),
+        _ => bail!("Glint does not have models of all cells of {}", family.title),
     };
     files.push(("cells_sim.v".to_owned(), shipped));
     Ok(files)

@@ -39,8 +39,8 @@ impl Directory {
         // Some tools that work in the directory, such as make and abc, split a path at blanks.
         if place.to_string_lossy().contains(char::is_whitespace) {
             let message = format!(
-                "the path of the directory for temporary files, `{}`, has a blank, which make and abc do not take: set TMPDIR to \
-                 another",
+                "the path of the directory for temporary files, `{}`, has a blank, and make and abc do not \
+                 accept blanks: set TMPDIR to another directory",
                 place.display()
             );
             return Err(io::Error::new(io::ErrorKind::InvalidInput, message));
@@ -122,7 +122,7 @@ fn sweep(parent: &Path, prefix: &str) {
 /// Returns the text of the lock file in `directory`. For example, it begins with `Glint works in glint-a1B2c3.`
 fn title(directory: &Path) -> String {
     let name = directory.file_name().unwrap_or_default().to_string_lossy();
-    format!("Glint works in {name}. The next run deletes what a killed one has left.\n")
+    format!("Glint works in {name}. The next run deletes the files that a killed run has left.\n")
 }
 
 /// Returns every file and symbolic link below a directory, sorted by path, without directories. Links are not followed.

@@ -97,7 +97,9 @@ fn what_killed_processes_have_left_goes() {
     let place = tempfile::tempdir().unwrap();
     let at = |name: &str| place.path().join(name);
     let says = |name: &str| {
-        format!("Glint works in {name}. The next run deletes what a killed one has left.\n")
+        format!(
+            "Glint works in {name}. The next run deletes the files that a killed run has left.\n"
+        )
     };
     for (name, text) in [
         (".glint-left", says(".glint-left")),

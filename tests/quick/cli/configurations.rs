@@ -20,7 +20,7 @@ fn pipes_and_devices_are_no_configurations() {
     crate::workspace::shell("mkfifo \"$1\"", &dir.at("pipe.toml"), "".as_ref());
     for path in ["pipe.toml", "/dev/zero"] {
         let run = dir.glint(["cosim", path]);
-        run.refused(1, &["this is a pipe or a device, not a file", "- for standard input"]);
+        run.refused(1, &["the path is a pipe or a device, not a file", "- for standard input"]);
     }
 }
 

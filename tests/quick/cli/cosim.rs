@@ -190,9 +190,9 @@ fn in_parts(text: &str) {
     let error = refused(&["merge", "core.toml", "part2.json"]);
     assert!(error.contains("missing: shard 1/2"), "{error}");
     let error = refused(&["merge", "core.toml", "part2.json", "core.toml"]);
-    assert!(error.contains("`core.toml` does not hold the state"), "{error}");
+    assert!(error.contains("`core.toml` does not contain the state"), "{error}");
     let error = refused(&["cosim", "core.toml", "--exhaustive", "--resume", "part1.json"]);
-    assert!(error.contains("another configuration, sweep, shard"), "{error}");
+    assert!(error.contains("belongs to another configuration, sweep or shard"), "{error}");
     // A bit that a disk has turned over.
     let part = dir.read("part1.json");
     let damaged = part.replacen("\"done\": ", "\"done\": 1", 1);
@@ -203,7 +203,7 @@ fn in_parts(text: &str) {
     dir.write("part1.json", part);
     dir.write("core.toml", "device = \"cosine-power\"\npower = 4\n");
     let error = refused(&["merge", "core.toml", "part1.json", "part2.json"]);
-    assert!(error.contains("not of `core.toml` as it stands"), "{error}");
+    assert!(error.contains("do not belong to `core.toml`"), "{error}");
     let error =
         refused(&["cosim", "core.toml", "--exhaustive", "--resume", "core.toml/state.json"]);
     assert!(error.contains("core.toml/state.json"), "{error}");

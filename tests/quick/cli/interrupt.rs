@@ -255,7 +255,7 @@ fn a_proof_keeps_what_is_done() {
     run.until("state", |run| run.dir.at("state.json").exists());
     thread::sleep(Duration::from_millis(300));
     let ended = run.interrupted_by(Signal::INT);
-    ended.refused(130, &["evaluations are still to do", "state.json"]);
+    ended.refused(130, &["evaluations remain", "state.json"]);
     dir.assert_no_staging();
     let state: serde_json::Value = dir.json("state.json");
     let done = state["state"]["f"]["done"].count();

@@ -57,7 +57,7 @@ fn a_full_disk_costs_nothing() {
     let before = dir.files();
     // The sine ROM alone is larger than that.
     let run = limited(&dir, 8, "generate core.toml");
-    run.refused(1, &["cannot write `", "what was there before is unchanged", "File too large"]);
+    run.refused(1, &["cannot write `", "the existing files are unchanged", "File too large"]);
     assert_eq!(dir.files(), before);
     dir.assert_no_staging();
     dir.done(["generate", "core.toml"]);
@@ -70,7 +70,7 @@ fn a_waveform_that_does_not_fit() {
     dir.write("wave.vcd", "the last one");
     let args = "cosim core.toml --points 100 --vcd wave.vcd";
     let run = limited(&dir, 8, args);
-    run.refused(1, &["`wave.vcd` is there already", "--force"]);
+    run.refused(1, &["`wave.vcd` exists already", "--force"]);
     let run = limited(&dir, 8, &format!("{args} --force"));
     run.refused(1, &["cannot write the waveform `wave.vcd`"]);
     assert_eq!(dir.read("wave.vcd"), "the last one");

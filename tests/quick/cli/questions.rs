@@ -66,12 +66,12 @@ fn the_longest_interval_is_proposed() {
     let proposed = dir.done(["new", "cosine-power"]);
     assert!(
         proposed.contains(
-            "# With architecture = \"pipelined\", pipeline.interval = 8 it has 1 DSP block, "
+            "# With architecture = \"pipelined\", pipeline.interval = 8, the core has 1 DSP block, "
         ),
         "{proposed}"
     );
     let chosen = dir.done(["new", "cosine-power", "--pipelined"]);
-    assert!(!chosen.contains("it has"), "{chosen}");
+    assert!(!chosen.contains("the core has"), "{chosen}");
 }
 
 #[test]
@@ -129,8 +129,8 @@ fn options_of_new_set_keys() {
     dir.write("file.toml", text.replace("exponent.bits = 8", "exponent.bits = 6"));
     dir.done(["generate", "file.toml"]);
     for (setting, part) in [
-        ("exponent.bits", "a key and a value are wanted"),
-        ("a b=1", "`a b` is no name of a key"),
+        ("exponent.bits", "expected KEY=VALUE"),
+        ("a b=1", "`a b` cannot be the name of a key"),
         ("exponent.bit=8", "did you mean `exponent.bits`?"),
         ("exponent.bits=80", "`exponent.bits` = 80 is out of range"),
     ] {

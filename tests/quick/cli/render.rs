@@ -198,7 +198,7 @@ fn lines_run_along_triangles() {
         assert_within_bound(told);
     }
     let run = dir.glint(render(&["quad.toml", "--height", "bumps.png"]));
-    run.refused(1, &["walks lines of points, which a height map cannot perturb"]);
+    run.refused(1, &["computes lines of points, and a height map cannot perturb lines"]);
 }
 
 #[test]
@@ -266,7 +266,7 @@ fn a_million_triangles_are_read() {
 #[test]
 fn a_mesh_is_text() {
     let dir = Workspace::with("binary.obj", [0x76, 0x20, 0xff, 0xfe]);
-    dir.glint(render(&["--mesh", "binary.obj"])).refused(1, &["it is not text"]);
+    dir.glint(render(&["--mesh", "binary.obj"])).refused(1, &["the file is not UTF-8 text"]);
 }
 
 #[test]
@@ -284,11 +284,11 @@ fn unusable_height_maps_are_refused() {
     let before = dir.files();
     for (file, message) in [
         ("missing.png", "No such file"),
-        ("text.png", "it is not a PNG file"),
-        ("rgb.png", "it is in colour; a height map is grey"),
-        ("alpha.png", "it is grey with transparency"),
-        ("cut.png", "it is not a whole PNG file"),
-        ("wide.png", "it has 8193x1 pixels; at most 8192x8192"),
+        ("text.png", "the file is not a PNG file"),
+        ("rgb.png", "the picture is in colour; a height map must be grey"),
+        ("alpha.png", "the picture is grey with transparency"),
+        ("cut.png", "the PNG file is not complete"),
+        ("wide.png", "the picture has 8193x1 pixels; at most 8192x8192"),
     ] {
         let run = dir.glint(render(&["--height", file]));
         run.refused(1, &["the height map", file, message]);

@@ -10,7 +10,7 @@ use crate::workspace::{COSINE_POWER, Workspace};
 fn an_error_is_found_within_the_bound_and_eval_shows_it() {
     let dir = Workspace::with("core.toml", COSINE_POWER);
     let text = dir.done(["worst", "core.toml", "--starts", "3"]);
-    assert!(text.contains("within the bound of 0.6206, by 3 climbs from seed 1"), "{text}");
+    assert!(text.contains("within the bound of 0.6206, found by 3 climbs from seed 1"), "{text}");
     let run = dir.glint(["worst", "core.toml", "--starts", "3", "--json"]);
     let json = &run.json()["configurations"][0];
     assert_eq!((&json["holds"], &json["recorded"]), (&Value::Bool(true), &Value::Null));

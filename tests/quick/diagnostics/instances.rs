@@ -37,7 +37,10 @@ fn parts_that_nothing_executes_are_a_mistake_at_the_first() {
     d.output("a_out", d.instance("part", held, &[("x", a)]).out("y_out"));
     let mistakes = d.finish().expect_err("a mistake").0;
     assert_eq!(mistakes.len(), 1);
-    assert_eq!(mistakes[0].message, "nothing executes the parts: state `dataflow()` behind them");
+    assert_eq!(
+        mistakes[0].message,
+        "no microprogram executes the parts: call `dataflow()` after the parts"
+    );
     assert_eq!(mistakes[0].location.line(), line);
 }
 
@@ -53,11 +56,12 @@ fn operands_and_results_of_parts_go_by_name_and_format() {
         a
     })
     .are([
-        "`none` has the operands x, and is given ",
-        "`wrong` has the operands x, and is given z",
-        "operand `x` of `wide` is u0.8, but `a_reg_scaled` is u0.12 with values from 0 to 4080 ulp: narrow it or change the format",
+        "the part `none` has the operands x, but is given ",
+        "the part `wrong` has the operands x, but is given z",
+        "operand `x` of `wide` is u0.8, but `a_reg_scaled` is u0.12 with values from 0 to 4080 ulp: narrow \
+         the signal or change the format",
         "two parts are named `part`",
-        "`right` has no output `z_out`: it has y_out",
+        "the part `right` has no output `z_out`: its outputs are y_out",
     ]);
 }
 
@@ -72,7 +76,7 @@ fn a_part_has_one_result_and_no_mistakes() {
         d.instance("endless", itself, &[("x", a)]);
         a
     })
-    .are(["`own` is a part of a part, 8 deep: is a description an instance of itself?"]);
+    .are(["the part `own` is nested 8 deep: does a description contain itself?"]);
     dataflow(|d, a| {
         let waits = |d: &Designer| {
             let x = d.operand("x", BYTE).q();
@@ -83,14 +87,14 @@ fn a_part_has_one_result_and_no_mistakes() {
         d.instance("waits", waits, &[("x", a)]);
         a
     })
-    .are(["`waits` is no part: the microinstruction `wait` waits for `start`"]);
+    .are(["`waits` cannot be a part: the microinstruction `wait` waits for `start`"]);
 }
 
 #[test]
 fn nothing_stands_beside_a_dataflow_that_takes_clocks() {
     dataflow(|d, a| d.pipeline("later", a)).are([
-        "`later` follows its input by a clock, which a dataflow does not wait for: read the memory at once, leave the \
-         register out, or make a part of it",
+        "`later` follows its input after one clock, and `dataflow()` does not wait for this clock: read the \
+         memory without a clock, remove the register, or put it into a part",
     ]);
     let d = Designer::new("device");
     let a = d.operand("a", Format::unsigned(0, 8)).q();
@@ -98,8 +102,9 @@ fn nothing_stands_beside_a_dataflow_that_takes_clocks() {
     d.microprogram([step("idle", []), step("result", [valid(), end()])]);
     let found = d.finish().unwrap_err().to_string();
     assert!(
-        found
-            .contains("a description with parts has a microprogram of its own: state `dataflow()`"),
+        found.contains(
+            "a description with parts cannot have a microprogram of its own: call `dataflow()`"
+        ),
         "{found}"
     );
 }

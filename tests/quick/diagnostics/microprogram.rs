@@ -31,7 +31,7 @@ fn a_mux_picks_one_of_its_inputs() {
         let m = d.mux("m", [a.q(), a.q()]);
         vec![step("idle", [m.pick(b.q())]), step("x", [m.pick(a.q()), load]), step("end", [end()])]
     })
-    .are(["`b_reg` is no input of `m`", "`a_reg` is more than one input of `m`"]);
+    .are(["`b_reg` is not an input of `m`", "`a_reg` is more than one input of `m`"]);
 }
 
 #[test]
@@ -45,10 +45,11 @@ fn microinstructions_stand_in_order() {
         .are(["the last microinstruction, `load`, does not end"]);
 
     program(|_, load| vec![step("idle", [load.clone()]), step("load", [load, end()])])
-        .are(["microinstruction `idle` sets `y_load`, but the device also waits for start in it"]);
+        .are(["microinstruction `idle` sets `y_load`, but the device waits for `start` in this \
+               microinstruction"]);
 
     program(|_, load| vec![step("idle", []), step("two ways", [load, next(), end()])])
-        .are(["microinstruction `two ways` states two successors"]);
+        .are(["microinstruction `two ways` has two successors"]);
 
     program(|_, load| {
         vec![step("idle", []), step("twice", [load.clone()]), step("twice", [load, end()])]
@@ -59,8 +60,8 @@ fn microinstructions_stand_in_order() {
         .are(["no microinstruction sets `y_load`"]);
 
     program(|_, load| vec![step("only", [load, end()])])
-        .are(["a microprogram needs at least two microinstructions: one that waits for start, \
-             one that ends"]);
+        .are(["a microprogram needs at least two microinstructions: one waits for `start`, and one ends the \
+               computation"]);
 
     program(|d, load| {
         let bit = d.operand("more", Format::BIT);
@@ -70,7 +71,7 @@ fn microinstructions_stand_in_order() {
             step("end", [end()]),
         ]
     })
-    .are(["microinstruction `load` goes to `nowhere`, but no microinstruction has that name"]);
+    .are(["microinstruction `load` goes to `nowhere`, but no microinstruction has this name"]);
 }
 
 #[test]
@@ -81,7 +82,7 @@ fn a_design_has_one_microprogram() {
     for _ in 0..2 {
         d.microprogram([step("idle", []), step("end", [end()])]);
     }
-    finish(d).are(["a second microprogram"]);
+    finish(d).are(["the description has a second microprogram"]);
 }
 
 #[test]
@@ -146,19 +147,20 @@ fn valid_may_follow_one_bit() {
     };
     follows(0, || vec![end()]).are([]);
     follows(3, || vec![end()]).are([]);
-    follows(1, || vec![valid(), end()])
-        .are(["microinstruction `result` raises valid, which follows a signal in this design"]);
+    follows(1, || vec![valid(), end()]).are([
+        "microinstruction `result` sets `valid`, but `valid` follows a signal in this design",
+    ]);
     mistakes(|d| {
         d.valid_after(d.operand("a", BYTE).q(), 1);
     })
-    .are(["valid follows `a_reg`, which has more than one bit"]);
+    .are(["`valid` follows `a_reg`, which has more than one bit"]);
     program(|d, load| {
         let (a, b) = (d.operand("a", Format::BIT), d.operand("b", Format::BIT));
         d.valid_after(a.q(), 1);
         d.valid_after(b.q(), 1);
         vec![step("idle", []), step("load", [load, end()])]
     })
-    .are(["valid follows `b_reg` and another signal"]);
+    .are(["`valid` follows two signals: `b_reg` is the second"]);
 }
 
 #[test]
@@ -176,14 +178,14 @@ fn a_jump_goes_to_a_microinstruction() {
     };
     jumps("result").are([]);
     jumps("nowhere")
-        .are(["microinstruction `first` goes to `nowhere`, but no microinstruction has that name"]);
+        .are(["microinstruction `first` goes to `nowhere`, but no microinstruction has this name"]);
 }
 
 #[test]
 fn valid_follows_the_load_of_the_result() {
     program(|_, load| vec![step("idle", []), step("load", [load, valid()]), step("end", [end()])])
-        .are(["microinstruction `load` raises valid and loads `y`, which `y_out` shows from the \
-             next microinstruction on: valid belongs there"]);
+        .are(["microinstruction `load` sets `valid` and loads `y`, which `y_out` shows only from the next \
+               microinstruction on: move `valid()` to the next microinstruction"]);
     // A result that is shown while the next is loaded was loaded before.
     program(|_, load| {
         vec![
@@ -199,15 +201,15 @@ fn valid_follows_the_load_of_the_result() {
 #[test]
 fn results_need_valid_and_muxes_need_a_choice() {
     program(|_, load| vec![step("idle", []), step("load", [load]), step("end", [end()])]).are([
-        "no microinstruction raises valid, so that nobody knows when `y_out` is there: put \
-             `valid()` into the one in which it is",
+        "no microinstruction sets `valid`, so nothing tells when `y_out` is ready: add `valid()` to the \
+         microinstruction in which the result is ready",
     ]);
     mistakes(|d| {
         let x = d.operand("other", BYTE).q();
         d.output("out", d.mux("m", [x, d.not("inverted", x)]).out());
     })
-    .are(["no microinstruction picks an input by `m_select` (`other_reg`, `inverted`): let one \
-             `pick` what the mux passes on, or leave the mux out"]);
+    .are(["no microinstruction selects an input with `m_select` (`other_reg`, `inverted`): add a `pick` to a \
+           microinstruction, or remove the mux"]);
 }
 
 /// Returns a loop around the load of `y`, as long as `condition` says.
@@ -245,11 +247,12 @@ fn a_loop_must_end() {
         let n = d.operand("n", Format::unsigned(4, 0));
         d.any("more", n.q())
     })
-    .are(["microinstruction `again` goes back to `begin` while `more` is 1, and no \
-             microinstruction of the loop changes `n_reg`: it never ends, or is no loop"]);
-    looped(|d| d.raw_constant("steady", 1, Format::BIT))
-        .are(["microinstruction `again` goes back to `begin` while `steady` is 1, which is \
-             constant: it never ends, or is no loop"]);
+    .are(["microinstruction `again` goes back to `begin` while `more` is 1, and no microinstruction of the \
+           loop changes `n_reg`: the loop never ends, or is never repeated"]);
+    looped(|d| d.raw_constant("steady", 1, Format::BIT)).are([
+        "microinstruction `again` goes back to `begin` while `steady` is 1, which is constant: the \
+               loop never ends, or is never repeated",
+    ]);
     // What the loop loads may end it.
     counted(|d| d.raw_constant("three", 3, Format::unsigned(2, 0))).are([]);
     // A loop without an end of its own may have a way out.

@@ -88,7 +88,7 @@ fn a_mistake_names_its_code_and_the_command_that_explains_it() {
         text.starts_with("error[G0401]: the design has no microprogram\n  --> tests/"),
         "{text}"
     );
-    assert!(text.ends_with("\n`glint explain G0401` says more"), "{text}");
+    assert!(text.ends_with("\n`glint explain G0401` explains the mistake"), "{text}");
 }
 
 #[test]
@@ -167,16 +167,16 @@ fn formats_must_match() {
         d.and("both", a.q(), b.q());
     });
     let expected = [
-        "register `r` is u0.8, but `a_reg` is u2.3 with values from 0 to 31 ulp: narrow \
-         it or change the format",
-        "mux `m`: `a_reg` is u2.3 and `b_reg` is u1.7; their points differ (with_fraction \
-         aligns them, a bus carries both)",
+        "register `r` is u0.8, but `a_reg` is u2.3 with values from 0 to 31 ulp: narrow the signal or change \
+         the format",
+        "mux `m`: `a_reg` is u2.3 and `b_reg` is u1.7; the binary points differ: align them with \
+         `with_fraction`, or use a `bus`",
         "`s` adds `a_reg` (u2.3) and `b_reg` (u1.7) modulo the width: the formats must be \
          equal",
-        "`b_reg` is u1.7: 3 fraction bits would drop some; narrow it",
-        "bits 3 to 10 of `a_reg`, which has 5",
-        "`a_reg` is u2.3: one bit is wanted here",
-        "`b_reg` is u1.7: one bit is wanted here",
+        "`b_reg` is u1.7, and 3 fraction bits would drop some of its bits: use `narrow`",
+        "bits 3 to 10 of `a_reg` do not all exist: the signal has 5 bits",
+        "`a_reg` is u2.3, but one bit is required here",
+        "`b_reg` is u1.7, but one bit is required here",
     ];
     found.are(expected);
 }
@@ -195,8 +195,8 @@ fn products_must_be_formed() {
     })
     .are([
         "`product` never multiplies `a_reg` by `b_reg`",
-        "the products of `product` that are taken together have [16, 12] fraction bits: \
-             append zeros to an operand",
+        "the selected products of `product` have different numbers of fraction bits, [16, 12]: append zeros \
+         to an operand",
     ]);
 }
 
@@ -206,7 +206,7 @@ fn nets_have_at_most_64_bits() {
         let a = d.operand("a", Format::unsigned(0, 40));
         d.mul("square", a.q(), a.q());
     })
-    .are(["`square` would be 80 bits wide (u0.80); a net has 1 to 64"]);
+    .are(["`square` would have 80 bits (u0.80); a net has 1 to 64 bits"]);
 }
 
 #[test]
@@ -269,7 +269,7 @@ fn no_signal_has_the_name_of_the_device() {
         d.about(About { device: "soft-blend".into(), ..About::default() });
         d.operand("soft_blend", BYTE);
     })
-    .are(["`soft_blend` is the name of the device, and so of its module; choose another name"]);
+    .are(["`soft_blend` is the name of the device and of its module; choose another name"]);
 }
 
 #[test]
@@ -285,15 +285,15 @@ fn formats_have_limits() {
         d.narrow("none", a, Format::signed(0, -1), Rounding::Truncate, Overflow::Saturate);
     });
     let expected = [
-        "`nothing` would be -2 bits wide (u-3.1); a net has 1 to 64",
-        "`huge` would be 2147483648 bits wide (u2147483647.1); a net has 1 to 64",
-        "`far` would have -2000 fraction bits (u2001.-2000); -1000 to 1000 are possible",
-        "bits 4294967295 to 4294967295 of `a_reg`, which has 8",
-        "`a_reg_scaled` would be 500 bits wide (u0.500); a net has 1 to 64",
+        "`nothing` would have -2 bits (u-3.1); a net has 1 to 64 bits",
+        "`huge` would have 2147483648 bits (u2147483647.1); a net has 1 to 64 bits",
+        "`far` would have -2000 fraction bits (u2001.-2000); a net has -1000 to 1000 fraction bits",
+        "bits 4294967295 to 4294967295 of `a_reg` do not all exist: the signal has 8 bits",
+        "`a_reg_scaled` would have 500 bits (u0.500); a net has 1 to 64 bits",
     ];
     assert_eq!(found[..expected.len()], expected);
     assert!(found[expected.len()].starts_with("`a_reg_shifted` would"), "{found:?}");
-    assert!(found[expected.len() + 1].starts_with("`none` would be 0 bits wide"), "{found:?}");
+    assert!(found[expected.len() + 1].starts_with("`none` would have 0 bits"), "{found:?}");
 }
 
 /// Returns the warnings of a small device that says more than it needs to.
@@ -346,9 +346,9 @@ fn constant_muxes_have_a_warning() {
         vec![m.pick(b)]
     })
     .are([
-        "`twice` always passes `b_reg` on: it is no mux",
-        "`second` always passes `b_reg` on: it is no mux",
-        "no microinstruction selects `inverted` by `m_select`",
+        "mux `twice` always passes `b_reg` on: use that signal in place of the mux",
+        "mux `second` always passes `b_reg` on: use that signal in place of the mux",
+        "no microinstruction selects `inverted` with `m_select`",
     ]);
 }
 
@@ -370,11 +370,11 @@ fn signs_are_refused_where_magnitudes_are_wanted() {
         let _ = Divider::new(d, "ratio", b, a, 1);
     })
     .are([
-        "`pair` puts `a_reg`, which is s2.0, beside other bits as a number without a sign: read \
-         its bits as one (`read_as`), or join them (`join`)",
-        "divider `ratio` gives 1 bits: ask for two or more",
-        "divider `ratio`: `a_reg` has values from -4 to 3 ulp: divide magnitudes, or narrow it to \
-         a format without a sign, which saturates at 0",
+        "`pair` puts `a_reg`, which is s2.0, beside other bits of an unsigned number: convert the signal \
+         with `read_as`, or use `join`",
+        "divider `ratio` has a quotient of 1 bits: request at least two bits",
+        "divider `ratio`: `a_reg` has values from -4 to 3 ulp: divide absolute values, or narrow the operand \
+         to an unsigned format, which saturates at 0",
     ]);
 }
 
@@ -385,7 +385,7 @@ fn signals_belong_to_their_designer() {
     let select = other.select("way", &["one", "other"]);
     let register = other.register("there", BYTE);
     let said = |name: &str| {
-        format!("`{name}` is a signal of the designer of `other`, and not of that of `device`")
+        format!("`{name}` is a signal of the designer of `other`, not of the designer of `device`")
     };
     let Found(found) = mistakes(|d| {
         let ours = d.operand("ours", BYTE).q();
@@ -421,9 +421,9 @@ fn signals_belong_to_their_designer() {
         ]
     })
     .are([
-        "microinstruction `load`: `there.load` belongs to the designer of `other`, not to \
-             that of `device`",
-        "microinstruction `again`: a condition belongs to the designer of `other`, not to \
-             that of `device`",
+        "microinstruction `load`: `there.load` belongs to the designer of `other`, not to the designer of \
+         `device`",
+        "microinstruction `again`: a condition belongs to the designer of `other`, not to the designer of \
+         `device`",
     ]);
 }

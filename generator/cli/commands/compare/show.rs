@@ -72,7 +72,8 @@ fn at_rest(entry: &ComparisonEntry) -> Option<String> {
         return None;
     }
     Some(format!(
-        "the errors of {} are those at {}; over all operands the fixed point of f is off by at most {:.1e}, its bound",
+        "the errors of {} are measured at {}; over all operands, the fixed-point error of f is at most \
+         {:.1e}, its bound",
         entry.label,
         others.join(", "),
         contract.bound().f
@@ -114,9 +115,10 @@ fn print_errors(arguments: &Arguments, entries: &[ComparisonEntry]) {
         rows,
     );
     tables::print_line(
-        "The error at an angle is the sum of three: of the formula, in f64 at the quantised operands; of cos gamma \
-         as the operands denote it; and of the fixed point, f against the formula. The bound is on an output, \
-         f times a colour and rounded, against the formula.",
+        "The error at an angle is the sum of three errors: the error of the formula, in f64 at the quantised \
+         operands; the error of the quantised operands, from which cos gamma follows; and the error of the \
+         fixed point, f against the formula. The bound limits the error of an output, which is f times a \
+         colour and rounded, against the formula.",
     );
     tables::print_line("");
 }
@@ -146,12 +148,13 @@ fn print_hardware(entries: &[ComparisonEntry]) {
     }
     tables::print(&headings, rows);
     tables::print_line(
-        "ROM bits count the control ROM. Clocks are from start to start, per point of the longest line where a \
-         start shows several.",
+        "ROM bits include the control ROM. Clocks are counted from one start to the next. For a device that \
+         computes lines of points, they are divided by the points of the longest line.",
     );
     if synthesised {
         tables::print_line(
-            "By Yosys, before placement; block RAMs are of 4 kbit in iCE40 and of 18 kbit in the others.",
+            "Yosys counts the LUTs, DSP blocks and block RAMs before placement. A block RAM has 4 kbit on \
+             iCE40, and 18 kbit on the other families.",
         );
     }
 }
@@ -222,7 +225,8 @@ fn print_speed(entries: &[ComparisonEntry]) {
     let records = entries.iter().filter_map(|entry| entry.record.as_ref());
     let tools = tools(records.flat_map(|record| &record.targets));
     say!(
-        "Measured by `{Program} synth` with registers around the core, the median of several runs of place and route: {}.",
+        "Measured by `{Program} synth` with registers around the core, as the median of several runs of \
+         place and route, with {}.",
         Vec::from_iter(tools).join(", ")
     );
 }

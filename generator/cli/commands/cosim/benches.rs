@@ -49,11 +49,11 @@ pub fn benches(
     which: VerilogSimulator,
 ) -> Result<bool> {
     if arguments.vcd.is_some() {
-        wrong_usage!("--vcd is for the built-in simulator");
+        wrong_usage!("--vcd works only with the built-in simulator: remove --vcd or --simulator");
     }
     let points = arguments.points.unwrap_or(POINTS);
     if points > MOST_POINTS {
-        wrong_usage!("--points {points}: an external simulator takes at most {MOST_POINTS}");
+        wrong_usage!("--points {points}: an external simulator takes at most {MOST_POINTS} points");
     }
     let bar = progress::bar(output, loaded.len() as u64, "benches run");
     let runs: Vec<BenchRun> = loaded
@@ -117,7 +117,7 @@ fn bench(
             .and_then(|waveform| destination::replace(&path, &waveform));
         if let Err(error) = &written {
             // The difference is more important than its waveform, so this is only a warning.
-            failure::warn(&format!("{}: no waveform: {error:#}", one.path));
+            failure::warn(&format!("{}: cannot write a waveform: {error:#}", one.path));
         }
         BenchMismatch {
             difference,
@@ -157,7 +157,7 @@ fn print(one: &Loaded, run: &BenchRun, points: u64, seed: u64, which: VerilogSim
     let window = mismatch.vcd.as_ref().map_or_else(String::new, |vcd| {
         format!("`{vcd}` shows clocks {} to {clock}; ", mismatch.from)
     });
-    say!("  {window}again: {}", mismatch.command);
+    say!("  {window}to repeat: {}", mismatch.command);
 }
 
 fn as_json(one: &Loaded, run: &BenchRun, points: u64, arguments: &Arguments) -> Value {

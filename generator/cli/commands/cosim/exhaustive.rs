@@ -39,7 +39,10 @@ const CORES: [u32; 3] = [1, 16, 1000];
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
     if arguments.resume.is_some() && loaded.len() != 1 {
-        wrong_usage!("--resume is for one configuration; here are {}", loaded.len());
+        wrong_usage!(
+            "--resume needs exactly one configuration, and there are {}: name one configuration",
+            loaded.len()
+        );
     }
     let sweeps = loaded.iter().map(|one| arguments.sweep.of(one)).collect::<Result<Vec<_>>>()?;
     let mut list = output.list();
@@ -53,11 +56,13 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
         {
             ensure!(
                 found.digest == state.digest && found.shard == state.shard,
-                "`{}` is of another configuration, sweep, shard or build of Glint; name another file",
+                "`{}` belongs to another configuration, sweep or shard, or to another build of Glint; give \
+                 --resume another file",
                 path.display()
             );
-            job.validate(&found)
-                .with_context(|| format!("`{}` is damaged; name another file", path.display()))?;
+            job.validate(&found).with_context(|| {
+                format!("`{}` is damaged; give --resume another file", path.display())
+            })?;
             state = found;
         }
         if output.is_for_people() {
@@ -77,7 +82,7 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
 pub fn read(path: &Path) -> Result<Option<ShardState>> {
     let Some(text) = input::text(path)? else { return Ok(None) };
     let state = kept::from_text(&text).with_context(|| {
-        format!("`{}` does not hold the state of a proof; name another file", path.display())
+        format!("`{}` does not contain the state of a proof; name another file", path.display())
     })?;
     Ok(Some(state))
 }
@@ -129,7 +134,8 @@ fn prove(
     let kept = || {
         let file = file.map_or_else(String::new, |file| file.display().to_string());
         format!(
-            "{} evaluations are still to do; what is done is in `{file}`, and the same command goes on from there",
+            "{} evaluations remain; the finished evaluations are in `{file}`, and the same command continues \
+             from that file",
             text::grouped(job.remaining(state))
         )
     };

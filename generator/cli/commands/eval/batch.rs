@@ -86,7 +86,9 @@ impl CommandReport for EvaluatedPoints<'_> {
         tables::print_line(self.text.trim_end());
         if !self.missing.is_empty() {
             let (path, missing) = (self.path.display(), self.missing.join(", "));
-            failure::warn(&format!("`{path}` has no column for {missing}"));
+            failure::warn(&format!(
+                "`{path}` has no column for some operands; they have the values {missing}"
+            ));
         }
         Ok(())
     }

@@ -13,9 +13,9 @@ use glint_golden::{Contract, Operand};
 pub fn given(operands: &[Operand], settings: &[String]) -> Result<Vec<Option<i64>>, String> {
     let mut raw: Vec<Option<i64>> = vec![None; operands.len()];
     for setting in settings {
-        let (name, text) = setting
-            .split_once('=')
-            .ok_or_else(|| format!("`{setting}` is not operand=value, as in cos_gamma=0.99"))?;
+        let (name, text) = setting.split_once('=').ok_or_else(|| {
+            format!("`{setting}` is not of the form operand=value, for example cos_gamma=0.99")
+        })?;
         let at = position(operands, name)?;
         if raw[at].is_some() {
             return Err(format!("operand `{name}` is given twice"));
@@ -87,10 +87,10 @@ fn value(operand: &Operand, text: &str) -> Result<i64, String> {
     let raw = if let Some(integer) = text.strip_prefix('#') {
         let raw: i128 = integer
             .parse()
-            .map_err(|_| format!("`{text}` is not a raw integer, as in #1038090"))?;
+            .map_err(|_| format!("`{text}` is not a raw integer, for example #1038090"))?;
         if !format.holds(raw) {
             return Err(format!(
-                "raw integer {raw} is beyond {format}: {} to {}",
+                "the raw integer {raw} is outside the range of {format}, {} to {}",
                 format.min_raw(),
                 format.max_raw()
             ));
@@ -103,12 +103,14 @@ fn value(operand: &Operand, text: &str) -> Result<i64, String> {
         }
         let Some(raw) = format.nearest_raw(value) else {
             let (least, most) = (format.to_f64(format.min_raw()), format.to_f64(format.max_raw()));
-            return Err(format!("{value} is beyond {format}: {least} to {most}"));
+            return Err(format!("{value} is outside the range of {format}, {least} to {most}"));
         };
         // A fraction is rounded to the nearest value of the format. A user who writes a fraction for an integer probably means
         // another operand, or another scale, so this is an error.
         if format.frac == 0 && value.fract() != 0.0 {
-            return Err(format!("{value} is not an integer, and {format} holds integers"));
+            return Err(format!(
+                "{value} is not an integer, and the format {format} has only integers"
+            ));
         }
         raw
     };

@@ -41,10 +41,12 @@ struct ArchitectureFront<'a> {
 /// Fails if a tool fails, if the target is not timed, if the device cannot be a pipeline, or if no architecture has the rate.
 pub fn run(output: OutputOptions, arguments: &Arguments, loaded: &[Loaded]) -> Result<bool> {
     let [one] = loaded else {
-        wrong_usage!("--front is for one configuration; name it");
+        wrong_usage!("--front needs exactly one configuration; name one configuration");
     };
     if arguments.out.is_some() {
-        wrong_usage!("--front and --out cannot be used together: a record is of one architecture");
+        wrong_usage!(
+            "--front and --out cannot be used together: a record describes one architecture"
+        );
     }
     let target = target(arguments, one)?;
     let drawing = match &arguments.plot {
@@ -86,12 +88,13 @@ fn target(arguments: &Arguments, one: &Loaded) -> Result<Target> {
     let target = match arguments.targets[..] {
         [] => super::targets_of_pipelines(std::slice::from_ref(one)).first().copied(),
         [target] => Some(target),
-        _ => wrong_usage!("--front measures for one target; name one"),
+        _ => wrong_usage!("--front needs exactly one target; give --target once"),
     };
     let target = target.unwrap_or(Target::Ecp5);
     if !target.is_timed_fpga() {
         wrong_usage!(
-            "--target {target}: --front compares rates, and there is no frequency of {}; take ice40, ecp5, nexus or gatemate",
+            "--target {target}: --front compares rates, but no frequency can be measured for {}; give ice40, \
+             ecp5, nexus or gatemate",
             target.title()
         );
     }
@@ -143,7 +146,8 @@ fn chosen(measured: &[MeasuredArchitecture], rate: Option<f64>, own: Option<u32>
         None => {
             let fastest = measured.iter().fold(0.0_f64, |fastest, it| fastest.max(it.rate));
             bail!(
-                "no architecture has {wanted} million points a second; the fastest has {fastest:.1}"
+                "no architecture reaches {wanted} million points a second; the fastest architecture reaches \
+                 {fastest:.1}"
             )
         }
     }
@@ -158,7 +162,7 @@ impl ArchitectureFront<'_> {
             self.measured.iter().filter(|it| it.rate > 0.0).collect();
         shown.sort_by(|one, other| one.rate.total_cmp(&other.rate));
         let [slowest, .., fastest] = shown[..] else {
-            bail!("fewer than two architectures fit the chip, and there is no line to plot");
+            bail!("fewer than two architectures fit the chip, so there is no line to plot");
         };
         let (least_rate, most_rate) = (slowest.rate, fastest.rate);
         let mut places = Vec::new();
@@ -178,7 +182,7 @@ impl ArchitectureFront<'_> {
                     .to_owned(),
             x: ChartAxis::logarithmic("million points a second", least_rate * 0.9, most_rate * 1.1),
             y: ChartAxis::linear(
-                &format!("{name}: look-up tables of {}, blocks counted in", self.target.title()),
+                &format!("{name}: look-up tables of {}, including blocks", self.target.title()),
                 0.0,
                 most_area * 1.1,
             ),

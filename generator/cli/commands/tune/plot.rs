@@ -19,7 +19,7 @@ pub fn plot(answer: &Answer, arguments: &Arguments) -> Result<String> {
     };
     let (low, high) = (arguments.unit.of(&first.bound), arguments.unit.of(&last.bound));
     if answer.front.len() < 2 || low <= 0.0 || low >= high {
-        bail!("the front is a single configuration, and no line to plot");
+        bail!("one configuration is best in both error and area, so there is no line to plot");
     }
     let unit = match arguments.unit {
         ErrorUnit::F => "error of f",
@@ -43,12 +43,13 @@ pub fn plot(answer: &Answer, arguments: &Arguments) -> Result<String> {
     let chart = Chart {
         id: "front".to_owned(),
         title: format!("{}: area over the bound of the error", arguments.device),
-        caption: "Each corner is a configuration that none of those looked at betters in both."
+        caption: "Each corner is a configuration; no other configuration that was tried is better in both \
+                  error and area."
             .to_owned(),
         x: ChartAxis::logarithmic(unit, low * 0.95, high * 1.05),
         y: ChartAxis::linear(
             &format!(
-                "{}: look-up tables of {}, blocks counted in",
+                "{}: look-up tables of {}, including blocks",
                 arguments.device,
                 arguments.target.title()
             ),

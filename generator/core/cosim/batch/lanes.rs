@@ -117,10 +117,17 @@ impl Team {
                 let shows = valid[lane] == 1;
                 if let Some(latency) = latency {
                     let due = clocks == *latency;
-                    ensure!(shows == due, "a point has results after {clocks} clocks: {shows}");
+                    ensure!(
+                        shows == due,
+                        "after {clocks} clocks, the point shows results: {shows}, which differs from the \
+                         latency"
+                    );
                 }
                 if shows {
-                    ensure!(task.shown < results, "there are more than {results} results");
+                    ensure!(
+                        task.shown < results,
+                        "the device shows more than {results} results for a point"
+                    );
                     let to = (points.results[task.point] - base + task.shown) * width;
                     for (place, raw) in out[to..to + width].iter_mut().zip(instances.results(lane))
                     {
@@ -128,10 +135,13 @@ impl Team {
                     }
                     task.shown += 1;
                 }
-                ensure!(clocks < LIMIT, "the device does not end");
+                ensure!(clocks < LIMIT, "the computation of the device does not end");
                 if busy.map_or(shows, |busy| busy[lane] == 0) {
                     let shown = task.shown;
-                    ensure!(shown == results, "there are {shown} results, not {results}");
+                    ensure!(
+                        shown == results,
+                        "the device shows {shown} results for a point, not {results}"
+                    );
                     tasks.pop_front();
                     left -= 1;
                 }

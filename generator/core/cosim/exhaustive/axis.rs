@@ -28,8 +28,8 @@ impl FromStr for AxisValues {
     fn from_str(text: &str) -> Result<Self, String> {
         let wrong = || {
             format!(
-                "`{text}` is not OPERAND=VALUES: raw values as 5,7 and ranges as 0..1000 or 0..1000/10, \
-                 at most {} in all",
+                "`{text}` is not OPERAND=VALUES: give raw values such as 5,7 and ranges such as 0..1000 or \
+                 0..1000/10, with at most {} values in all",
                 grouped(MOST_VALUES as u64)
             )
         };
@@ -75,14 +75,14 @@ pub fn sweep(contract: &dyn Contract, others: &[AxisValues]) -> Result<Sweep> {
     let mut sweep = contract.sweep();
     for (at, AxisValues { name, .. }) in others.iter().enumerate() {
         let is_named_before = others[..at].iter().any(|other| other.name == *name);
-        ensure!(!is_named_before, "`{name}` is named twice");
+        ensure!(!is_named_before, "the operand `{name}` is given twice");
     }
     for AxisValues { name, values } in others {
         let names: Vec<String> = sweep.axes.iter().map(|axis| axis.name.clone()).collect();
         let axis = sweep.axes.iter_mut().find(|axis| axis.name == *name);
         let Some(axis) = axis else {
             anyhow::bail!(
-                "the check goes through no operand `{name}`; its operands are {}",
+                "the check does not visit an operand `{name}`; its operands are {}",
                 names.join(", ")
             );
         };
@@ -94,7 +94,11 @@ pub fn sweep(contract: &dyn Contract, others: &[AxisValues]) -> Result<Sweep> {
         };
         let outside = values.iter().find(|&value| !(domain.0..=domain.1).contains(value));
         if let Some(outside) = outside {
-            anyhow::bail!("`{name}` is {} to {} in this check, not {outside}", domain.0, domain.1);
+            anyhow::bail!(
+                "`{name}` is from {} to {} in this check, and {outside} is outside",
+                domain.0,
+                domain.1
+            );
         }
         if let Values::Range(..) = axis.values {
             if values.len() as u64 == axis.values.count() {

@@ -90,8 +90,8 @@ impl Backing {
                 format!("The bound is proven by Gappa, by the record `{path}`")
             }
             Self::Author => format!(
-                "The bound is stated by its author, and nothing here proves it: `{Program} certify`, and `{Program} \
-                 cosim --exhaustive --json` where it can go through all operands, do"
+                "The bound is stated by its author, and is not proved yet: prove it with `{Program} \
+                 certify`, or with `{Program} cosim --exhaustive --json` if all operands can be computed"
             ),
         }
     }

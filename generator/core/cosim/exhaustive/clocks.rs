@@ -62,7 +62,7 @@ impl fmt::Display for Difference {
             operands.map(|(name, bits)| format!("{name}={bits:#x}")).collect();
         write!(
             f,
-            "combination {} ({}), clock {} of its computation, {}",
+            "combination {} ({}), clock {} of the computation, {}",
             self.place,
             operands.join(" "),
             self.clock,

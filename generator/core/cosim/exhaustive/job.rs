@@ -81,7 +81,7 @@ impl FromStr for Shard {
         match numbers {
             Some((number, of)) if (Self { number, of }).is_valid() => Ok(Self { number, of }),
             _ => Err(format!(
-                "a shard is i/N with i from 1 to N, as 3/16, and N at most {}",
+                "expected a shard i/N, for example 3/16, with i from 1 to N, and N at most {}",
                 grouped(MOST_SHARDS)
             )),
         }
@@ -213,26 +213,32 @@ impl<'a> Job<'a> {
         {
             let count = shard.count(places.blocks());
             let Progress { done, peak } = progress;
-            ensure!(done <= count, "of {what}, {done} blocks are done of {count} in all");
+            ensure!(
+                done <= count,
+                "for {what}, the file says that {done} blocks are done, but there are only {count} blocks"
+            );
             if done == 0 {
-                ensure!(peak == Peak::NONE, "of {what}, nothing is done, and yet there is a peak");
+                ensure!(
+                    peak == Peak::NONE,
+                    "for {what}, no block is done, but the file has a largest error"
+                );
                 continue;
             }
             ensure!(
                 peak.place < places.count(),
-                "of {what}, the largest error is at place {}, and there are {} places",
+                "for {what}, the largest error is at place {}, but there are only {} places",
                 peak.place,
                 places.count()
             );
             let block = Places::block_of(peak.place);
             ensure!(
                 block % shard.of == shard.number - 1 && block / shard.of < done,
-                "of {what}, the largest error is at place {}, which the shard has not done",
+                "for {what}, the largest error is at place {}, which the shard has not done",
                 peak.place
             );
             ensure!(
                 places.error(peak.place) == peak.error,
-                "of {what}, the error at place {} is {:e}, not {:e}",
+                "for {what}, the error at place {} is {:e}, but the file has {:e}",
                 peak.place,
                 places.error(peak.place),
                 peak.error
@@ -240,11 +246,15 @@ impl<'a> Job<'a> {
         }
         let count = shard.count(self.blocks_of_clocks());
         let Steps { done, differs } = state.clocks;
-        ensure!(done <= count, "of the combinations, {done} blocks are done of {count} in all");
+        ensure!(
+            done <= count,
+            "for the combinations, the file says that {done} blocks are done, but there are only {count} \
+             blocks"
+        );
         let combinations = self.clocks.as_ref().map_or(0, Clocks::count);
         ensure!(
             differs.is_none_or(|place| place < combinations && done == count),
-            "of the combinations, one is said to differ that was not tried"
+            "for the combinations, the file names a difference at a combination that was not run"
         );
         Ok(())
     }
@@ -320,7 +330,7 @@ impl<'a> Job<'a> {
     /// damaged or not done.
     pub fn merge(&self, states: &[ShardState], names: &[String]) -> Result<ShardState> {
         let Some(first) = states.first() else {
-            anyhow::bail!("nothing to merge");
+            anyhow::bail!("there are no shards to merge");
         };
         let of = first.shard.of;
         let mut merged = ShardState::new(&first.digest, Shard::WHOLE);
@@ -328,12 +338,12 @@ impl<'a> Job<'a> {
         for (state, name) in states.iter().zip(names) {
             ensure!(
                 state.digest == first.digest,
-                "`{name}` is not of the same configuration and build of Glint as `{}`",
+                "`{name}` does not belong to the same configuration and build of Glint as `{}`",
                 names[0]
             );
             ensure!(
                 state.shard.of == of,
-                "`{name}` is shard {}, and `{}` is shard {}: they are not of one division",
+                "`{name}` is shard {}, and `{}` is shard {}: the numbers of shards differ",
                 state.shard,
                 names[0],
                 first.shard
@@ -341,7 +351,7 @@ impl<'a> Job<'a> {
             self.validate(state).with_context(|| format!("`{name}` is damaged"))?;
             ensure!(
                 self.remaining(state) == 0,
-                "`{name}` is not complete; go on with --shard {} --resume {name}",
+                "`{name}` is not complete; continue with --shard {} --resume {name}",
                 state.shard
             );
             if let Some(other) = seen.insert(state.shard.number, name) {

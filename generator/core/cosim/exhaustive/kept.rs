@@ -36,7 +36,10 @@ pub fn to_text(state: &ShardState) -> Result<String> {
 /// Fails if the text is no such file of this version of Glint, or if its checksum is wrong, because the file was changed.
 pub fn from_text(text: &str) -> Result<ShardState> {
     let kept: SavedShard =
-        serde_json::from_str(text).context("not a file of this version of Glint")?;
-    ensure!(kept.checksum == checksum(&kept.state)?, "the checksum is wrong: it was changed");
+        serde_json::from_str(text).context("the file was not written by this version of Glint")?;
+    ensure!(
+        kept.checksum == checksum(&kept.state)?,
+        "the checksum is wrong, so the file was changed"
+    );
     Ok(kept.state)
 }

@@ -61,21 +61,21 @@ impl Proof {
         let mut proof = Self { of_f, f, f_units: f.error * largest, colours, failures: Vec::new() };
         if f.error.is_infinite() {
             proof.failures.push(format!(
-                "the formula has no finite value at {} (raw)",
+                "the formula has no finite value at the raw operands {}",
                 Places::of_f(contract).words(f.place)
             ));
             return proof;
         }
         if f.error > bound.f + ROUNDING_OF_F64 / largest {
-            let what = if of_f { "f is" } else { "an output is, in units," };
-            proof.failures.push(format!(
-                "{what} off by {:e}, beyond the stated bound of {:e}",
-                f.error, bound.f
-            ));
+            let what =
+                if of_f { "the error of f is" } else { "the error of an output, in units, is" };
+            proof
+                .failures
+                .push(format!("{what} {:e}, above the stated bound of {:e}", f.error, bound.f));
         }
         if proof.together() > bound.units + ROUNDING_OF_F64 {
             proof.failures.push(format!(
-                "an output may be off by {:.4} units, beyond the stated bound of {:.4}",
+                "the error of an output can be {:.4} units, above the stated bound of {:.4}",
                 proof.together(),
                 bound.units
             ));
@@ -104,10 +104,11 @@ impl Proof {
     /// after this error; `at` may be empty.
     pub fn words(&self, at: &str) -> String {
         if !self.of_f {
-            return format!("an output is off by {:.3} units at most{at}", self.together());
+            return format!("the error of an output is at most {:.3} units{at}", self.together());
         }
         format!(
-            "f is off by {:.3e} at most, {:.3} units{at}; a colour multiplier by {:.3}; together {:.3}",
+            "the error of f is at most {:.3e}, {:.3} units{at}; the error of a colour multiplier {:.3}; \
+             together {:.3}",
             self.f.error,
             self.f_units,
             self.colours.error,

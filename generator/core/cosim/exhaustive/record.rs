@@ -128,8 +128,8 @@ impl Record {
             && self.axes.iter().zip(&sweep.axes).all(|(found, axis)| found.covers(axis));
         anyhow::ensure!(
             same_axes,
-            "the record `{}` is of another version of Glint: its sweep is not today's; \
-             `{Program} cosim --exhaustive --json` makes a new one",
+            "the record `{}` has another sweep, because another version of Glint wrote it; write a new \
+             record with `{Program} cosim --exhaustive --json`",
             self.path.display()
         );
         Ok(())
@@ -181,7 +181,7 @@ impl Record {
         let mut failures = Vec::new();
         let path = self.path.display();
         let mut differs = |what: &str, found: f64, recorded: f64| {
-            failures.push(format!("{what} is {found:e}, and {recorded:e} in the record `{path}`"));
+            failures.push(format!("{what} is {found:e}, but {recorded:e} in the record `{path}`"));
         };
         let at_peak = if self.f.place < f.count() { f.error(self.f.place) } else { 0.0 };
         if (at_peak - self.f.error).abs() > SAME {

@@ -104,12 +104,14 @@ fn shards_join_to_the_whole() {
     let refused = |states: &[ShardState]| job.merge(states, &names).unwrap_err().to_string();
     assert_eq!(refused(&states[..2]), "missing: shard 2/3");
     assert_eq!(refused(&[states[0].clone(), states[0].clone()]), "`c` and `a` are both shard 3/3");
-    assert!(refused(&[states[0].clone(), whole()]).contains("not of one division"));
+    assert!(refused(&[states[0].clone(), whole()]).contains("the numbers of shards differ"));
     let mut other = states[1].clone();
     other.digest = "another".to_owned();
-    assert!(refused(&[states[0].clone(), other]).contains("not of the same configuration"));
+    assert!(
+        refused(&[states[0].clone(), other]).contains("does not belong to the same configuration")
+    );
     let nothing = ShardState::new("digest", Shard { number: 1, of: 3 });
-    assert!(refused(&[nothing]).contains("`c` is not complete; go on with --shard 1/3"));
+    assert!(refused(&[nothing]).contains("`c` is not complete; continue with --shard 1/3"));
 }
 
 /// Tries states that a damaged disk or an attacker could have written.
@@ -121,14 +123,17 @@ fn what_cannot_be_a_state_is_refused() {
     job.validate(&ShardState::new("digest", Shard { number: 3, of: 9 })).unwrap();
     type Change = fn(&mut ShardState);
     let changes: [(Change, &str); 9] = [
-        (|state| state.f.done = 8, "8 blocks are done of 7"),
-        (|state| state.f.done = 0, "nothing is done, and yet"),
+        (|state| state.f.done = 8, "8 blocks are done, but there are only 7"),
+        (|state| state.f.done = 0, "no block is done, but the file"),
         (|state| state.f.peak = Peak::NONE, "the largest error is at place 18446744073709551615"),
-        (|state| state.f.peak.place = 1_000_000_000_000_000, "there are 900000 places"),
-        (|state| state.f.peak.error = 1.0, "the error at place 700001 is 7.000005e5, not 1e0"),
+        (|state| state.f.peak.place = 1_000_000_000_000_000, "there are only 900000 places"),
+        (
+            |state| state.f.peak.error = 1.0,
+            "the error at place 700001 is 7.000005e5, but the file has 1e0",
+        ),
         (|state| state.f.peak.place = 5, "the error at place 5 is 5e0"),
-        (|state| state.clocks.done = 1, "1 blocks are done of 0"),
-        (|state| state.clocks.differs = Some(0), "said to differ that was not tried"),
+        (|state| state.clocks.done = 1, "1 blocks are done, but there are only 0"),
+        (|state| state.clocks.differs = Some(0), "a combination that was not run"),
         (|state| state.shard.of = 1_000_000_000_000, "there is no shard 1/1000000000000"),
     ];
     for (change, message) in changes {

@@ -98,6 +98,6 @@ impl Reference {
             }
             self.model.clock();
         }
-        bail!("the golden model does not end")
+        bail!("the computation of the golden model does not end")
     }
 }

@@ -20,7 +20,7 @@ pub fn points_bench(design: &Design, limit: u32) -> Result<PointsBench> {
     let port_name = |port: &Port| design.net(port.net).name.clone();
     let of_role = |role: Role| {
         let port = design.port(|it| it == role);
-        port.with_context(|| format!("`{}` is no pipeline", design.name))
+        port.with_context(|| format!("`{}` is not a pipeline", design.name))
     };
     let mut held = Vec::new();
     for port in design.inputs() {

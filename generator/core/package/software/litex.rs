@@ -57,13 +57,14 @@ pub fn file(job: &EmitJob, tops: &[Top], files: &mut OutputFiles) -> Result<()> 
         tops.iter().find(|top| top.face == Face::Core).map(|top| driven(design, top))
     };
     if core.is_none() && stream.is_none() {
-        let what = if is_line { "walks lines" } else { "is a pipeline" };
+        let what = if is_line { "computes lines" } else { "is a pipeline" };
         bail!(KeyError::new(
             "package.litex",
             format!(
-                "`{name}` {what}, which registers of LiteX cannot drive: its module needs a stream"
+                "`{name}` {what}, and registers of LiteX cannot drive such a core: the LiteX module needs a \
+                 stream"
             ),
-            "set interface.stream = true, or remove it",
+            "set interface.stream = true, or remove package.litex",
         ));
     }
     let registers = tops.iter().find_map(|top| match top.face {

@@ -137,8 +137,8 @@ pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<Vec<RomId>> {
     let names = table_names(design);
     let (body, read) = if line { of_line(design, &names) } else { of_point(design, &names) }
         .map_err(|error| {
-            let message = format!("`{name}` has no model in C: {error:#}");
-            KeyError::new("package.software", message, "remove it")
+            let message = format!("no model in C can be written for `{name}`: {error:#}");
+            KeyError::new("package.software", message, "remove package.software")
         })?;
     let regenerate = job.regenerate();
     let [title, formula] =
@@ -253,8 +253,9 @@ fn of_line(design: &Design, tables: &[String]) -> Result<(Vec<String>, Vec<RomId
     let Cycle { unrolled, held } = any_cycle(design);
     let graph = &unrolled.graph;
     let port = |role: Role| {
-        let port =
-            design.port(|of| of == role).with_context(|| format!("it has no output {role:?}"))?;
+        let port = design
+            .port(|of| of == role)
+            .with_context(|| format!("the design has no output {role:?}"))?;
         let value = unrolled.results.iter().find(|(net, _)| *net == port.net);
         value.map(|it| it.1).context("an output has no value")
     };

@@ -51,7 +51,7 @@ impl<'f> RecomputedContract<'f> {
         if facts.wraps {
             return Err(recomputation_error(
                 name,
-                "a result wraps, which the program does not follow",
+                "a result wraps around, and the program cannot compute such results",
             ));
         }
         if let Some(conditions) = &facts.conditions {
@@ -59,7 +59,8 @@ impl<'f> RecomputedContract<'f> {
                 interval::combinations(facts.domain.iter().map(|(_, limits)| *limits));
             if combinations > MOST_COMBINATIONS {
                 let why = format!(
-                    "its operands have {combinations} combinations, more than the 2^32 that a program computes in minutes"
+                    "the operands have {combinations} combinations, more than the limit of 2^32, which a \
+                     program computes in minutes"
                 );
                 return Err(recomputation_error(name, &why));
             }
@@ -72,7 +73,8 @@ impl<'f> RecomputedContract<'f> {
             }
             _ => Err(recomputation_error(
                 name,
-                "its contract is no list of formulas with bounds, as those of `function` and `expression` are",
+                "the contract is not a list of formulas with bounds, as for the devices `function` and \
+                 `expression`",
             )),
         }
     }
@@ -80,8 +82,8 @@ impl<'f> RecomputedContract<'f> {
 
 /// Returns the error of the key `package.recomputation`: nothing recomputes the core `name`, for the reason `why`.
 fn recomputation_error(name: &str, why: &str) -> KeyError {
-    let message = format!("nothing recomputes `{name}`: {why}");
-    KeyError::new("package.recomputation", message, "remove it")
+    let message = format!("no program can recompute `{name}`: {why}");
+    KeyError::new("package.recomputation", message, "remove package.recomputation")
 }
 
 /// Checks that the program can be written for a core.
@@ -100,8 +102,10 @@ pub fn check(name: &str, facts: &ContractFacts) -> Result<(), KeyError> {
 pub fn file(job: &EmitJob, read: &[RomId], files: &mut OutputFiles) -> Result<()> {
     let (name, inputs) = (job.name(), job.inputs);
     let design = inputs.sequential.as_ref().unwrap_or(job.design);
-    let facts =
-        inputs.accuracy.as_ref().ok_or_else(|| recomputation_error(name, "it has no contract"))?;
+    let facts = inputs
+        .accuracy
+        .as_ref()
+        .ok_or_else(|| recomputation_error(name, "the core has no contract"))?;
     let memories = CheckedMemories::new(design, read, files);
     let program = match RecomputedContract::new(name, facts)? {
         RecomputedContract::Function(formula) => {
@@ -148,9 +152,12 @@ impl CheckedMemories {
 fn field(name: &str, design: &Design, port: &str) -> Result<CField, KeyError> {
     let mut ports = design.ports.iter();
     let found = ports.find(|found| design.net(found.net).name == port);
-    found
-        .map(|found| CField::new(design, found))
-        .ok_or_else(|| recomputation_error(name, "its contract names no port"))
+    found.map(|found| CField::new(design, found)).ok_or_else(|| {
+        recomputation_error(
+            name,
+            "the contract has an operand or a result that is no port of the core",
+        )
+    })
 }
 
 /// Returns the number of nodes of a formula's tree. For example, `x * x + 1` has five: the sum, the product, `x`, `x`, and

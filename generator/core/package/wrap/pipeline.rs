@@ -36,7 +36,7 @@ pub fn modules(job: &EmitJob, pipeline: &Pipeline, files: &mut OutputFiles) -> R
     let (name, design) = (job.name(), job.design);
     ensure!(
         pipeline.stall,
-        "`{name}` cannot be held back, which interface.stream needs; set pipeline.stall = \"ready\""
+        "interface.stream needs a pipeline that can stall, and `{name}` cannot; set pipeline.stall = \"ready\""
     );
     let (operands, results) = (Transfer::sent(job)?, Transfer::received(job)?);
     let keep = job.inputs.around.keep;

@@ -199,7 +199,9 @@ fn line(job: &EmitJob, operands: &Transfer) -> Result<Option<LineStream>> {
     let Some(length) = length else {
         return Ok(None);
     };
-    let field = operands.field(length).with_context(|| format!("`{length}` is no operand"))?;
+    let field = operands
+        .field(length)
+        .with_context(|| format!("the length of the line, `{length}`, is not an operand"))?;
     Ok(Some(LineStream {
         length: field.name.clone(),
         length_low: field.low,

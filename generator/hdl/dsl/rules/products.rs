@@ -93,7 +93,7 @@ impl Checker<'_> {
         let (microinstruction, under) = (&microprogram[at], &microprogram[under]);
         let selector = match view.delay {
             0 => String::new(),
-            _ => format!("microinstruction `{}` before it ", under.name),
+            _ => format!("the preceding microinstruction `{}` ", under.name),
         };
         let message = format!(
             "microinstruction `{}` loads `{}` with the product of ({}), but {selector}selects ({})",

@@ -30,8 +30,8 @@ fn silent(design: &Design) -> Option<Diagnostic> {
     let mut raised = control.microprogram.iter().map(|it| setting_of(design, it, valid));
     raised.all(|raised| raised == Some(0)).then(|| {
         let message = format!(
-            "no microinstruction raises valid, so that nobody knows when `{}` is there: put `valid()` into the one in which \
-             it is",
+            "no microinstruction sets `valid`, so nothing tells when `{}` is ready: add `valid()` to the \
+             microinstruction in which the result is ready",
             design.net(result.net).name
         );
         Diagnostic::new(codes::VALID, message, design.rom(control.rom).location)
@@ -46,8 +46,8 @@ fn unpicked(design: &Design, picked: &HashSet<FieldId>) -> Vec<Diagnostic> {
             && !picked.contains(&FieldId(at as u32))
         {
             let message = format!(
-                "no microinstruction picks an input by `{}` (`{}`): let one `pick` what the mux passes on, or leave the mux \
-                 out",
+                "no microinstruction selects an input with `{}` (`{}`): add a `pick` to a microinstruction, \
+                 or remove the mux",
                 field.name,
                 choices.join("`, `")
             );
@@ -82,7 +82,8 @@ fn early(design: &Design) -> Vec<Diagnostic> {
             let q = design.net(design.register(register).q);
             let microinstruction = &control.microprogram[at];
             let message = format!(
-                "microinstruction `{}` raises valid and loads `{}`, which `{}` shows from the next microinstruction on: valid belongs there",
+                "microinstruction `{}` sets `valid` and loads `{}`, which `{}` shows only from the next \
+                 microinstruction on: move `valid()` to the next microinstruction",
                 microinstruction.name,
                 q.name,
                 design.net(port.net).name
@@ -178,7 +179,8 @@ fn endless(design: &Design) -> Vec<Diagnostic> {
         };
         let condition = design.net(condition);
         let message = format!(
-            "microinstruction `{}` goes back to `{}` while `{}` is 1, {why}: it never ends, or is no loop",
+            "microinstruction `{}` goes back to `{}` while `{}` is 1, {why}: the loop never ends, or is \
+             never repeated",
             microinstruction.name, control.microprogram[to].name, condition.name
         );
         found.push(

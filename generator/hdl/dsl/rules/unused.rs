@@ -54,7 +54,10 @@ fn constant(design: &Design) -> Vec<Diagnostic> {
         };
         if let Some(passed) = passed {
             let name = &design.net(*passed).name;
-            let message = format!("`{}` always passes `{name}` on: it is no mux", net.name);
+            let message = format!(
+                "mux `{}` always passes `{name}` on: use that signal in place of the mux",
+                net.name
+            );
             found.push(Diagnostic::new(codes::UNUSED, message, net.location));
         }
     }
@@ -78,7 +81,7 @@ fn unmade(design: &Design, partly_used: &HashSet<FieldId>) -> Vec<Diagnostic> {
         }
         if !unmade.is_empty() {
             let names = unmade.join("`, `");
-            let message = format!("no microinstruction selects `{names}` by `{}`", field.name);
+            let message = format!("no microinstruction selects `{names}` with `{}`", field.name);
             let location = design.net(field.net).location;
             found.push(Diagnostic::new(codes::UNUSED_CONTROL, message, location));
         }

@@ -76,7 +76,7 @@ impl LineUnroller<'_> {
             walk.iter().all(|&number| self.unknowns(state.registers[number]).is_empty())
         });
         let ([first], [other, more @ ..]) = (&first[..], &others[..]) else {
-            return Err(self.cannot(0, "has no first point and others behind it"));
+            return Err(self.cannot(0, "does not begin a line of a first point and other points"));
         };
         self.in_order(*first, &writes)?;
         let (begun, gone) = (self.edge(&any, *first), self.edge(&any, *other));
@@ -84,18 +84,27 @@ impl LineUnroller<'_> {
             [&begun, &any, &gone].map(|state| walk_registers(state, &walk));
         for &at in more {
             if walk_registers(&self.edge(&any, at), &walk) != next {
-                return Err(self.cannot(at, "walks on in another way than a point before"));
+                return Err(self.cannot(
+                    at,
+                    "goes to the next point in another way than a microinstruction before",
+                ));
             }
         }
         for at in 0..design.control.microprogram.len() {
             if !writes.contains(&at) && walk_registers(&self.edge(&any, at), &walk) != before {
-                return Err(self.cannot(at, "moves the walk between points"));
+                return Err(self.cannot(
+                    at,
+                    "changes the registers of the current point without computing a point",
+                ));
             }
         }
         // The next values of the walk may depend on the walk and on operands alone.
         for &value in &next {
             if self.unknowns(value).iter().any(|id| !before.contains(id)) {
-                return Err(self.cannot(*other, "walks on by what is not of the walk"));
+                return Err(self.cannot(
+                    *other,
+                    "computes the next point from a register that does not belong to the current point",
+                ));
             }
         }
         let mut from_first = any.clone();
@@ -120,7 +129,7 @@ impl LineUnroller<'_> {
     fn delay(&mut self, any: &State) -> Result<(usize, Vec<usize>), Diagnostic> {
         let design = self.executor.design;
         let Some(valid) = design.port(|role| role == Role::Valid).map(|port| port.net) else {
-            return Err(self.cannot(0, "is of a device without `valid`"));
+            return Err(self.cannot(0, "belongs to a device without `valid`"));
         };
         let all: Vec<usize> = (0..design.control.microprogram.len()).collect();
         for delay in 1..=MOST_DELAY {
@@ -140,13 +149,13 @@ impl LineUnroller<'_> {
                 for path in paths(design, &writes, delay) {
                     let value = self.at_end(any, &path, |clock| clock.value(valid));
                     if self.executor.unrolled.graph.constant_of(value) != Some(1) {
-                        return Err(self.cannot(path[0], "sets `valid` on some ways"));
+                        return Err(self.cannot(path[0], "sets `valid` only on some paths"));
                     }
                 }
                 return Ok((delay, writes));
             }
         }
-        Err(self.cannot(0, "begins a computation whose `valid` follows no microinstruction"))
+        Err(self.cannot(0, "begins a computation in which no microinstruction determines `valid`"))
     }
 
     /// Returns each result port with the node of its value, `clocks` clocks after the start of a path at one of the
@@ -166,11 +175,11 @@ impl LineUnroller<'_> {
                 ports.iter().map(|&port| (port, clock.value(port))).collect::<Vec<_>>()
             });
             if all.as_ref().is_some_and(|all| *all != results) {
-                return Err(self.cannot(path[0], "shows another result on another way"));
+                return Err(self.cannot(path[0], "shows different results on different paths"));
             }
             all = Some(results);
         }
-        all.ok_or_else(|| self.cannot(0, "ends before its results are shown"))
+        all.ok_or_else(|| self.cannot(0, "ends before the results are shown"))
     }
 
     /// Returns the numbers of the registers on whose earlier contents the results `shown` depend: the walk. Fails if a result
@@ -179,7 +188,9 @@ impl LineUnroller<'_> {
         let mut walk = Vec::new();
         for id in shown.iter().flat_map(|&(_, node)| self.unknowns(node)) {
             let Some(number) = any.registers.iter().position(|&register| register == id) else {
-                return Err(self.cannot(0, "shows what a memory held before"));
+                return Err(
+                    self.cannot(0, "shows a result that depends on an earlier output of a memory")
+                );
             };
             if !walk.contains(&number) {
                 walk.push(number);
@@ -201,10 +212,10 @@ impl LineUnroller<'_> {
             false => successors(design, at),
         });
         if until_a_write.into_iter().any(|at| writes.contains(&at) && at != first) {
-            return Err(self.cannot(first, "is not the first point on every way"));
+            return Err(self.cannot(first, "does not compute the first point on every path"));
         }
         if reached(successors(design, first), |at| successors(design, at)).contains(&first) {
-            return Err(self.cannot(first, "begins a line anew"));
+            return Err(self.cannot(first, "begins a second line"));
         }
         Ok(())
     }
@@ -242,8 +253,9 @@ impl LineUnroller<'_> {
     fn cannot(&self, address: usize, why: &str) -> Diagnostic {
         let microinstruction = &self.executor.design.control.microprogram[address];
         let (design, own) = (&self.executor.design.name, &microinstruction.name);
-        let message =
-            format!("the points of `{design}` are not alike: the microinstruction `{own}` {why}");
+        let message = format!(
+            "the points of `{design}` are not computed in the same way: the microinstruction `{own}` {why}"
+        );
         Diagnostic::new(codes::UNROLL, message, microinstruction.location)
     }
 }

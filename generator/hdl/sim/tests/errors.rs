@@ -43,7 +43,7 @@ fn widths_and_signs() {
     refuses(&["`sum` (u9.0)", "`a` (u8.0)", "the widths must be equal"], |b, a| {
         b.op("sum", Format::unsigned(9, 0), Op::Not(a))
     });
-    refuses(&["`part`", "the bits are not all there"], |b, a| {
+    refuses(&["`part`", "the slice must lie within the operand"], |b, a| {
         b.op("part", BYTE, Op::Slice { of: a, low: 1 })
     });
     refuses(&["`both`", "add up"], |b, a| b.op("both", BYTE, Op::Concat(vec![a, a])));
@@ -54,7 +54,7 @@ fn widths_and_signs() {
     refuses(&["`a`", "65 bits"], |b, a| {
         b.design.nets[a.index()].format = Format::unsigned(60, 5);
     });
-    refuses(&["`empty`", "two inputs or more"], |b, _| {
+    refuses(&["`empty`", "at least two inputs"], |b, _| {
         let select = b.rst_n;
         b.op("empty", BYTE, Op::Mux { select, inputs: vec![] });
     });
@@ -69,7 +69,7 @@ fn references() {
     refuses(&["net 99"], |b, _| b.op("far", BYTE, Op::Not(NetId(99))));
     refuses(&["register 7"], |b, _| b.net("far", BYTE, Driver::Register(RegId(7))));
     refuses(&["ROM 7"], |b, _| b.net("far", BYTE, Driver::Rom(RomId(7))));
-    refuses(&["`q`", "no port is the reset"], |b, a| {
+    refuses(&["`q`", "has no reset port"], |b, a| {
         b.design.ports[0].role = Role::Strobe;
         let q = b.register("q", BYTE);
         b.of(q).data = Some(a);

@@ -54,7 +54,8 @@ impl fmt::Display for Error {
                 "{name} has no direction: at least one of its three numbers must differ from 0"
             ),
             Self::OppositeHalves => f.write_str(
-                "the half vectors are opposite, and no way between them is the shortest; set up the line in two parts",
+                "the half vectors are opposite, so no path between them is the shortest; set up the line in \
+                 two parts",
             ),
             Self::NoSuchAngles => f.write_str(
                 "no directions have these angles: theta_1, theta_2 and gamma are the sides of a spherical triangle, none \

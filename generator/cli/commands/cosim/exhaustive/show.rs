@@ -34,7 +34,7 @@ pub fn announce(one: &Loaded, job: &Job<'_>, state: &ShardState) {
     let left = job.remaining(state);
     let all = job.remaining(&ShardState::new("", Shard::WHOLE));
     if left != all {
-        say!("  shard {}: {} evaluations to do here", state.shard, text::grouped(left));
+        say!("  shard {}: {} evaluations to do", state.shard, text::grouped(left));
     }
 }
 
@@ -111,7 +111,7 @@ fn print(one: &Loaded, job: &Job<'_>, proof: &Proof, state: &ShardState) {
     let verdict = match state.shard == Shard::WHOLE {
         true => proof.verdict(one.core.contract.as_ref(), job.f.sweep()).to_owned(),
         false if proof.failures.is_empty() => {
-            format!("holds so far; `{Program} merge` joins the shards")
+            format!("holds for this shard; `{Program} merge` joins the shards")
         }
         false => "FAILS".to_owned(),
     };
