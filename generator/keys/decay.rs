@@ -34,6 +34,12 @@ glint_config::keys! {
     }
 }
 
+/// The names of the keys for the fraction bits and the degree of the table of the ratio.
+const RATIO: [&str; 2] = ["ratio.fraction", "ratio.degree"];
+
+/// The names of the keys for the fraction bits and the degree of the table of 2^−x.
+const EXPONENTIAL: [&str; 2] = ["exponential.fraction", "exponential.degree"];
+
 /// Makes the key `name`, the degree of the polynomials of a table. Its default `auto` chooses the cheapest degree.
 fn degree(name: &'static str) -> Key {
     Key::choice(
@@ -135,7 +141,7 @@ impl Keys {
         let last = (1 << bits) - 1;
         let formula = decay.over_distance(&middle);
         let of = (bits as i32 - fraction as i32, fraction as i32);
-        table(&formula, (last, of), self.ratio_fraction, &self.ratio_degree, "ratio.fraction")
+        table(&formula, (last, of), self.ratio_fraction, &self.ratio_degree, RATIO)
     }
 
     /// Returns the table of 2^−x, where x is the fraction of n·decay. The table's value is the power at the middle of the
@@ -146,22 +152,23 @@ impl Keys {
     pub fn power(&self) -> Result<Arc<Piecewise>, Refusal> {
         let formula = format!("exp2(-x - 1/2^{})", self.argument + 1);
         let (last, of) = ((1 << self.argument) - 1, (0, self.argument as i32));
-        table(&formula, (last, of), self.fraction, &self.degree, "exponential.fraction")
+        table(&formula, (last, of), self.fraction, &self.degree, EXPONENTIAL)
     }
 }
 
 /// Returns the approximation of the formula `formula` for the raw operands from 0 to `last`. The operand has `int` integer bits
 /// and `frac` fraction bits, and the result has `fraction` fraction bits. Every error is below one unit of the result's last
-/// bit. `degree` is the value of the key for the degree.
+/// bit. `degree` is the value of the key for the degree. The last parameter has the names of the keys for the fraction bits and
+/// for the degree.
 ///
 /// # Errors
-/// Fails if no approximation can be found. The error has the key `key`.
+/// Fails if no approximation can be found. The error has the key for the fraction bits, and its remedy names both keys.
 fn table(
     formula: &str,
     (last, (int, frac)): (i64, (i32, i32)),
     fraction: u32,
     degree: &str,
-    key: &'static str,
+    [key, degree_key]: [&'static str; 2],
 ) -> Result<Arc<Piecewise>, Refusal> {
     let function = TargetFunction {
         curve: Curve::Formula(parse(formula).expect("a formula of ours")),
@@ -172,7 +179,11 @@ fn table(
         error: 1.0,
     };
     let wish = Wish { degree: degree.parse().ok(), ..Wish::default() };
-    find(&function, wish).map_err(|refusal| Refusal { key, place: None, ..refusal })
+    find(&function, wish).map_err(|refusal| {
+        // The remedy of the search names keys of the device `function`.
+        let remedy = format!("set a smaller {key}, or set {degree_key} to \"auto\"");
+        Refusal { key, place: None, remedy, ..refusal }
+    })
 }
 
 /// Returns the schema of `blinn` or `gauss`: the configuration keys, and the check `check` of their combinations. The default

@@ -179,7 +179,10 @@ fn files_name_the_configuration_without_its_path() {
 fn a_name_with_control_characters_is_refused() {
     let dir = Workspace::with("a\nendmodule.toml", COSINE_POWER);
     let run = dir.glint(["generate", "a\nendmodule.toml"]);
-    run.refused(1, &["\"a\\nendmodule.toml\" has control characters, and Glint", "rename it"]);
+    run.refused(
+        1,
+        &["\"a\\nendmodule.toml\" has control characters, and Glint", "rename the file"],
+    );
     assert_eq!(dir.files().len(), 1);
 }
 

@@ -132,8 +132,8 @@ fn held_products_settle_under_their_selection() {
     };
     found(true).are([]);
     found(false)
-        .are(["microinstruction `load` loads `y` with the product of (b), but microinstruction \
-             `settle` before it selects (a)"]);
+        .are(["microinstruction `load` loads `y` with the product of (b), but the preceding \
+             microinstruction `settle` selects (a)"]);
 }
 
 #[test]
