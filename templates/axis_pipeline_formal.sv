@@ -1,8 +1,8 @@
 // ${ name }$_axis_formal: formal properties of ${ name }$_axis
 //
 // For formal tools only. All inputs are arbitrary, also those from the sender. A stub with the
-// handshake of the core replaces the core: points leave its ${ stages }$ stages in the order in which they
-// came, with arbitrary results. The core has this handshake by the proof of
+// handshake of the core replaces the core: points leave its ${ stages }$ stages in the order in which
+// they came, with arbitrary results. The core has this handshake by the proof of
 //   ${ name }$_formal.sv
 // To prove the properties, run in a directory with the files of both folders:
 //   $ yosys -q ${ name }$_axis_formal.ys

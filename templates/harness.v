@@ -1,4 +1,4 @@
-// ${ top }$: ${ name }$ between shift registers, so that the whole design needs only four pins
+// ${ top }$: ${ name }$ between shift registers, with only four pins
 `default_nettype none
 
 module ${ top }$ (

@@ -1,4 +1,5 @@
--- ${ name }$ for designs in VHDL-2008. The tool must read the Verilog of the core as well.
+-- ${ name }$ for designs in VHDL-2008.
+-- The tool must read the Verilog of the core as well.
 --
 -- ${ name }$_components
 --   declares each module as a component.

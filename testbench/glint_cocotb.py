@@ -1,9 +1,9 @@
 """Drives a core that Glint generated from Python. All facts come from the manifest of the core.
 
 `Manifest` reads rtl_out/<name>/<name>.json. `Core` drives a core with a microprogram, and
-`Pipeline` drives a pipeline. Both check the handshake in every clock. `Stream` and `Registers` drive the cores
-with these interfaces. The tests below apply to every core of their kind. A bench, such as
-testbench/<name>/test_<name>.py, imports the tests, adds its own, and calls `run`.
+`Pipeline` drives a pipeline. Both check the handshake in every clock. `Stream` and `Registers`
+drive the cores with these interfaces. The tests below apply to every core of their kind. A bench,
+such as testbench/<name>/test_<name>.py, imports the tests, adds its own, and calls `run`.
 
 Inputs change after the falling edge of the clock. Outputs are read at the rising edge, with their
 values before the edge. The module needs cocotb 2.1 and Icarus Verilog; cocotb 2.1 refuses Verilator
@@ -169,7 +169,7 @@ class Manifest:
         return drawn
 
     def _anywhere(self, source: random.Random) -> Raw:
-        """Draws each operand independently. About half of them are near 0 or an end of the domain."""
+        """Draws each operand independently, about half of them near 0 or an end of the domain."""
         operands = {}
         for name, domain in self.domain.items():
             low, high = domain["low"], domain["high"]
@@ -939,4 +939,4 @@ def run(name: str, wrapper: str = "") -> None:
     sys.exit(1 if failed or not tests else 0)
 
 
-# sha256 3eeb6a7f8d674bc4edf3413af108559d8c78d20c47531cf95d6c020a17ac4408
+# sha256 f4eec05a96a3d3bb7d86408f227f4f44edcc36df588da5cc10da8d4c2bd8bc85

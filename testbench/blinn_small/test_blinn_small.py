@@ -1,6 +1,6 @@
 """blinn_small: bench in Python.
 
-The bench needs cocotb 2.1 and Icarus Verilog. Run it in the directory with rtl_out/ and testbench/:
+The bench needs cocotb 2.1 and Icarus Verilog. Run in the directory of rtl_out/ and testbench/:
 
     $ python testbench/blinn_small/test_blinn_small.py
 

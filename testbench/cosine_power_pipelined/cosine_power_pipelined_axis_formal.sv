@@ -1,8 +1,8 @@
 // cosine_power_pipelined_axis_formal: formal properties of cosine_power_pipelined_axis
 //
 // For formal tools only. All inputs are arbitrary, also those from the sender. A stub with the
-// handshake of the core replaces the core: points leave its 10 stages in the order in which they
-// came, with arbitrary results. The core has this handshake by the proof of
+// handshake of the core replaces the core: points leave its 10 stages in the order in which
+// they came, with arbitrary results. The core has this handshake by the proof of
 //   cosine_power_pipelined_formal.sv
 // To prove the properties, run in a directory with the files of both folders:
 //   $ yosys -q cosine_power_pipelined_axis_formal.ys

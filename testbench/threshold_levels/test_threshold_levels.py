@@ -1,6 +1,6 @@
 """threshold_levels: bench in Python.
 
-The bench needs cocotb 2.1 and Icarus Verilog. Run it in the directory with rtl_out/ and testbench/:
+The bench needs cocotb 2.1 and Icarus Verilog. Run in the directory of rtl_out/ and testbench/:
 
     $ python testbench/threshold_levels/test_threshold_levels.py
 
