@@ -17,7 +17,7 @@ use crate::common::sample::sampled;
 use glint::config::{Config, parse};
 use glint::core::Core;
 use glint::hdl::netlist::{Design, Driver, Net, NetId, Op, Partition};
-use glint::pages::account::blocks::{Block, BlockKind, Blocks};
+use glint::pages::account::blocks::{BlockKind, Blocks};
 use glint::registry::Registry;
 
 #[test]
@@ -79,10 +79,7 @@ fn check(path: &str, design: &Design) {
         let inside = found.binary_search(&id).is_ok();
         assert!(inside || !hardware && operator(design, id).is_none(), "{path}: `{}`", net.name);
     }
-    let is_handshake_block = |block: &Block| {
-        !block.cells.is_empty() && block.cells.iter().all(|&cell| is_handshake(cell))
-    };
-    for block in all.iter().filter(|&block| !is_handshake_block(block)) {
+    for block in &all {
         let operators = block.cells.iter().filter_map(|&it| operator(design, it));
         let operators: Vec<&Op> = operators.collect();
         let wanted = match (&operators[..], block.kind) {

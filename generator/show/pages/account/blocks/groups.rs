@@ -227,7 +227,7 @@ impl<'a> Groups<'a> {
             let at = id.index();
             if sources[at].is_none() {
                 let net = self.design.net(id);
-                let control = net.partition == Partition::Control;
+                let control = net.partition == Partition::Control || counts_slots(self.design, id);
                 if self.cell[at] {
                     sources[at] = Some(self.head[self.group[at]].into_iter().collect());
                 } else if control || matches!(net.driver, Driver::Input) {
@@ -425,10 +425,18 @@ impl<'a> Groups<'a> {
     }
 }
 
+/// Returns whether a net is the slot counter of a pipeline, or an operator of the counter or of its comparisons. These nets
+/// belong to the handshake, which is not drawn.
+fn counts_slots(design: &Design, id: NetId) -> bool {
+    let Some(pipeline) = &design.pipeline else { return false };
+    let is_operator = operator(&design.net(id).driver).is_some();
+    pipeline.slot == Some(id) || is_operator && pipeline.handshake.contains(&id)
+}
+
 /// Returns whether a net of the datapath is a register, a ROM or an operator, or is shown because the source numbers or the
-/// description documents it. A register of a pipeline is not, because it only delays a value.
+/// description documents it. A register of a pipeline is not, because it only delays a value. Nor is the slot counter.
 fn is_cell(design: &Design, id: NetId, net: &Net, figure: bool) -> bool {
-    if net.partition != Partition::Datapath {
+    if net.partition != Partition::Datapath || counts_slots(design, id) {
         return false;
     }
     let is_told = net.block.is_some() || !figure && net.named && !net.doc.is_empty();
