@@ -9,8 +9,8 @@
 //! cargo run --release --example smoothstep -- certify s.toml
 //! ```
 //!
-//! If Gappa finds a bound, the printed bound is proved, and the author may state it as a `Term`. Without a stated bound, the commands that compare
-//! errors with the bound say that no bound is stated, and `strict = true` refuses the configuration.
+//! If Gappa finds a bound, the printed bound is proved, and the author may state it as a `Term`. Without a stated bound, the
+//! commands that compare errors with the bound say that no bound is stated, and `strict = true` refuses the configuration.
 
 use std::process::ExitCode;
 
