@@ -6,7 +6,8 @@
 //! ```
 //!
 //! For each device of the catalogue it measures the default configuration and, if `configs/` has one, the pipeline. The names of
-//! cores, such as `rough` or `rough_pipelined`, limit the measurement to these cores. It measures million clocks per second and thread of
+//! cores, such as `rough` or `rough_pipelined`, limit the measurement to these cores. It measures million clocks per second and
+//! thread of
 //! - *design*: the built-in simulator alone, with [`LANES`] streams side by side;
 //! - *golden*: the simulator with the golden model, with architectural registers and outputs compared on every clock
 //!   (`Lockstep::replay`);
