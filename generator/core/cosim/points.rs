@@ -4,10 +4,11 @@
 //! drawn operands test little. Three of four points (sets of operands) are therefore drawn by the value of the formula for `f`:
 //!
 //! 1. [`PointSource`] draws operands in the domain, and a target value for `f`. Half of the targets are drawn evenly, and half
-//! with an evenly drawn logarithm. 2. [`PointSource`] moves the operands along a straight line toward the operands with the
-//! largest `f`, until the formula has about the target value. 3. For one in eight of these points, [`PointSource`] continues to
-//! the two neighbouring operand values between which the formula crosses the target, or leaves 0. One of the two values becomes
-//! the operand.
+//!    with an evenly drawn logarithm.
+//! 2. [`PointSource`] moves the operands along a straight line toward the operands with the largest `f`, until the formula has
+//!    about the target value.
+//! 3. For one in eight of these points, [`PointSource`] continues to the two neighbouring operand values between which the
+//!    formula crosses the target, or leaves 0. One of the two values becomes the operand.
 //!
 //! The operands of the other points are often at an end of the domain or near it, or are drawn evenly, or have arbitrary bit
 //! patterns.
