@@ -5,10 +5,11 @@
 //! cargo bench -p glint-benches --bench paired [-- CORE ...]
 //! ```
 //!
-//! For the default configuration and the pipeline of each device in `configs/`, or for the named cores (such as `rough` or
-//! `rough_pipelined`), it measures million clocks per second and thread of
+//! For each device of the catalogue it measures the default configuration and, if `configs/` has one, the pipeline. The names of
+//! cores, such as `rough` or `rough_pipelined`, limit the measurement to these cores. It measures million clocks per second and
+//! thread of
 //! - *design*: the built-in simulator alone, with [`LANES`] streams side by side;
-//! - *golden*: the simulator with the golden model, with every register and output compared on every clock
+//! - *golden*: the simulator with the golden model, with architectural registers and outputs compared on every clock
 //!   (`Lockstep::replay`);
 //! - *cosim*: `Lockstep::run`, as `glint cosim` uses it, which also draws the stimulus and measures every result against the
 //!   formula;

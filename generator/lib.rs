@@ -4,8 +4,8 @@
 //!
 //! - its keys ([`config::Schema`]): the settings in its configuration files, such as the widths of operands,
 //! - its description ([`dsl`]): a Rust function that builds the hardware,
-//! - its golden model ([`golden::Model`]), which predicts every register and output in every clock,
-//! - its contract ([`golden::Contract`]): the exact formula of each output, and a bound on the error.
+//! - its golden model ([`golden::Model`]), which predicts the architectural registers and the outputs in every clock,
+//! - its contract ([`golden::Contract`]): the exact formula of each output, and a bound on the error if the author states one.
 //!
 //! A registry ([`registry::Registry`]) is a list of devices, from the catalogue or your own. `cli::run` runs the whole
 //! command line of Glint for the devices of a registry.

@@ -2,9 +2,9 @@
 //! `cargo run --release --manifest-path benches/papers/Cargo.toml -- DIR`.
 //!
 //! The program writes two files into the new directory `DIR`: `report.html`, a page that needs no network, and `report.json`
-//! with all of its numbers. The files contain error curves of every device, the plots that the seeds 000 to 002 describe, and
-//! their claims, each with a verdict. With Yosys on PATH, the program synthesises W and Schlick's function. `--benchmark` also
-//! measures their speed in software and writes `benchmark.json`.
+//! with all of its numbers. The files contain error curves of the ten highlight devices, the plots that the seeds 000 to 002
+//! describe, and their claims, each with a verdict. With Yosys on PATH, the program synthesises W and Schlick's function.
+//! `--benchmark` also measures their speed in software and writes `benchmark.json`.
 
 mod evidence;
 

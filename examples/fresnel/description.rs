@@ -1,7 +1,7 @@
 //! Describes the hardware of the device: blocks, wires and the microprogram.
 //!
-//! Every signal knows its format and the interval of its values, from which the DSL computes the widths. Only `narrow` drops
-//! bits; its arguments state the rounding and the overflow.
+//! Every signal knows its format and the interval of its values, from which the DSL computes the widths. In this description
+//! only `narrow` and the outputs drop bits; their arguments state the rounding, and those of `narrow` the overflow.
 
 use super::Keys;
 use glint::config::Config;

@@ -1,7 +1,7 @@
 //! Defines the golden model of the device and its accuracy contract.
 //!
 //! The golden model computes the device's values in integers, from the formula and not from the description. `cosim` compares
-//! the two on every clock, so a mistake in either shows as a difference.
+//! the two on every clock, so a mistake in one of them shows as a difference if a random point reaches it.
 
 use std::sync::Arc;
 

@@ -1,7 +1,7 @@
 //! Defines a device whose author has proved no bound on its error: smoothstep, 3·x² − 2·x³.
 //!
 //! An accuracy contract states how far an output may be from its formula. If nobody has worked that out, the author leaves out
-//! `terms`, and `certify` finds the bound. The command translates the netlist and the microprogram to real numbers with
+//! `terms`, and `certify` searches for a bound. The command translates the netlist and the microprogram to real numbers with
 //! roundings, and Gappa proves how far the results are from the formula.
 //!
 //! ```sh
@@ -9,8 +9,8 @@
 //! cargo run --release --example smoothstep -- certify s.toml
 //! ```
 //!
-//! The printed bound is proved, and the author may state it as a `Term`. Without a stated bound, the commands that compare
-//! errors with the bound say that no bound is stated, and `strict = true` refuses the configuration.
+//! If Gappa finds a bound, the printed bound is proved, and the author may state it as a `Term`. Without a stated bound, the
+//! commands that compare errors with the bound say that no bound is stated, and `strict = true` refuses the configuration.
 
 use std::process::ExitCode;
 

@@ -4,7 +4,7 @@
 //! table has the polynomial's coefficients for each segment, and the hardware evaluates the polynomial in integers by Horner's
 //! rule. [`find`] chooses the degree, the segments, the coefficients and the bit widths. [`Piecewise::prove`] then compares the
 //! result of every operand with the formula or the curve. For more than 2^[`MOST_BITS`] operands of a formula, the proof uses
-//! intervals; so many operands of a curve through samples are an error.
+//! intervals; so many operands are an error with samples or with a range reduction.
 
 mod minimax;
 mod reduction;

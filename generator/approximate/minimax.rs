@@ -1,5 +1,6 @@
 //! Fits polynomials to points so that the largest distance is as small as possible, by exchanging reference points (the Remez
-//! algorithm). For example, the best constant for x² from −1 to 1 is 1/2, at a distance of at most 1/2.
+//! algorithm). After 30 exchanges the fit ends with the best polynomial so far. For example, the best constant for x² from −1
+//! to 1 is 1/2, at a distance of at most 1/2.
 
 /// The largest number of coefficients of a polynomial: the degree is at most 3.
 const MOST: usize = 4;

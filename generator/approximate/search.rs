@@ -1,5 +1,5 @@
-//! Searches for the cheapest piecewise polynomial that approximates a function. The search tries degrees, segments and bit
-//! widths, and finds the coefficients for each combination. Costs are in look-up tables with four inputs.
+//! Searches for the cheapest piecewise polynomial that approximates a function. The search tries some combinations of degree,
+//! segments and bit widths, so a cheaper polynomial may exist. Costs are in look-up tables with four inputs.
 
 use super::reduction::KEY;
 use super::seen::AllowedResults;

@@ -1,10 +1,11 @@
 //! Proves a bound on the error of a piecewise polynomial by intervals, for domains with more than 2^26 operands.
 //!
-//! The proof treats the offset of an operand in its segment as a real number t, so that a word of the table is a polynomial P(t).
-//! The hardware drops bits, so its result differs from P(t); the proof bounds this difference for a whole segment. Within an
-//! interval, the distance between the function and P is at most the distance in the middle plus the largest derivative times half
-//! of the length. If this bound is too large, or if the function may have no derivative, the proof halves the interval; at most
-//! four operands are computed one by one.
+//! The proof treats the offset of an operand in its segment as a real number t, so that a word of the table is a polynomial
+//! P(t). The hardware drops bits, so its result differs from P(t); the proof bounds this difference for a whole segment. Within
+//! an interval, the distance between the function and P is at most the distance in the middle plus half of the length times the
+//! largest slope of their difference. If this bound is too large, or if the function may have no derivative, the proof halves
+//! the interval. An interval with at most four operands is computed operand by operand. A proof that needs more than 2^20
+//! intervals fails.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 

@@ -1,4 +1,4 @@
-//! Checks that a name is a legal Verilog identifier and no keyword.
+//! Checks that a name is a legal Verilog identifier and no keyword of SystemVerilog.
 
 use crate::keywords::is_keyword;
 

@@ -1,4 +1,5 @@
-//! The basis of all other crates: fixed-point formats, intervals, diagnostics, key errors, FPGA targets, names, text and input.
+//! The basis of most other crates: among other things, fixed-point formats, intervals, diagnostics, key errors, FPGA targets,
+//! names, text and input.
 
 pub mod codes;
 pub mod cone;

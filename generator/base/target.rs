@@ -1,5 +1,6 @@
 //! Data of the FPGA families that Glint supports: delays, multipliers, commands of Yosys, chips, and weights for estimates of
-//! cost. Each family has a file of its own.
+//! cost. Each family has a file of its own, except the two families of Gowin, which share one. The file `generic.rs` has the
+//! delays of a device that does not exist.
 //!
 //! A delay is in nanoseconds and includes the wire to the next cell. The head of a family's file says which of its delays were
 //! measured, and how. The script `benches/pipeline/delays.py` measures delays.

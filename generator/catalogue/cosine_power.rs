@@ -3,9 +3,9 @@
 //! c = cos γ, where γ is the angle between the surface normal and the half vector, and n is the specular exponent. The
 //! configuration chooses m = 2, 4, 8 or 16. f is the reflectance, the factor by which the device multiplies colours. The source
 //! is the paper "A model for reproducing the specular component of colour in computer graphics" (in Ukrainian; Glint calls it
-//! seed 002), which gives no circuit. This circuit has one multiplier and one accumulator, and computes the base as 1 − n/m·(1 −
-//! c). The division by m is a shift by wiring. The product saturates just below 1, so that a negative base becomes 0. For c ≤ 0
-//! the result is 0 too.
+//! seed 002), which gives no circuit. The sequential core computes f with one multiplier and one accumulator, and the base as 1
+//! − n/m·(1 − c). The division by m is a shift by wiring. The product saturates just below 1, so that a negative base becomes
+//! 0. For c ≤ 0 the result is 0 too.
 
 use glint_base::fixed::{Format, Overflow};
 use glint_config::Config;

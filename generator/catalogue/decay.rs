@@ -3,9 +3,10 @@
 //! c = cos γ, where γ is the angle between the surface normal and the half vector; n is the specular exponent; f is the
 //! reflectance, the factor by which the devices multiply colours. The decay depends on c alone: −log₂ c in `blinn`, γ²/(2 ln 2)
 //! in `gauss`. `gauss` computes the decay as the distance 1 − c times a smooth ratio. `blinn` first scales c by 2^octave to a
-//! mantissa m from 1/2 to 1, and computes (1 − m) times a ratio plus the octave. The relative error of the decay therefore stays
-//! small near c = 1, where n multiplies the error. Piecewise polynomials on one multiplier give the ratio and 2^−x. Another
-//! multiplier computes distance times ratio, and n times decay. The integer part of n·decay becomes a shift. f is 0 if c ≤ 0.
+//! mantissa m from 1/2 to 1, and computes (1 − m) times a ratio plus the octave. The relative error of the decay therefore
+//! stays small near c = 1, where n multiplies the error. In the sequential core, piecewise polynomials on one multiplier give
+//! the ratio and 2^−x. Another multiplier computes distance times ratio, and n times decay. The integer part of n·decay becomes
+//! a shift. f is 0 if c ≤ 0.
 
 use glint_base::fixed::{Format, Overflow, Rounding};
 use glint_config::Config;

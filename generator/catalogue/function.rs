@@ -1,8 +1,8 @@
 //! The hardware description of the device `function`, which computes y = g(x) for one operand x.
 //!
 //! A configuration states g as a formula, such as `sqrt(x)`, or as samples of a curve. A table has the coefficients of a
-//! polynomial for each segment of x, and Horner's rule evaluates the polynomial with one multiplier. The hardware is built from
-//! a plan with this one function, like the hardware of `expression`.
+//! polynomial for each segment of x, and Horner's rule evaluates the polynomial, in the sequential core with one multiplier.
+//! The hardware is built from a plan with this one function, like the hardware of `expression`.
 
 use glint_approximate::Piecewise;
 use glint_base::text;

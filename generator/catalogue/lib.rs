@@ -1,5 +1,6 @@
-//! The catalogue of devices: one file for each device, with its hardware description. A description builds the netlist of the
-//! device with [`glint_rtl::dsl`]. The keys, the golden model and the accuracy contract of the device are in other crates.
+//! The catalogue of devices: one file for each device, with its hardware description, and files that several devices share. A
+//! description builds the netlist of the device with [`glint_rtl::dsl`]. The keys, the golden model and the accuracy contract
+//! of the device are in other crates.
 
 pub mod blinn;
 mod common;

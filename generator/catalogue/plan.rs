@@ -1,4 +1,4 @@
-//! Builds the hardware of a plan: logic between registers for each operation, and a microprogram.
+//! Builds the hardware of a plan: registers, the logic of the operations between them, and a microprogram.
 //!
 //! The devices `function` and `expression` use this hardware. A plan is a list of fixed-point operations ([`glint_plan`]). All
 //! products of a plan share one multiplier, and each product has its own microinstruction. If the device is a pipeline, the

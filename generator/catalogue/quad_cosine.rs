@@ -1,17 +1,17 @@
 //! The hardware description of the device `quad-cosine`, which computes f = cosᵏ(√(n/k)·δ) for the points of a scan line.
 //!
 //! δ is the angle at a point of the line; n is the specular exponent; f is the reflectance, the factor by which the device
-//! multiplies an amplitude. Decoder 10 chooses k from n: 1 for n = 1, 2 for n = 2, 4 for n = 3 to 6, and 16 for all other n. f is
-//! 0 if δ does not lie from −90° (included) to 90°, or if √(n/k)·|δ| is 90° or more. The source is a patent that claims this
+//! multiplies an amplitude. Decoder 10 chooses k from n: 1 for n = 1, 2 for n = 2, 4 for n = 3 to 6, and 16 for all other n. f
+//! is 0 if δ does not lie from −90° (included) to 90°, or if √(n/k)·|δ| is 90° or more. The source is a patent that claims this
 //! device; Glint calls it seed 000. The numbers of blocks and outputs are the numbers in the patent's figure.
 //!
-//! Block 14 is the control unit. The patent builds the control unit from triggers (flip-flops). Glint replaces the triggers by a
-//! microprogram with the same order of events.
+//! Block 14 is the control unit. The patent builds the control unit from triggers (flip-flops). Glint replaces the triggers by
+//! a microprogram with the same order of events.
 //!
 //! Output 37 (`write_angle`) writes the angle of a point into register 8. The output `valid` is a copy of output 37, delayed
 //! until the result of the point is ready. With the default key `line.stages` = 2 the delay is two clocks: one for register 8,
 //! and one for ROM 12, which is synchronous like ROM 9. With `line.stages` = 7 five more registers lie between register 8 and
-//! the output, and the delay is seven clocks.
+//! the output, and the delay is seven clocks. Registers behind the outputs (`output.registered`) add another clock.
 
 use glint_base::fixed::Format;
 use glint_config::Config;

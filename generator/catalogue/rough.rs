@@ -1,12 +1,13 @@
 //! The hardware description of the device `rough`, which computes f = (n/2·(cos(γ ± dγ) − 1) + 1)², the highlight of a rough
 //! surface.
 //!
-//! γ is the angle between the surface normal and the half vector, dγ is the deviation of the normal on a rough surface, and n is
-//! the specular exponent. f is the reflectance, the factor by which the device multiplies colours. The source is the patent UA
-//! 60139 (Glint calls it seed 001), and block numbers are the numbers in its figure. Multiplier 10 computes four products one
-//! after the other, and the select lines V1 and V2 choose its operands. The microprogram equals table 1 of the patent, word by
-//! word. Only with one multiplier for all colours, or with output registers, it has additional microinstructions. With the
-//! default key `arithmetic` = `"exact"`, f is 0 for cos γ ≤ 0.
+//! γ is the angle between the surface normal and the half vector, dγ is the deviation of the normal on a rough surface, and n
+//! is the specular exponent. f is the reflectance, the factor by which the device multiplies colours. The source is the patent
+//! UA 60139 (Glint calls it seed 001), and block numbers are the numbers in its figure. Multiplier 10 computes four products
+//! one after the other, and the select lines V1 and V2 choose its operands. The microprogram equals table 1 of the patent, word
+//! by word. Only with one multiplier for all colours, or with output registers, it has additional microinstructions. With the
+//! default key `arithmetic` = `"exact"`, f is 0 for cos γ ≤ 0. With the default key `clamp` = true, f is 0 too where n/2·(cos(γ
+//! ± dγ) − 1) + 1 is negative.
 
 mod sine;
 

@@ -1,11 +1,11 @@
 //! The hardware description of the device `schlick`, which computes f = c / (n − n·c + c).
 //!
 //! c = cos γ, where γ is the angle between the surface normal and the half vector; n is the specular exponent; f is the
-//! reflectance, the factor by which the device multiplies colours. The source is the paper "A model for reproducing the specular
-//! component of colour in computer graphics" (in Ukrainian; Glint calls it seed 002). The paper says that the division makes this
-//! function of Schlick hard to build, and gives no circuit. This circuit has one multiplier for the divisor, n·(1 − c) + c, and a
-//! divider that computes one bit of the quotient a clock. For c ≤ 0 the result is 0, for n = 0 too; a quotient of 1.0 becomes the
-//! largest value below 1.
+//! reflectance, the factor by which the device multiplies colours. The source is the paper "A model for reproducing the
+//! specular component of colour in computer graphics" (in Ukrainian; Glint calls it seed 002). The paper says that the division
+//! makes this function of Schlick hard to build, and gives no circuit. The sequential core has one multiplier for the divisor,
+//! n·(1 − c) + c, and a divider that computes one bit of the quotient a clock. For c ≤ 0 the result is 0, for n = 0 too; a
+//! quotient of 1.0 becomes the largest value below 1.
 
 use glint_base::fixed::{Format, Overflow, Rounding};
 use glint_config::Config;

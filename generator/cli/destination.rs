@@ -1,4 +1,4 @@
-//! Writes a single file completely or not at all.
+//! Writes a single file completely or not at all. Only a pipe or a device is written directly.
 //!
 //! A command opens the destination before it starts the work, so that a path that cannot be written is reported early. Missing
 //! directories above the file are created, and removed again if the file is not written.

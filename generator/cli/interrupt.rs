@@ -1,5 +1,5 @@
 //! Ends the program on Ctrl-C and on other signals that ask a process to end. The module ends the child processes and deletes
-//! the temporary files.
+//! the temporary files. On a system without such signals, it does nothing.
 //!
 //! A command can delay the end until it has saved its work. A second signal then ends the program at once.
 

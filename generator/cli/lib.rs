@@ -1,5 +1,5 @@
-//! Parses the command line and runs the commands. Only this crate prints, and only this crate returns the exit code of the
-//! process.
+//! Parses the command line and runs the commands. Of the crates in `generator/`, only this one prints and decides the exit code
+//! of the process.
 
 mod choice;
 mod commands;

@@ -1,9 +1,9 @@
 //! Adjusts the defaults of keys that the user left out.
 //!
-//! If the user's values and a default are invalid together, the default moves to the nearest valid value. For example,
-//! `exponent.bits = 8` lowers the default of `domain.exponent_max` from 1000 to 255. Only integers and lists of integers are
-//! adjusted. Keys of all other types keep their defaults, and so do keys with a [`Key::drawn`] range and the keys that every
-//! device shares.
+//! If the user's values and a default are invalid together, the default moves to the value with which the fewest conditions
+//! fail, and of several such values to the nearest. For example, `exponent.bits = 8` lowers the default of
+//! `domain.exponent_max` from 1000 to 255. Only integers and lists of integers are adjusted. Keys of all other types keep their
+//! defaults, and so do keys with a [`Key::drawn`] range and the keys that every device shares.
 
 use std::collections::BTreeSet;
 

@@ -1,9 +1,9 @@
 //! Reads configurations, which are TOML files with the choices for one device, such as the width of an operand.
 //!
 //! A device declares its keys as a [`Schema`]; this crate knows no device. [`read()`] and [`parse()`] turn a file into a
-//! [`Config`], whose values need no further checks, or into [`Problems`], which list the mistakes of the file, each with its
-//! location and a remedy. [`brief`] and [`commented`] write files from which a user can start, and [`sample()`] draws random
-//! valid configurations for tests.
+//! [`Config`], whose values need no further checks, or into [`Problems`], which list the mistakes of the file, each with a
+//! remedy, and with its location if the mistake has one. [`brief`] and [`commented`] write files from which a user can start,
+//! and [`sample()`] draws random valid configurations for tests.
 
 mod audit;
 mod follow;

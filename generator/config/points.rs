@@ -1,4 +1,5 @@
-//! Reads samples, which are measured points of a curve, from a CSV file that a configuration of the device `function` names.
+//! Reads samples, which are measured points of a curve, from a text file, such as a CSV file, that a configuration of the
+//! device `function` names.
 
 use std::path::Path;
 use std::{fs, io};

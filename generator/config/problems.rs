@@ -1,4 +1,5 @@
-//! Collects all mistakes of a configuration file, each with its location and a remedy, so that a user can correct them at once.
+//! Collects the mistakes of a configuration file, each with a remedy, and with its location if the mistake has one. A missing
+//! key has none. The list has at most 200 mistakes; further mistakes are only counted.
 
 use std::collections::BTreeMap;
 use std::fmt;

@@ -1,9 +1,9 @@
-//! Declares the configuration keys that every device has, including devices that a user adds. These keys choose the architecture
-//! of the hardware, its interface and the generated files, not the function that the hardware computes. For example,
-//! `architecture = "pipelined"` asks for a pipeline.
+//! Declares the configuration keys that every device has, including devices that a user adds, except `device`, `name` and
+//! `strict`. These keys choose the architecture of the hardware, its interface and the generated files, not the function that
+//! the hardware computes. For example, `architecture = "pipelined"` asks for a pipeline.
 //!
-//! [`Schema::key`] finds these keys like the keys of a device. A shared key that has its default is not written to a file, so
-//! that the digests in older records stay valid.
+//! [`Schema::key`] finds these keys like the keys of a device. [`Config::to_toml`](super::Config::to_toml) does not write a
+//! shared key that has its default, so that the digests in older records stay valid.
 
 use std::sync::LazyLock;
 

@@ -1,5 +1,5 @@
-//! Patterns that texts in a configuration must match. A text that matches, and is a valid formula if the pattern is a formula,
-//! needs no escapes in Tcl, XML, YAML and TOML. The only exceptions are `<` and `>` in XML.
+//! Patterns that texts in a configuration must match. Names, versions, licences and points have no quotes, backslashes, `$`,
+//! `[`, `{`, `<` or `&`, so a generated file can quote them without escapes.
 
 /// A pattern that a text in a configuration must match.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,7 +1,7 @@
 //! Defines [`Core`]: a configuration of a device, with the netlist and the accuracy contract that Glint builds from it.
 //!
-//! The methods of [`Core`] make everything else from the configuration: Verilog and other files, digests, timing, bench vectors,
-//! and the jobs of co-simulation and exhaustive checks. For example, [`Core::files`] returns every emitted file.
+//! From these, the methods of [`Core`] make Verilog and other files, digests, timing, bench vectors, and the jobs of
+//! co-simulation and exhaustive checks. For example, [`Core::files`] returns every emitted file of the configuration.
 
 use std::path::Path;
 

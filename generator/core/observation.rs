@@ -1,6 +1,6 @@
 //! Defines the facts about a core that come from simulation or from its contract, and not from its netlist. The facts are
-//! worked examples, computations with their results, the clock numbers of a line, and the vectors of a test bench. Manifests
-//! and pages print them.
+//! worked examples, computations with their results, the clock numbers of a line, the parts of the contract that a program can
+//! use, and the vectors of a test bench. Manifests and pages print them.
 
 use glint_formula::Comparison;
 use glint_golden::Contract;

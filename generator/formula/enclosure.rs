@@ -1,5 +1,5 @@
-//! Interval arithmetic in `f64`: computes limits between which the exact value of a real number certainly lies. Every rounding
-//! goes outwards.
+//! Interval arithmetic in `f64`: computes limits between which the exact value of a real number lies. Every rounding goes
+//! outwards. For the functions of `libm`, the limits rely on a relative error of at most 2^−50.
 
 /// The relative error that results of `libm` are assumed to have at most. The functions come from musl, which states errors
 /// below 1.5 units in the last place, and this margin is at least four units.

@@ -1,4 +1,5 @@
-//! Evaluates a formula to an interval that is guaranteed to contain its exact value.
+//! Evaluates a formula to an interval that contains its exact value. An evaluation fails for operands at which the formula has
+//! no value.
 
 use std::cmp::Ordering;
 

@@ -1,8 +1,9 @@
-//! Parses formulas such as `1 / sqrt(x)` to trees, evaluates the trees with interval arithmetic, and prints them as Python and C.
+//! Parses formulas such as `1 / sqrt(x)` to trees, evaluates the trees with interval arithmetic, and prints them as Python and
+//! C.
 //!
 //! The formulas come from configurations and from accuracy contracts; another example is `max(x, 0) if x > 1 else 2 ** -x`. An
-//! evaluation gives an interval that certainly contains the exact value. Each node of a tree knows its range of bytes in the
-//! text, so that a message can point at a mistake.
+//! evaluation gives an interval that contains the exact value, or fails if there is no value. Each node of a tree knows its
+//! range of bytes in the text, so that a message can point at a mistake.
 
 mod arithmetic;
 mod enclosure;

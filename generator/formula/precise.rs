@@ -1,8 +1,8 @@
 //! Interval arithmetic of any precision. The module also stores a value exactly if the value is known exactly.
 //!
-//! The arithmetic is slow, so it only decides questions that `f64` intervals leave open. Such questions are the side of a jump
-//! on which a value lies, for example of `floor` at 1, and values beyond the range of `f64`. For example, `exp(1000)` in `1 /
-//! (1 + exp(1000))` is beyond this range.
+//! The arithmetic is slow. Glint uses it for constants, such as the ends of a domain, and for questions that `f64` intervals
+//! leave open. Such questions are the side of a jump on which a value lies, for example of `floor` at 1, and values beyond the
+//! range of `f64`. For example, `exp(1000)` in `1 / (1 + exp(1000))` is beyond this range.
 
 use std::cmp::Ordering;
 

@@ -1,4 +1,5 @@
-//! Differentiates a formula: computes limits between which the derivative certainly lies, for an operand in an interval.
+//! Differentiates a formula: computes limits between which the derivative lies, for an operand in an interval. The computation
+//! fails if the formula may jump in the interval.
 
 use super::arithmetic::Double;
 use super::evaluate::{binary, unary};

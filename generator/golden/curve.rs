@@ -3,8 +3,8 @@
 //! The golden model of the device `rough` uses it for its table of sines; the hardware description computes that table with
 //! other code. The operand u is an unsigned integer of C bits. The upper three quarters of the operands are the first range;
 //! the upper three quarters of the remaining quarter are the second range, and so on. The operands below all ranges are called
-//! the tail. Every range, and the tail, is divided into segments of equal length. A value of the table is a raw number in the
-//! format u0.S, which has S fraction bits.
+//! the tail. The segments of one range have the same length, and so have the segments of the tail. A value of the table is a
+//! raw number in the format u0.S, which has S fraction bits.
 
 use glint_base::fixed::exp2;
 

@@ -2,8 +2,8 @@
 //!
 //! The author of a device declares operands and registers in a [`Frame`] and states the operation of each microinstruction. The
 //! golden model executes these operations clock by clock. The contract runs the golden model to get the results of the device,
-//! and compares them with a [`Formula`], which the author adds together with a bound on the error. For example, this device
-//! squares its operand:
+//! and compares them with a [`Formula`], which the author adds, with a bound on the error if the author has proved one. For
+//! example, this device squares its operand:
 //!
 //! ```
 //! use glint_base::fixed::Format;

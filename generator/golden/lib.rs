@@ -1,8 +1,8 @@
 //! The golden models and the accuracy contracts of the devices.
 //!
-//! A golden model is a second implementation of a device, written from the formula and the text of its source; it predicts
-//! every register and output on every clock. An accuracy contract states the exact formula of the device and a proven bound on
-//! its error.
+//! A golden model is a second implementation of a device, written from the formula and the text of its source; it predicts the
+//! architectural registers and the outputs on every clock. An accuracy contract states the exact formula of the device, and a
+//! bound on its error if the author of the device has proved one.
 //!
 //! A golden model never sees the hardware description, the netlist or the microcode, so that an error in one of them shows as a
 //! difference in simulation. The golden model also computes its own tables, except in four devices. In `blinn` and `gauss` the

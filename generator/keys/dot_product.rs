@@ -1,7 +1,7 @@
 //! Declares the configuration keys of the device `dot-product`, and checks that their values are valid together.
 //!
-//! `dot-product` computes the cosine of the angle γ between a vector N of any length and a unit vector H. With the key
-//! `two_sided` it computes |cos γ|.
+//! `dot-product` computes the cosine of the angle γ between a vector N of any length and a unit vector H; a negative cosine
+//! becomes 0. With the key `two_sided` it computes |cos γ|.
 
 use super::normaliser;
 use glint_base::fixed::{Format, Rounding};

@@ -1,7 +1,8 @@
 //! Declares the configuration keys of the device `rough`, and checks that their values are valid together.
 //!
-//! `rough` computes f = (n/2·(cos(γ ± dγ) − 1) + 1)², where dγ is a perturbation of the normal's angle. For example, the key
-//! `sine.scheme` chooses the layout of ROM 18, the table of sines.
+//! `rough` computes f = (n/2·(cos(γ ± dγ) − 1) + 1)², where dγ is a perturbation of the normal's angle. By default, f is 0 if
+//! the base of the square is negative or if cos γ ≤ 0. For example, the key `sine.scheme` chooses the layout of ROM 18, the
+//! table of sines.
 
 use super::common::{self, Domain, Intensity, Operands};
 use glint_base::fixed::Rounding;

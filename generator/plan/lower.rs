@@ -1,8 +1,9 @@
 //! Rewrites the formulas of a statement as a plan, with given numbers of fraction bits.
 //!
 //! If a part of a formula is a function of one number, it becomes a table of polynomials, even if that number is the value of
-//! another part. For example, `sqrt(x^2 + y^2)` is the square root of the one number `x^2 + y^2`. Sums and products become
-//! separate operations.
+//! another part. Exceptions are functions that a few products compute, and functions with a rewriting in the folder `lower`,
+//! such as powers and waves. For example, `sqrt(x^2 + y^2)` is the square root of the one number `x^2 + y^2`. Sums and products
+//! become separate operations.
 
 mod direction;
 mod exponential;

@@ -1,7 +1,7 @@
 //! Defines the results of measuring a core on a target: area, frequency and critical path.
 //!
-//! A target is an FPGA family or a standard-cell library. `glint synth` measures these results with synthesis and place-and-route
-//! tools.
+//! A target is an FPGA family or a standard-cell library. On some targets, only the area is measured. `glint synth` measures
+//! these results with synthesis and place-and-route tools.
 
 mod record;
 

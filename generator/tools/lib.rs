@@ -1,8 +1,9 @@
 //! Runs programs outside Glint as child processes: Verilog simulators, synthesis tools and provers.
 //!
-//! A [`Tool`] is a program found on a search path. Every run has a time limit, after which the tool and all processes that it
-//! started are killed. Glint reads a tool's output to the end but keeps only a part, and error messages quote the last lines.
-//! [`run_bench`] builds and runs a self-checking Verilog bench; a [`BuiltBench`] can be run repeatedly.
+//! A [`Tool`] is a program found on a search path. Every run has a time limit, after which the tool and the processes that it
+//! started are killed; on Windows, only the tool. Glint reads a tool's output to the end but keeps only a part, and error
+//! messages quote the last lines. [`run_bench`] builds and runs a self-checking Verilog bench; a [`BuiltBench`] can be run
+//! repeatedly.
 
 use std::env;
 use std::ffi::OsStr;

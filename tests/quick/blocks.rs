@@ -1,5 +1,6 @@
 //! Tests the blocks of a block diagram: every register, ROM and operator of the datapath is in exactly one block, and the block
-//! has the inputs that the operator reads.
+//! has the inputs that the operator reads. Exceptions are the handshake of a pipeline, and the registers that hold its
+//! operands.
 //!
 //! A default run draws ten configurations. The run also checks the devices of `examples/` and devices that are composed of
 //! others.

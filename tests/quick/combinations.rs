@@ -1,5 +1,6 @@
-//! Compares the golden model with the simulation for every combination of operands, in a narrow configuration of each device,
-//! and tests the report of a difference.
+//! Compares the golden model with the simulation for every combination of operands, in the narrow configurations of
+//! `configs/reduced`, and tests the report of a difference. The devices `dot-product`, `normaliser` and `shading` have no
+//! narrow configuration.
 //!
 //! A default run draws a quarter of the combinations.
 

@@ -1,5 +1,6 @@
-//! Tests the datasheets of all configurations. The datasheets must be well-formed, need no other file, be usable without a
-//! pointer or colours, and agree with the netlist, the manifest and the formula.
+//! Tests the datasheets of the configurations in `configs/` and `configs/studies/`; a default run draws three cores with a
+//! microprogram and three pipelines. The datasheets must be well-formed, need no other file, be usable without a pointer or
+//! colours, and agree with the netlist, the manifest and the formula.
 
 use std::collections::BTreeSet;
 use std::path::Path;

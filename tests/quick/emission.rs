@@ -1,4 +1,4 @@
-//! Tests that every emitted file has the list of the Verilog modules that its text defines.
+//! Tests that the list of Verilog modules of an emitted file names exactly the modules that the text of the file defines.
 
 use std::collections::BTreeSet;
 

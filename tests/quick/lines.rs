@@ -1,4 +1,4 @@
-//! Tests the devices that compute the points of a scan line, in the built-in simulator: lines of 1 to 4096 points, the
+//! Tests the devices that compute the points of a scan line, in the built-in simulator: lines of 1, 2 and 4096 points, the
 //! exponents at which the power changes, angles that wrap, and resets within a line.
 //!
 //! It also bounds how far the results of the longest line drift from the unquantised formula.

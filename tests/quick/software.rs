@@ -1,5 +1,5 @@
-//! Tests that Glint writes a model in C for every configuration, pipelines included. `tests/tools` compiles and runs some of
-//! the models.
+//! Tests that Glint writes a model in C for every configuration in `configs/`, `configs/studies/` and `configs/reduced/`,
+//! pipelines included. `tests/tools` compiles and runs some of the models.
 
 use rayon::prelude::*;
 use serde_json::Value;

@@ -1,4 +1,5 @@
-//! Tests `glint tune`: its answer keeps the error, and has at most 1.1 times the area that an exhaustive search finds.
+//! Tests `glint tune`: its answer keeps the error, and has at most 1.1 times the area that an exhaustive search finds. A
+//! default run draws two of the searched spaces.
 //!
 //! It also compares the estimates of area and frequency with the records of synthesis.
 

@@ -1,6 +1,6 @@
 //! Tests the records of the largest known errors, `records/proofs/worst/<name>.json`, and the search that finds such errors.
 //!
-//! Such a record exists where a proof does not cover all operands.
+//! The records are of configurations of `rough`.
 
 use crate::common::cores::configuration;
 use crate::common::files::{json, paths};

@@ -1,5 +1,5 @@
-//! Tests the statements about error bounds for Gappa: Gappa proves them for the devices as they are, and proves neither a
-//! smaller bound nor the bound of faulty hardware.
+//! Tests the statements about error bounds for Gappa: Gappa proves them for the tested configurations, and proves neither a
+//! much smaller bound nor the bound of hardware with a planted fault.
 
 #[allow(dead_code)]
 #[path = "../../examples/smoothstep/main.rs"]

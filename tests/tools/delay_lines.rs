@@ -1,5 +1,6 @@
-//! Tests the delay lines of the emitted Verilog, which are memories in place of registers. A bench fails if a delay line is one
-//! clock too long or too short, or if it does not wait while the points of the pipeline wait.
+//! Tests the delay lines of the emitted Verilog, which are memories in place of registers. The bench of `threshold_pipelined`
+//! fails if a delay line is one clock too long or too short, or if it does not wait while the points of the pipeline wait. A
+//! default run draws four wrong lengths, and one of two simulators for the other tests.
 
 use glint::package::FileKind;
 use glint::tools::VerilogSimulator;

@@ -1,7 +1,9 @@
 //! Tests the proofs by an SMT solver that a pipeline and its sequential core compute the same, and that the emitted Verilog and
 //! the netlist do.
 //!
-//! The solver proves the shipped pipelines, except one that z3 does not decide, and does not prove a pipeline with a fault.
+//! The solver must prove the pipelines in `configs/` and `configs/studies/`, except `rough_up5k_pipelined`, which z3 does not
+//! decide. The solver must not prove a pipeline with a fault. A default run draws four pipelines, five pipelines with longer
+//! intervals, and some faults.
 
 use std::cell::Cell;
 use std::time::Duration;

@@ -1,5 +1,5 @@
-//! Tests the formal proofs of the handshake: the emitted properties are proved for every configuration by k-induction, from any
-//! state and for all inputs, and faults in the emitted files break the proof.
+//! Tests the formal proofs of the handshake: the emitted properties are proved for every configuration in `configs/` and
+//! `configs/studies/` by k-induction, from any state and for all inputs, and faults in the emitted files break the proof.
 //!
 //! The emitted tasks for SymbiYosys have the same commands and the same depth; no test runs SymbiYosys.
 

@@ -1,5 +1,5 @@
-//! Tests that a bench notices faults in a synthesised netlist. Without such a test, a bench that passes, or a model of a cell,
-//! would mean little.
+//! Tests that a bench notices at least half of the planted faults in a synthesised netlist, and that netlists of standard cells
+//! pass. Without such a test, a bench that passes, or a model of a cell, would mean little.
 //!
 //! `tests/tools/synthesis.rs` tests that the netlists of iCE40 and ECP5 pass.
 

@@ -1,4 +1,5 @@
-//! Tests the files of a core in other languages: the VHDL entity, the types of SystemVerilog, and transfers in C and Python.
+//! Tests the files of a core in other languages: the VHDL entity, the types of SystemVerilog, and transfers in C and Python. In
+//! a default run, some tests draw two of the five cores.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;

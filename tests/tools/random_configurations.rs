@@ -1,5 +1,6 @@
-//! Tests random configurations over the whole ranges of the keys: each agrees with its golden model on every clock and keeps
-//! its stated bound. Its Verilog has no lint warnings and passes its bench in Icarus Verilog.
+//! Tests random configurations of the devices of `Registry::catalogue`: each agrees with its golden model on every clock and
+//! keeps its stated bound. The Verilog of further random configurations has no lint warnings and passes its bench in Icarus
+//! Verilog.
 //!
 //! A default run draws a part of the configurations, and fewer for the device `function`, whose search takes seconds.
 

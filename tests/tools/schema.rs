@@ -1,5 +1,5 @@
-//! Tests the JSON Schema of the keys with two validators: they accept every configuration of the repository, and refuse unknown
-//! keys, keys without a device, and values that are out of range or of a wrong type.
+//! Tests the JSON Schema of the keys with two validators: they accept the configurations below `configs/` and of
+//! `examples/soc`, and refuse unknown keys, keys without a device, and values that are out of range or of a wrong type.
 
 use std::path::Path;
 use std::process::Command;

@@ -1,4 +1,5 @@
-//! Tests the emitted model in C: it compiles without warnings, and computes the results of the golden model.
+//! Tests the emitted model in C: it compiles without warnings, and computes the results of the golden model. A default run
+//! draws two sequential cores and one pipeline for the comparison at random points.
 //!
 //! The same holds for the functions in C and Python that set up a line of points.
 

@@ -1,5 +1,6 @@
-//! Tests the synthesis of configurations by Yosys for iCE40, ECP5 and Xilinx 7: no latch, no warning, ROMs in block RAM with
-//! all of their contents, and products in DSP blocks. A default run draws five pairs of a configuration and a family.
+//! Tests the synthesis of cores with a microprogram by Yosys for iCE40, ECP5 and Xilinx 7: no latch, no warning, large
+//! synchronous ROMs in block RAM with all of their contents, and products in DSP blocks. A default run draws five pairs of a
+//! configuration and a family.
 //!
 //! The netlists for iCE40 and ECP5, control ROM included, pass the bench of their core. Yosys 0.23 has no model of Xilinx block
 //! RAMs, so the test counts the ones in their initial values. `tests/tools/gate_level.rs` tests that a fault in a netlist is

@@ -1,8 +1,8 @@
-//! Tests the emitted Verilog under Icarus Verilog and Verilator: it has no lint warnings, and the bench passes.
+//! Tests the emitted Verilog under Icarus Verilog and Verilator: the linters report no warnings, and the bench passes.
 //!
 //! The golden model and the built-in simulator must agree on the expected values of a bench, and the bench compares every
-//! output on every clock. A bench must fail with one wrong bit in an expected output or in a ROM. Verilator builds two of the
-//! benches by default.
+//! output on every clock. A bench must fail with one wrong bit in an expected output or, in a core with a microprogram, in a
+//! ROM. Icarus Verilog builds the benches of all configurations, and Verilator two of them by default.
 
 use crate::common::Sure;
 use crate::common::bench::{Bench, with_flipped_bit};

@@ -1,4 +1,5 @@
-//! Makes two charts with all devices: the error against the exponent, and the error against the size of the hardware.
+//! Makes two charts with all devices that have error curves: the error against the exponent, and the error against the size of
+//! the hardware.
 
 use anyhow::{Result, bail};
 

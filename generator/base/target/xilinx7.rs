@@ -1,7 +1,6 @@
 //! Data of the AMD 7 series. The delays are estimates. The weights for the cost were chosen near a fit of `benches/tune/fit` to
-//! the 20 cores in `records/synthesis/`, so that the median error is smallest. For half of the cores, the estimated number of
-//! look-up tables is within 10 % of the number after synthesis. The worst is `schlick_pipelined`: 51 % too few, because its
-//! adders divide, and the adders of other cores go into DSP blocks.
+//! 20 of the cores in `records/synthesis/`. For half of these cores, the estimated number of look-up tables is within 10 % of
+//! the number after synthesis. The worst is `schlick_pipelined`, with 51 % too few.
 
 use super::{BlockMemory, Chip, Estimate, Family, Timing};
 

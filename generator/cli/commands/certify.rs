@@ -1,5 +1,5 @@
-//! `glint certify`: proves the error bound of a configuration's contract with the prover Gappa, from the netlist and the
-//! microprogram.
+//! `glint certify`: lets the prover Gappa prove the error bound of a sequential core's contract, from the netlist and the
+//! microprogram. If the contract states no bound, the command lets Gappa find one.
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;

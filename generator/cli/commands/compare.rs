@@ -1,5 +1,6 @@
 //! `glint compare`: compares all highlight devices, and the configurations that the user names, at one exponent n: their errors
-//! against cosⁿγ, cells, frequencies and points a second.
+//! against cosⁿγ, cells, frequencies and points a second. Frequencies come from records of `glint synth`, cells from such a
+//! record or from Yosys.
 
 mod show;
 

@@ -1,4 +1,6 @@
-//! `glint cosim`: compares the golden model of a configuration with the simulated hardware, every register at every clock.
+//! `glint cosim`: compares the golden model of a configuration with the simulated hardware: every output and architectural
+//! register, or in a pipeline every output and checkpoint, at every clock. The options `--exhaustive` and `--simulator` select
+//! other checks.
 
 mod benches;
 pub mod exhaustive;

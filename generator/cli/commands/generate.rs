@@ -1,4 +1,5 @@
-//! `glint generate`: writes the files of each configuration: Verilog, ROM contents, manifest, FuseSoC core and test bench.
+//! `glint generate`: writes the files of each configuration, such as Verilog, ROM contents, manifest, FuseSoC core and test
+//! bench. With `--check` it writes nothing, and compares the files on disk.
 
 use std::path::{Path, PathBuf};
 

@@ -1,4 +1,5 @@
-//! `glint schedule`: shows the stages of a pipeline, and the operations in each.
+//! `glint schedule`: shows the stages of a pipeline, and the operations in each. It also shows the passes that rewrite the
+//! computation, and the computation after a pass.
 
 use std::path::PathBuf;
 

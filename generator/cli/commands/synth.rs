@@ -1,4 +1,5 @@
-//! `glint synth`: measures area and frequency of a core by synthesis, placement and routing.
+//! `glint synth`: measures area and frequency of a core by synthesis, placement and routing. For targets that no open tool
+//! times, it measures only the area.
 
 mod cache;
 mod front;

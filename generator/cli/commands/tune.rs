@@ -1,4 +1,5 @@
-//! `glint tune`: finds the smallest configuration of a device whose error bound is at most a given limit.
+//! `glint tune`: searches for the smallest configuration of a device whose error bound is at most a given limit. The search is
+//! local.
 
 mod plot;
 

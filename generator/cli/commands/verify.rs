@@ -1,4 +1,5 @@
-//! `glint verify`: runs every test and proof that Glint has on configurations, and writes a record and a page about each.
+//! `glint verify`: runs the checks of `glint_prove::verify` on configurations, such as co-simulation, proofs and lint, and
+//! writes a record and a page about each.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};

@@ -1,8 +1,8 @@
 //! Defines the interface of the engines that compute many points (sets of operands) at once.
 //!
 //! An [`Engine`] takes the operands of many computations as [`Points`], and returns their results. There are three engines: the
-//! golden model ([`Golden`]), the built-in simulator ([`RustHdl`]), and the emitted Verilog under an outside simulator. All
-//! three return the same results, so a caller such as `glint render` may take any of them.
+//! golden model ([`Golden`]), the built-in simulator ([`RustHdl`]), and the emitted Verilog under an outside simulator. For a
+//! core without mistakes all three return the same results, so a caller such as `glint render` may take any of them.
 
 mod lanes;
 

@@ -1,7 +1,8 @@
 //! Finds, for each signal of a golden model, the port or the register of the design with the same name.
 //!
 //! A golden model predicts the values of a device's outputs and registers. Co-simulation compares the predictions with the
-//! simulated design by this binding. For example, the model's signal `busy` is bound to the port `busy` of the design.
+//! simulated design by this binding. If there is none, the binding fails. A pipeline has checkpoints in place of registers. For
+//! example, the model's signal `busy` is bound to the port `busy` of the design.
 
 use std::sync::Arc;
 

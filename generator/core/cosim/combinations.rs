@@ -1,4 +1,5 @@
-//! Drives a device with every combination of the bit patterns of its operands, one computation after another.
+//! Drives a device with every combination of the bit patterns of its operands, one computation after another. A caller may also
+//! give a list of operands for the first computations.
 //!
 //! A combination is a number: the bits of all operands side by side, without operands that the caller fixed at a value. For
 //! example, two operands of 8 bits have 2^16 combinations. The combinations are shuffled: computation number p has the

@@ -1,7 +1,7 @@
 //! Counts the results of a co-simulation by the value of their reflectance `f`, in nine classes.
 //!
-//! The counts show whether the random operands reached all values of `f`. For example, the class `<0.1` has the results with
-//! `f` from 0.01 to below 0.1.
+//! The counts show whether the random operands reached every class. For a device that is no highlight, only the results outside
+//! the domain are counted. For example, the class `<0.1` has the results with `f` from 0.01 to below 0.1.
 
 use glint_base::fixed::Format;
 

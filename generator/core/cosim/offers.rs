@@ -1,9 +1,10 @@
 //! Drives the inputs of a pipeline with random points (sets of operands) and a random valid/ready handshake, clock by clock.
 //!
 //! [`Offers`] raises `in_valid` with the operands of a point, keeps both until the pipeline takes the point, and pauses at
-//! random between points. Now and then it withdraws a point that the pipeline has not taken, lowers `out_ready` so that results
-//! must wait, or applies a reset. A reset drops every point in the pipeline. Every 24 clocks it draws new probabilities: for
-//! example, `out_ready` is high in every clock for a while, and later in one clock of five.
+//! random between points. Now and then it withdraws a point that the pipeline has not taken, lowers `out_ready`, if the
+//! pipeline has this input, so that results must wait, or applies a reset. A reset drops every point in the pipeline. Every 24
+//! clocks it draws new probabilities: for example, `out_ready` is high in every clock for a while, and later in one clock of
+//! five.
 
 use std::collections::VecDeque;
 use std::sync::Arc;

@@ -1,7 +1,7 @@
 //! Draws the operands of computations at random, and prefers operands at which an error would show.
 //!
-//! A highlight device multiplies colours by a reflectance `f`, from 0 to 1. Over most of the domain `f` is 0, so evenly drawn
-//! operands test little. Three of four points (sets of operands) are therefore drawn by the value of the formula for `f`:
+//! A highlight device multiplies colours by a reflectance `f`, from 0 to 1. Often `f` is 0 in most of the domain, so evenly
+//! drawn operands test little. Three of four points (sets of operands) are therefore drawn by the value of the formula for `f`:
 //!
 //! 1. [`PointSource`] draws operands in the domain, and a target value for `f`. Half of the targets are drawn evenly, and half
 //!    with an evenly drawn logarithm.
@@ -10,10 +10,11 @@
 //! 3. For one in eight of these points, [`PointSource`] continues to the two neighbouring operand values between which the
 //!    formula crosses the target, or leaves 0. One of the two values becomes the operand.
 //!
-//! The other points are corners of the domain, points that are drawn evenly, or arbitrary bit patterns.
+//! The operands of the other points are often at an end of the domain or near it, or are drawn evenly, or have arbitrary bit
+//! patterns.
 //!
-//! If a device is no highlight, half of the points come from [`Contract::hint`]: operands at which the formula is steep, bends or
-//! ends.
+//! If a device is no highlight, half of the points come from [`Contract::hint`], if the contract has hints: operands at which
+//! the formula is steep, bends or ends.
 
 use std::sync::LazyLock;
 

@@ -1,5 +1,5 @@
-//! Finds the ports of a simulated design by name: the handshake, the operands and the results. All code that drives or reads the
-//! design uses this list of ports.
+//! Finds the ports of a simulated design: the handshake by role, and the operands and results by the names in the contract. The
+//! modules of the co-simulation use this list of ports.
 
 use anyhow::{Context, Result, ensure};
 

@@ -1,9 +1,8 @@
 //! Draws random inputs for a core with a microprogram, clock by clock.
 //!
-//! The inputs cover everything that a host may do. Computations follow each other with idle gaps or back to back. Operands are
-//! written one after another, all at once or together with `start`, or they stay from the previous computation. Writes, starts
-//! and resets also come while the core is busy. The stimulus reacts to `busy`, as a host does, and the same seed gives the same
-//! inputs.
+//! Computations follow each other with idle gaps or back to back. Operands are written one after another, all at once or
+//! together with `start`, or they stay from the previous computation. Writes, starts and resets also come while the core is
+//! busy. The stimulus reacts to `busy`, as a host does, and the same seed gives the same inputs.
 //!
 //! At the start of a computation, the stimulus draws whether and after how many clocks it is reset. Short and long delays are
 //! equally likely on a logarithmic scale. Resets therefore often hit a computation of ten clocks, and most computations of

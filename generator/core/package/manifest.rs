@@ -1,6 +1,6 @@
 //! Generates the manifest of a core, `<name>.json`, which describes the core for programs.
 //!
-//! For example, `rough.json` has the ports, the timing, the ROMs and the digests of all files of `rough`.
+//! For example, `rough.json` has the ports, the timing, the ROMs and the digests of all other files of `rough`.
 
 use anyhow::{Context, Result};
 use serde::Serialize;

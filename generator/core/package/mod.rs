@@ -1,10 +1,10 @@
-//! Generates all files of a [`Design`]: Verilog, ROM contents, manifest, FuseSoC cores, test benches, formal wrappers, bus
-//! wrappers and the model in C.
+//! Generates the files of a [`Design`] that a configuration asks for, such as Verilog, ROM contents, manifest, FuseSoC cores,
+//! test benches, formal wrappers, bus wrappers and the model in C.
 //!
 //! `hdl::verilog` turns names and expressions of the netlist into strings. Each module here collects such strings in a view, a
-//! plain struct, and a template in `templates/` prints the view. A template can repeat lines or leave out lines, but the view has
-//! the data that decides this. Emission returns the files and writes nothing to disk, and the same design always gives the same
-//! bytes.
+//! plain struct, and a template in `templates/` prints the view. A template can repeat lines or leave out lines, but the view
+//! has the data that decides this. Emission returns the files and writes nothing to disk, and the same design always gives the
+//! same bytes.
 
 /// Declares a struct with the names that a test bench uses for its own variables. Its function `new` chooses names that no port
 /// has.

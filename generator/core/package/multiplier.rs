@@ -1,8 +1,9 @@
-//! Generates `<name>_multiplier.v`: a multiplier with an output register, for pipelines.
+//! Generates `<name>_multiplier.v`: a multiplier with an output register, for pipelines whose key `pipeline.multipliers` is
+//! "registered".
 //!
-//! There are two files with the same module name. The portable file is ordinary Verilog, and is listed with the core's
-//! files. The file for a target, for example ECP5, instantiates the target's DSP block and is in a directory with the
-//! target's name. A build for that target uses the second file in place of the portable file.
+//! There are two files with the same module name. The portable file is ordinary Verilog, and is listed with the core's files.
+//! The file for a target, which is always ECP5, instantiates the target's DSP block and is in a directory with the target's
+//! name. A build for that target uses the second file in place of the portable file.
 
 use anyhow::Result;
 use glint_base::fill;

@@ -1,7 +1,7 @@
 //! Reads the configuration keys that ask for files around a core, for example bus wrappers, a C model or constraints.
 //!
-//! The module also checks that the core allows these keys. For example, `package.rom_style` is an error if the core has no ROM
-//! that the key can affect.
+//! The module also checks that the core allows two of these keys, `package.clock_mhz` and `package.rom_style`. For example,
+//! `package.rom_style` is an error if the core has no ROM that the key can affect.
 
 use super::bus::{BUSES, Bus};
 use glint_base::key_error::KeyError;

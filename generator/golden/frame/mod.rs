@@ -1,4 +1,4 @@
-//! Builds golden models that run clock by clock. A golden model predicts every register and output of a device.
+//! Builds golden models that run clock by clock. A golden model predicts the architectural registers and outputs of a device.
 //!
 //! The author of a device declares its operands, registers and outputs in a [`Frame`] and gets a [`Slot`] for each. The author
 //! then states the operation of each microinstruction with [`step`], in the order of execution. [`Frame::model`] makes a

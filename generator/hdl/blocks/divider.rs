@@ -1,8 +1,8 @@
 //! Builds an iterative divider, which computes one bit of the quotient a clock by trial subtraction (restoring division).
 //!
-//! The first remainder is the dividend. A step doubles the remainder and subtracts the divisor if the difference is not negative.
-//! Each step gives the next bit of the quotient, from the top bit down: 1 if the step subtracted. The last remainder is exact, so
-//! every bit of the quotient is correct.
+//! The first remainder is the dividend. A step doubles the remainder and subtracts the divisor if the difference is not
+//! negative. Each step gives the next bit of the quotient, from the top bit down: 1 if the step subtracted. The last remainder
+//! is exact, so every bit of the quotient is correct. Only a quotient of 1.0 becomes the largest fraction below 1.
 
 use crate::dsl::{Counter, Designer, Mux, Register, Signal, StepSetting};
 use glint_base::codes;

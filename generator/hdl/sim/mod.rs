@@ -1,9 +1,8 @@
 //! The built-in simulator: runs many independent instances of a design clock by clock, and writes waveforms.
 //!
-//! The compiler turns a [`Design`] into a [`CompiledDesign`], a list of instructions in evaluation order. A [`Machine`] executes
-//! the instructions for several instances at once, called lanes. A [`Circuit`] wraps the machine as one block of the simulation
-//! kernel rust_hdl, which writes waveforms, and a [`Simulator`] adds the clock. (One rust_hdl block for each cell would be a
-//! hundred times slower.)
+//! The compiler turns a [`Design`] into a [`CompiledDesign`], a list of instructions in evaluation order. A [`Machine`]
+//! executes the instructions for several instances at once, called lanes. A [`Circuit`] wraps the machine as one block of the
+//! simulation kernel rust_hdl, which writes waveforms, and a [`Simulator`] adds the clock.
 
 mod banks;
 mod circuit;

@@ -1,8 +1,9 @@
-//! Decides how each net appears in the Verilog: declared under its name, written into the expression that uses it, or as wiring.
+//! Decides how each net appears in the Verilog: declared under its name, written into the expression that uses it, or as
+//! wiring.
 //!
 //! Wiring (slices, extensions, concatenations, constants) that the description's author did not name is written as [`Bits`]
 //! wherever it is used. Any other cell without such a name is written into the only expression that uses it, as long as that
-//! expression stays short. All other nets are declared.
+//! expression stays short. Cells without such a name that no written part reads are left out. All other nets are declared.
 
 use std::collections::{BTreeMap, HashSet};
 

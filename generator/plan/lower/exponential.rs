@@ -4,8 +4,9 @@
 //! The operand v is m · 2^k with m from 1/2 to below 1. Because log₂ v = log₂ m + k, a table of log₂ m and an addition compute
 //! the logarithm.
 //!
-//! An exponential function 2^u is rewritten if its exponent u extends over at least 3, for example from 0 to 10. With the
-//! integer part i and the fraction part f of u, 2^u = 2^f · 2^i. A table of 2^f and a shift compute the function.
+//! An exponential function 2^u is rewritten if its exponent u has fraction bits and extends over at least 3, for example from 0
+//! to 10. With the integer part i and the fraction part f of u, 2^u = 2^f · 2^i. A table of 2^f and a shift compute the
+//! function.
 
 use std::ops::Range;
 

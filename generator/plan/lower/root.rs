@@ -1,5 +1,6 @@
 //! Rewrites a power v^p, such as a square root or a reciprocal, as operations of a plan, so that a table for one octave serves
-//! all octaves.
+//! all octaves. The number 2p must be an integer from −8 to 8. A power is not rewritten if a single table is better, because
+//! the operand has few bits and few octaves.
 //!
 //! The value is normalised: v = m · 2^k with m from 1/2 to below 1. Then v^p = m^p · 2^(p·k), which a table of m^p and a shift
 //! compute. If p is 1/2 or an odd multiple of it, k must be even, and m goes from 1/4 to below 1.

@@ -1,4 +1,5 @@
 //! Rewrites sines and cosines such as `sin(2 * pi * x)` as operations of a plan, so that a short table serves the whole circle.
+//! The angle in quarter turns must be a number times a power of two, with 5 to 20 bits within a quadrant.
 //!
 //! If the formulas have only the sine or only the cosine of an angle, the table covers a quadrant. The angle in quarter turns
 //! is q + w, with an integer q and w from 0 to below 1. The sine is the table's value at w if q is even, and at 1 − w if q is

@@ -1,9 +1,10 @@
-//! Splits a computation into cases, one for each combination of outcomes of its conditions: the selects of multiplexers, and
-//! the carries of sums.
+//! Splits a computation into cases, one for each possible combination of outcomes of its conditions: the selects of
+//! multiplexers, and the carries of sums.
 //!
-//! For example, a saturation has two cases: the value is inside its limits, or it is replaced by a limit. For each case, the
-//! module finds the interval of raw values of every node of the computation. Statements about the error bound are then written
-//! case by case. The module gives up at more than 4096 cases.
+//! For example, a saturation with one limit has two cases: the value is inside the limit, or the limit replaces it. For each
+//! case, the module finds the interval of raw values of every node on which the results depend. Statements about the error
+//! bound are then written case by case. The module fails if it examines more than 4096 cases, including impossible ones, or if
+//! a condition has more than 64 values.
 
 use std::collections::BTreeMap;
 

@@ -2,8 +2,9 @@
 //!
 //! A formula with `max`, `min` or `if` becomes several branches, each with conditions under which it applies. For example,
 //! `max(a, b)` has two branches: `a` where a − b ≥ 0, and `b` where a − b ≤ 0. The range of the operands may decide the
-//! condition of an `if`, and then only one branch is left. A function such as `sqrt`, a constant such as `pi`, the operator `%`
-//! and a variable exponent have no translation.
+//! condition of an `if`, and then only one branch is left. The module fails for any other function, such as `sqrt`, for a
+//! constant such as `pi`, and for the operator `%`. It also fails for a number that no `f64` represents, such as 0.1, and for
+//! an exponent that varies.
 
 use std::collections::{BTreeMap, HashMap};
 

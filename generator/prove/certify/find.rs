@@ -1,8 +1,8 @@
-//! Finds an error bound that Gappa can prove, for statements without a bound.
+//! Finds an error bound that Gappa can prove, for statements that ask for a bound.
 //!
-//! Gappa first answers each statement with an upper bound. A bisection in steps of 1/2048 units then searches a smaller bound
-//! that Gappa proves; a proof during the search may take two seconds. The result is one bound for all statements, or a reason
-//! in words if Gappa finds no bound for a statement. A smaller bound may be true.
+//! Gappa first answers each statement with an upper bound. A bisection then searches a smaller bound that Gappa proves, to
+//! 1/2048 output units. In this search, a proof may take at most two seconds. The result is one bound for all statements, or a
+//! reason in words if Gappa finds no bound for a statement. A smaller bound may be true.
 
 use std::fs;
 use std::time::Duration;

@@ -2,7 +2,8 @@
 //!
 //! A case is one combination of outcomes of all conditions in the computation ([`super::cases`]). For example, in one case a
 //! saturation limits the value, and the result is a constant. In another case the result is a term with the value's rounding.
-//! Bitwise logic whose result is used as a number has no translation.
+//! The translation fails for bitwise logic whose result is used as a number, unless the result is constant in the case; an
+//! inversion is no such logic.
 
 use std::collections::{BTreeMap, HashMap};
 

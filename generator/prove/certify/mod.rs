@@ -1,11 +1,12 @@
-//! Translates the error bound of a contract to statements for the prover Gappa, and runs Gappa on them. `glint certify` uses
-//! it.
+//! Translates the error bound of a contract to statements for the prover Gappa, and runs Gappa on them. `glint certify` and
+//! `glint verify` use the module.
 //!
-//! [`statements`] unrolls the computation of a core into a graph of values, and splits it into [`cases`] at every condition,
-//! such as a saturation. In each case, [`hardware`] writes the hardware's result as an expression with roundings, and [`exact`]
-//! writes the formula as an expression without roundings. A statement says that the two differ by at most the bound, and the
-//! cases together cover the domain of the contract. If the formula reads a ROM, the statements take the hardware's words as
-//! they are, and do not prove them right.
+//! [`statements`] unrolls the computation of a sequential core into a graph of values, and splits it into [`cases`] at its
+//! conditions, such as a saturation. In each case, [`hardware`] writes the hardware's result as an expression with roundings,
+//! and [`exact`] writes the formula as an expression without roundings. A statement says that the two differ by at most the
+//! bound, and the cases together cover the domain of the contract. Devices that compute lines of points have statements of
+//! another form (`segments`). If the formula reads a ROM, the statements take the hardware's words as they are, and do not
+//! prove them right.
 
 pub mod cases;
 pub mod exact;

@@ -1,8 +1,8 @@
 //! Writes the Gappa statements of one case, for a device that computes a single point (one set of operands) after each start:
-//! each output differs from the formula by at most the bound.
+//! each output differs from the formula by at most the bound. The premises of these statements are statements too.
 //!
-//! If the formula has branches, such as `max`, each combination of branches is a statement. The module `segments` does the same
-//! for devices that compute a line of points.
+//! If the formula has branches, such as `max`, each combination of branches whose conditions do not contradict each other is a
+//! statement. The module `segments` does the same for devices that compute a line of points.
 
 use std::collections::{BTreeMap, HashMap};
 

@@ -1,7 +1,8 @@
 //! Computes the range of polynomials of degree at most 2 in one operand, which interval arithmetic overestimates.
 //!
 //! For example, x² − 16·x for x from 0 to 16 lies between −64 and 0; interval arithmetic gives −256 to 256. Coefficients and
-//! operands are raw integers. A polynomial in two operands, of a higher degree or with too large coefficients is `None`.
+//! operands are raw integers. The result is `None` for a polynomial in two operands or of a higher degree, and if coefficients
+//! or operands are too large.
 
 use glint_base::interval::Interval;
 use glint_rtl::pipeline::NodeId;

@@ -1,7 +1,7 @@
 //! Runs Gappa on a statement, and optionally lets Coq check the proof that Gappa found.
 //!
-//! For a statement that is proved, the module also searches a point at which all hypotheses hold. Without such a point, a proof
-//! could rest on hypotheses that contradict each other.
+//! If Gappa assumes a hint without a proof, the statement counts as not proved. For a proved statement, the module also
+//! searches a point at which all hypotheses hold. If it finds none, it asks Gappa whether the hypotheses contradict each other.
 
 use std::fs;
 use std::time::Duration;

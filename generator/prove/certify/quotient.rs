@@ -1,9 +1,10 @@
 //! Finds restoring dividers in an unrolled computation: chains of steps that each compute one bit of a quotient.
 //!
-//! A step doubles the remainder r and subtracts the divisor d if it fits: r' = 2·r − b·d with b = (2·r ≥ d). If d is positive and
-//! 0 ≤ r ≤ d, the same holds for r'. After k steps from r₀, the bits are the number q = Σ bᵢ·2^(k−i), and the last remainder is
-//! 2^k·r₀ − q·d, between 0 and d. Therefore q·2^−k is at most r₀/d, and less than r₀/d by at most 2^−k. The module `premises`
-//! lets Gappa prove the conditions: 0 ≤ r₀ ≤ d, d > 0, and that a step keeps 0 ≤ r ≤ d.
+//! A step doubles the remainder r and subtracts the divisor d if it fits: r' = 2·r − b·d with b = (2·r ≥ d). If d is positive
+//! and 0 ≤ r ≤ d, the same holds for r'. After k steps from r₀, the bits are the number q = Σ bᵢ·2^(k−i), and the last
+//! remainder is 2^k·r₀ − q·d, between 0 and d. Therefore q·2^−k is at most r₀/d, and less than r₀/d by at most 2^−k. Unless the
+//! intervals of r₀ and d show it, the module `premises` lets Gappa prove the conditions: 0 ≤ r₀ ≤ d, d > 0, and that a step
+//! keeps 0 ≤ r ≤ d.
 
 use std::collections::BTreeMap;
 

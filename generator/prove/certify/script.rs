@@ -1,7 +1,8 @@
 //! Writes the text of a Gappa script: definitions, hypotheses, the goal, and hints for the prover.
 //!
-//! Gappa needs hints that relate terms of the formula to terms of the hardware. The module finds them by comparing the terms'
-//! values at random points. A wrong hint cannot lead to a wrong proof, because Gappa proves each hint that it uses.
+//! Gappa needs hints that relate terms of the formula to terms of the hardware. The module finds most of them by comparing the
+//! terms' values at random points. A wrong hint cannot lead to a wrong proof: Gappa says so if it uses a hint that it cannot
+//! prove, and `proof` then rejects the answer.
 
 use std::collections::{BTreeMap, HashMap};
 use std::fmt::Write as _;

@@ -2,7 +2,8 @@
 //! statements share it.
 //!
 //! The module also splits the domain of the contract into parts, at operands that are exponents of the formula or that address
-//! ROMs. For example, `x ** exponent` becomes one part for each exponent.
+//! ROMs. It does not split an operand with more than 1024 values. For example, `x ** exponent` becomes one part for each
+//! exponent.
 
 use super::cases::{self, NodeIntervals, UnrolledComputation};
 use glint_formula::{Expression, Kind, Operator};

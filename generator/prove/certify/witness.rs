@@ -1,8 +1,9 @@
 //! Finds a point at which all hypotheses of a Gappa script hold.
 //!
 //! Such a point shows that the statement is not vacuous: hypotheses that contradict each other would prove anything. The search
-//! reads the text of the script, begins at 64 random points, and moves each step by step until no hypothesis is violated. The
-//! hypotheses are computed in f64. If no point is found, the hypotheses may still be satisfiable.
+//! reads the text of the script, begins at 64 random points, and moves each step by step until no hypothesis is violated or no
+//! step helps. The hypotheses are computed in f64, with rounding errors. If no point is found, the hypotheses may still be
+//! satisfiable.
 
 use std::collections::HashMap;
 

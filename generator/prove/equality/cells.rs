@@ -1,8 +1,8 @@
 //! Computes the results of Yosys's cells on symbolic terms instead of numbers, as Yosys documents the cells.
 //!
 //! For example, a `$add` cell with the terms a and b has the result a + b. The module knows the cells that occur in the emitted
-//! Verilog. Any other kind of cell is an error. So is a cell of more than 64 bits, unless it is a multiplexer, or a cell such
-//! as `$reduce_or` whose result is one bit.
+//! Verilog. Any other kind of cell is an error. So is a cell of more than 64 bits, unless it is a multiplexer, a reduction such
+//! as `$reduce_or`, or a logical operation such as `$logic_and`.
 
 use anyhow::{Context, Result, bail, ensure};
 

@@ -1,9 +1,10 @@
 //! Finds the counters in the Verilog of a pipeline: the slot counter, and the address counters of its delay memories.
 //!
-//! A counter is a register that a reset sets to a constant, and that returns to this constant after a fixed number of clocks. The
-//! module executes the Verilog with constants in the counters and unknowns everywhere else. The constants decide in which clocks
-//! the pipeline takes a point, and which word each memory reads and writes. For example, a memory that writes word 0, 1, 2, 0, …
-//! and reads each word just before it is overwritten delays its input by three clocks.
+//! A counter is a register that a reset sets to a constant, and that returns to this constant after a fixed number of clocks,
+//! at most 1024. The module executes the Verilog with constants in the counters, in the reset and in `out_ready`, and with
+//! unknowns everywhere else. The constants decide in which clocks the pipeline takes a point, and which word each memory reads
+//! and writes. For example, a memory that writes word 0, 1, 2, 0, … and reads each word just before it is overwritten delays
+//! its input by three clocks.
 
 use std::collections::{BTreeMap, HashMap};
 

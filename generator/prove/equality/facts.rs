@@ -2,7 +2,8 @@
 //!
 //! The solver treats a product and the read of a memory as uninterpreted functions and knows nothing about them. The facts say,
 //! for example, that a product with a factor 0 is 0, that a product is the sum of the products of a factor's parts, or that a
-//! memory word lies within the bounds of all words. Every fact is true for all values, so an unnecessary one does no harm.
+//! memory word lies within the bounds of all words. Every fact is true for all values, so an unnecessary fact cannot make a
+//! proof wrong.
 
 use std::collections::{HashMap, HashSet};
 

@@ -1,9 +1,10 @@
 //! Proves with an SMT solver that a pipeline and its sequential core compute the same outputs for every point (one set of
 //! operands). [`compare_text`] proves the same of the emitted Verilog of a pipeline and its netlist.
 //!
-//! [`compare`] first simulates both designs at random points. [`compare`] then executes both netlists symbolically, one clock
-//! at a time: the core from `start` to its results, and the pipeline with one point between arbitrary others. The solver knows
-//! products and memory reads only as uninterpreted functions with some arithmetic facts (`facts`), so a verdict can be "open".
+//! [`compare`] first simulates both designs at 400 random points. [`compare`] then executes both netlists symbolically, one
+//! clock at a time: the core from `start` to its results, and the pipeline with one point between arbitrary others. The solver
+//! knows products and memory reads only as uninterpreted functions with some arithmetic facts (`facts`), so it may not decide:
+//! the verdict is then [`Verdict::Open`].
 
 mod cells;
 mod delays;

@@ -1,7 +1,8 @@
 //! Parses the JSON netlist of a Verilog module, which Yosys has flattened, and executes it clock by clock on symbolic terms.
 //!
 //! Every undetermined bit (`x` or `z`) becomes a new unknown at each read. A read beyond the contents of a memory gives an
-//! unknown word. The module accepts only registers and memories that change at the rising edge of `clk`.
+//! unknown word, the same for equal addresses. The module accepts only registers and memories that change at the rising edge of
+//! `clk`.
 
 use std::collections::HashMap;
 

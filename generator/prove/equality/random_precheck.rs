@@ -1,8 +1,7 @@
 //! Simulates a pipeline and its sequential core for one point (one set of operands), with numbers instead of symbolic terms.
 //!
 //! [`DesignPair`] pairs the operands and outputs of both designs by name, and returns the outputs of each. The parent module
-//! draws the points and compares the outputs. The parent module finds most differences in this way before the SMT solver is
-//! asked.
+//! draws the points and compares the outputs. It does so before it asks the SMT solver.
 
 use anyhow::{Context, Result, bail};
 

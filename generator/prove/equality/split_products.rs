@@ -1,7 +1,7 @@
 //! Finds nets that probably carry a product which a pipeline adds up from the products of parts.
 //!
-//! The module evaluates all terms with random values of the unknowns. A net is a candidate if it has the same values as the
-//! product. The caller must prove with the solver that they are equal.
+//! The module evaluates all terms with 24 sets of random values of the unknowns. A net is a candidate if, extended to 64 bits,
+//! it has the same values as the product. The caller must prove with the solver that they are equal.
 
 use std::collections::HashMap;
 

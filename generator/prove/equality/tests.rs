@@ -1,4 +1,4 @@
-//! Tests that simplified terms keep their values, and that the facts for the solver hold for all operands.
+//! Tests, for random terms and values, that simplified terms keep their values, and that the facts for the solver are true.
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};

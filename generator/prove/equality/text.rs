@@ -1,11 +1,12 @@
-//! Proves that the emitted Verilog of a pipeline and its netlist have the same outputs, for every point (one set of operands)
-//! and from any state.
+//! Proves that the emitted Verilog of a pipeline and its netlist have the same outputs, except `in_ready`, when they show the
+//! results of a point (one set of operands). The proof holds for every point, and for any earlier contents of registers and
+//! memories, except the slot counter.
 //!
 //! Yosys has read the Verilog, and the module executes netlist and Verilog on symbolic terms, with unknown registers and
 //! memories at the beginning. [`Counters`] finds the slot counter, which counts the clocks between two points, and proves that
-//! every memory is a delay line. The module proves that a clock in which the pipeline waits changes nothing, and then compares
-//! the clocks from a point to its results. A register of the Verilog that equals a net takes the net's term, so a question
-//! concerns little more than one clock.
+//! every memory is a delay line. The module proves that a clock in which the pipeline waits for `out_ready` changes nothing,
+//! and then compares the clocks from a point to its results. A register of the Verilog that equals a net takes the net's term,
+//! so a question concerns little more than one clock.
 
 use std::collections::{HashMap, HashSet};
 use std::time::Duration;

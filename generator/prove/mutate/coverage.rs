@@ -1,8 +1,8 @@
 //! Records at which positions of a test the simulated hardware reads each ROM word, up to six positions for a word, with the
 //! operands.
 //!
-//! Mutation testing plants faults in ROM words. A fault in a word can only show after a read of the word, so a check of the
-//! fault needs to run only the parts of the test that read the word.
+//! Mutation testing plants faults in ROM words. A fault in a word can only show after a read of the word, so the first check of
+//! the fault runs only the recorded parts of the test.
 
 use anyhow::Result;
 

@@ -1,5 +1,5 @@
 //! Lists the faults that replace a whole cell by another cell: another operator, swapped operands or mux inputs, a mux stuck at
-//! one input, a sum without its rounding, or a slice one bit too low or too high.
+//! one input, a sum without its carry or its rounding bit, or a slice one bit too low or too high.
 //!
 //! Faults of single bits, constants, registers and ROMs are listed in `fault`.
 

@@ -1,8 +1,8 @@
 //! Compares a mutant (a design with one fault) with the golden model while some operands keep fixed values.
 //!
 //! Random operands would rarely read a faulty ROM word. A caller therefore fixes the operands that lead to the word. The module
-//! draws the other operands at random ([`drawn`], [`alone`]), or tries all values of the operands that determine the
-//! reflectance `f` ([`all`]).
+//! draws the other operands at random ([`drawn`], [`alone`]), or tries all values of the others, except that colours keep their
+//! largest value ([`all`]).
 
 use anyhow::Result;
 

@@ -1,8 +1,9 @@
 //! Plants faults one at a time in the netlist of a core, and finds the verdict on each: caught by a check, proved equivalent,
 //! or undecided.
 //!
-//! For each fault, the module tries in turn a short test, the proofs, the default test, and directed tests. The module ends
-//! with the first check that decides. In addition it finds whether the shipped bench notices the fault.
+//! For each fault, the module tries in turn a short test, the proofs, the default test, and a last check: directed tests for a
+//! fault in a table, or a search for any other fault in a pipeline. The module ends with the first check that decides. For a
+//! fault that is not proved equivalent, it also finds whether the shipped bench notices the fault.
 
 use std::sync::OnceLock;
 

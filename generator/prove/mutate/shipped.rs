@@ -1,5 +1,5 @@
-//! Runs the test bench that Glint ships with a core on a mutant, a design with one fault. The bench applies its vectors and
-//! compares only the outputs, as it does for a user of the core.
+//! Applies the vectors of the test bench that Glint ships with a core to a mutant, a design with one fault. The built-in
+//! simulator runs the mutant. Only outputs are compared, as in the shipped bench.
 
 use anyhow::Result;
 

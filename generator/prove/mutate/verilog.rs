@@ -1,7 +1,7 @@
 //! Plants faults in the text of the emitted Verilog, and finds out whether lint or a test bench notices them.
 //!
-//! Each mutant has one fault, such as a bug in the emitter could cause. For example, `4'd9` becomes `4'd8`. Lint, the shipped
-//! bench or a longer bench must notice it; otherwise Yosys tries to prove that the fault changes nothing. No fault moves a
+//! Each mutant has one fault, such as a bug in the emitter could cause. For example, `4'd9` becomes `4'd8`. If lint, the
+//! shipped bench and a longer bench do not notice it, Yosys tries to prove that the fault changes nothing. No fault moves a
 //! register to the other clock edge, because in simulation its input is stable by then and only timing analysis could tell.
 
 use std::collections::BTreeMap;

@@ -2,8 +2,8 @@
 //!
 //! Some hardware exists in a pipeline but not in its sequential core, such as the parts of a split product. A fault there may
 //! show only if a carry runs through all bits that are later dropped, which random points rarely cause. The search simulates
-//! pipeline and mutant together. The search keeps points that make some register differ, preferably in a late stage, and
-//! changes one of their operands at a time. A search without a result proves nothing.
+//! pipeline and mutant together. The search keeps points that make registers differ in the latest stage so far, and changes one
+//! of their operands at a time. A search without a result proves nothing.
 
 use std::sync::Arc;
 

@@ -1,8 +1,8 @@
 //! Measures a core in standard cells of 0.18 µm before layout, with Yosys for the area and OpenSTA for the delay.
 //!
-//! Yosys buffers nets with a large fan-out and sizes the cells; otherwise the clock enable of a pipeline would be slower than
-//! all logic that it enables. The cell library is from Oklahoma State University, in the typical corner, as Debian's package
-//! `qflow-tech-osu018` has it. The number of gates is the area of all cells, divided by the area of the cell NAND2X1.
+//! Yosys buffers nets with a large fan-out and sizes the cells. By default, the cell library is from Oklahoma State University,
+//! in the typical corner, as Debian's package `qflow-tech-osu018` has it. The number of gates is the area of all cells, divided
+//! by the area of the cell NAND2X1.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! Generates the harness of a core: a Verilog module that contains the core, with a register on each side of every port.
+//! Generates the harness of a core: a Verilog module that contains the core, with registers at all ports except the clock.
 //!
 //! With the registers, timing analysis covers the paths at the ports, and the FPGA's pins do not limit the frequency. The
 //! registers are shift registers, so the harness has only four pins: `clk`, `in`, `take` and `out`.

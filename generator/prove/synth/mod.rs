@@ -1,10 +1,10 @@
 //! Measures area and frequency of a core with outside tools for synthesis, placement, routing and timing analysis. [`Flow`]
 //! finds the tools for a target, and measures.
 //!
-//! A register lies on each side of every port of the core (`harness`), so that pins do not limit the frequency. iCE40, ECP5,
+//! Registers lie at all ports of the core except the clock (`harness`), so that pins do not limit the frequency. iCE40, ECP5,
 //! Nexus and GateMate are placed and routed with nextpnr; cells of 0.18 µm are timed before layout with OpenSTA. For Gowin and
-//! Xilinx 7, only the area is measured, because no open tool times all of their cells. A measurement fails if the timing would
-//! leave out the delay of a DSP block.
+//! Xilinx 7, only the area is measured, because no open tool times all of their cells. On iCE40 and ECP5, a measurement fails
+//! if the timing would leave out the delay of a DSP block.
 
 mod cells;
 mod ecp5;

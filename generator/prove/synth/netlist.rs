@@ -2,7 +2,7 @@
 //! names in the device's description.
 //!
 //! Reports use these names: a critical path then shows, for example, the net `second` instead of a generated name. The module
-//! also checks that every DSP block has a form that the timing analysis knows.
+//! can also check that every DSP block has a form that the timing analysis knows; iCE40 and ECP5 need this check.
 
 use std::collections::BTreeMap;
 

@@ -3,7 +3,7 @@
 //!
 //! nextpnr-nexus knows the delay of every kind of cell, so the module checks no cell. The preparation writes the locations of
 //! the pins. The preparation also disconnects the grounded carry input of the first cell of a carry chain, which nextpnr-nexus
-//! refuses.
+//! 0.11 refuses.
 
 use std::collections::BTreeSet;
 

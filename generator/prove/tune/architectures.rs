@@ -1,5 +1,5 @@
 //! Builds a configuration in each of its architectures and estimates the cost: the sequential core, and pipelines with
-//! different intervals, which are the numbers of clocks from one point to the next.
+//! different intervals, which are the numbers of clocks from one point to the next, at most 64.
 //!
 //! Nothing is synthesised. A pipeline of a sequential configuration is scheduled for the target, at the default clock or, if
 //! that is out of reach, at the fastest clock that can be reached.

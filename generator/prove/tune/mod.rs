@@ -1,9 +1,11 @@
-//! Finds the configuration of a device with the smallest estimated cost whose error is at most a limit that the user gives.
+//! Searches for the configuration of a device with the smallest estimated cost whose error is at most a limit that the user
+//! gives. The search is local, so a cheaper configuration may exist.
 //!
 //! The error is the proved bound of the accuracy contract, so the answer of [`tune`] holds for every operand of the domain. The
 //! cost is estimated from the netlist ([`model`]), without synthesis. The search changes only keys that change neither a port
-//! nor the formula (`space`). Keys that add microinstructions, and so clocks, are changed only if the user states a rate or a
-//! largest number of DSP blocks, minimises DSP blocks, or if no other configuration fits the chip.
+//! nor the formula (`space`). If the user states a rate or a largest number of DSP blocks, it also tries pipelines. Keys that
+//! add microinstructions, and so clocks, are changed only in these two cases, if DSP blocks are minimised, or if no other
+//! configuration fits the chip.
 
 pub mod architectures;
 pub mod model;

@@ -1,9 +1,9 @@
 //! Estimates the area and the clock frequency of a core from its netlist, without synthesis.
 //!
 //! DSP blocks and block RAMs follow from the bit widths. LUTs are a weighted sum of [`Features`] of the netlist;
-//! `benches/tune/fit` fits the weights to the records in `records/synthesis/`. The frequency follows from the longest path
-//! between registers. The delays of its cells are in [`Timing`](glint_base::target::Timing): they were measured for each FPGA
-//! family, and the scheduler of pipelines uses them too.
+//! `benches/tune/fit` fits the weights to records of `glint synth`. The frequency follows from the longest path between
+//! registers. The delays of its cells are in [`Timing`](glint_base::target::Timing): they were measured or estimated for each
+//! FPGA family, and the scheduler of pipelines uses them too.
 
 use std::collections::BTreeSet;
 

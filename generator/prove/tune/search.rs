@@ -1,8 +1,8 @@
 //! Searches for the configuration with the smallest cost whose error, clock, rate and DSP blocks meet a goal.
 //!
 //! The search moves from a configuration to a neighbour, which has another value of one key. The search first moves toward the
-//! goal until the goal is met, and then to smaller configurations that still meet it. At the end it also tries changes of two
-//! keys. The result may be a local minimum.
+//! goal until the goal is met, and fails if no neighbour is nearer. Then it moves to smaller configurations that still meet the
+//! goal. If no change of one key helps, it tries changes of two keys. The result may be a local minimum.
 
 use std::cmp::Ordering;
 use std::collections::BTreeMap;

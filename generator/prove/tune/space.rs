@@ -1,10 +1,12 @@
 //! Finds the keys that `glint tune` may change, and the steps from a configuration to its neighbours.
 //!
-//! A key is free if no value that is tried for it changes the ports of the core or its formula, and each makes a design. The
-//! number of microinstructions must stay the same too, unless the search may make slower cores. The keys of the tables `domain`
-//! and `function` are never free, because they are part of the user's question.
+//! A key is free if no value that is tried for it changes the ports of the core or its formula, and each makes a design. Values
+//! that the schema refuses do not count, and formulas are compared at 600 random points. The number of microinstructions must
+//! stay the same too, unless the search may make slower cores. The keys of the tables `domain` and `function` are never free,
+//! because they are part of the user's question.
 //!
-//! A step gives one free key a value next to its own. For example, the integer 8 becomes 7, 9, 6, 10, 4 or 12.
+//! A step gives one free key a value next to its own. For example, the integer 8 becomes 7, 9, 6, 10, 4 or 12, if the key
+//! allows it.
 
 use anyhow::{Context, Result};
 

@@ -1,7 +1,7 @@
 //! Defines the checks of `glint verify` that need no outside tool: design rules, co-simulation, the error bound and faults.
 //!
-//! Without full effort, a check does only a part of a long job, and its finding says which. Random stimulus has a fixed seed,
-//! so the findings are the same in every run.
+//! Without full effort, a check does only a part of a long job, or leaves it out, and its finding says so. Random stimulus has
+//! a fixed seed, so a repeated run has the same findings.
 
 use std::ops::ControlFlow;
 

@@ -1,7 +1,8 @@
 //! Defines the checks of `glint verify` that run outside tools: provers, solvers, linters, simulators and synthesis.
 //!
 //! Most of the checks read the emitted files. [`CERTIFICATE`] reads the netlist and the microprogram, [`EQUALITY`] the netlists
-//! of a pipeline and its sequential core. The check that runs a C compiler is in `recomputation`.
+//! of a pipeline and its sequential core, and [`TEXT`] the Verilog and the netlist. The check that runs a C compiler is in
+//! `recomputation`.
 
 use std::fs;
 use std::path::Path;

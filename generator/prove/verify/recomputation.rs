@@ -2,9 +2,9 @@
 //! formulas with MPFR and with the C library, and not with Glint's arithmetic. The program compares the formulas with the
 //! results of the core's C model.
 //!
-//! For example, the program for `x / y` with operands of 12 bits compares 2^24 results with the formula in about a second. The
-//! program uses MPFR only if doubles, with a margin for their rounding, cannot decide. Too many combinations are left out
-//! without `--full`.
+//! For example, the program for `x / y` with operands of 12 bits compares 2^24 results with the formula. For an expression, the
+//! program uses MPFR only if doubles, with a margin for their rounding, cannot decide. Without `--full`, the check is left out
+//! for more than 2^24 combinations of an expression, or 2^20 operands of a function.
 
 use std::fs;
 use std::path::Path;

@@ -1,7 +1,8 @@
 //! Compares devices at one exponent n: how near each one comes to `cosⁿγ`, and how much hardware it takes.
 //!
-//! `cosⁿγ` is Blinn's specular highlight, which every highlight device approximates. The error is measured at 9001 angles from 0
-//! to 90° and split by cause: the device's formula, the rounding of its operands, and its fixed-point arithmetic.
+//! `cosⁿγ` is Blinn's specular highlight. A device that is no highlight, or whose operands cannot represent n, has no error
+//! here. The error is measured at 9001 angles from 0 to 90° and split by cause: the device's formula, the rounding of its
+//! operands, and its fixed-point arithmetic.
 
 use std::fmt;
 

@@ -1,5 +1,5 @@
-//! Asks a synthesis tool how many cells a core takes on each FPGA family: LUTs, DSP blocks and block RAMs. The cells are
-//! counted before placement.
+//! Asks a synthesis tool how many cells a core takes on each FPGA family that Glint compares: LUTs, DSP blocks and block RAMs.
+//! The cells are counted before placement.
 
 use anyhow::{Context, Result};
 use rayon::prelude::*;

@@ -1,11 +1,12 @@
 //! Renders pictures whose specular highlights are bit-exact results of a device.
 //!
 //! The host is the software around the device. The host computes visibility, normals, half vectors, and the ambient and diffuse
-//! light in f64. An [`Engine`] computes the specular term of every sample and light, point by point or along lines of points. A
-//! device that takes normals as operands, such as `shading`, also computes the ambient and diffuse light of a lit surface.
+//! light in f64. An [`Engine`] computes the specular term of each sample for each light that falls on it, point by point or
+//! along lines of points. A device that takes normals as operands, such as `shading`, also computes the ambient and diffuse
+//! light of a lit surface.
 //!
-//! The same picture has the same bytes on every machine, because `libm` computes the transcendental functions. The bytes depend
-//! neither on the engine nor on the number of threads.
+//! The same picture has the same bytes on every machine, because `libm` computes the transcendental functions. For a core
+//! without mistakes, the bytes depend neither on the engine nor on the number of threads.
 
 mod camera;
 mod height;

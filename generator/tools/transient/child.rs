@@ -1,4 +1,5 @@
-//! Starts child processes, and kills them together with all processes that they started.
+//! Starts child processes, and kills them together with the processes that they started. On Windows, only the child itself is
+//! killed.
 
 use std::io;
 use std::process::{self, Command, ExitStatus};

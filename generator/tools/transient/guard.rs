@@ -1,4 +1,4 @@
-//! Kills the child processes of Glint if Glint itself is killed.
+//! Kills the child processes of Glint if Glint itself is killed, on systems with a shell at `/bin/sh`.
 //!
 //! The guard is a shell that runs in parallel to Glint and outlives it. Glint writes the process numbers of its children to the
 //! guard. When the pipe between them closes, Glint has ended, and the guard kills the children that are left.

@@ -1,9 +1,10 @@
-//! Keeps a list of the child processes and temporary directories of this process, so that none is left behind.
+//! Keeps a list of the child processes and temporary directories of this process, so that Glint can end the processes and
+//! delete the directories.
 //!
 //! If the process is interrupted, [`clear`] kills all children and deletes all directories on the list. A lock on the list
-//! prevents that a new child or directory appears meanwhile. If the process is killed and cannot call [`clear`], a guard process
-//! kills its children. The next run of Glint then deletes its temporary directories, which it recognises by lock files that no
-//! process has locked.
+//! prevents that a new child or directory appears meanwhile. If the process is killed and cannot call [`clear`], a guard
+//! process kills its children (not on Windows). The next run of Glint that makes a temporary directory in the same place then
+//! deletes the old ones, which it recognises by lock files that no process has locked.
 
 mod child;
 #[cfg(unix)]

@@ -1,4 +1,4 @@
-//! Tests `glint eval`, `glint list`, `glint new` and `-V`, most of them with every device of the catalogue.
+//! Tests `glint eval`, `glint list`, `glint new` and `-V`.
 
 use glint::registry::Registry;
 

@@ -1,4 +1,5 @@
-//! Tests that the program refuses wrong files and wrong arguments with an exit code from 0 to 2, and never panics.
+//! Gives the program wrong files and wrong arguments. Tests that its exit code is from 0 to 2, that it never panics, and that a
+//! refused file writes nothing.
 
 use std::ffi::OsString;
 

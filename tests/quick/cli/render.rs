@@ -1,8 +1,8 @@
 //! Tests `glint render`: the pixels of its pictures, the agreement of its engines, and the messages about unusable meshes and
 //! height maps.
 //!
-//! Among other things it repeats the commands of `docs/images/README.md` and compares the pictures with the files of the
-//! repository.
+//! A default run draws two scenes and ten configurations for the comparison of engines. Among other things the file repeats the
+//! commands of `docs/images/README.md` and compares the pictures with the files of the repository.
 
 use std::fs;
 use std::io::Cursor;

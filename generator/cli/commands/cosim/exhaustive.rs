@@ -1,4 +1,5 @@
-//! `glint cosim --exhaustive`: checks the error bound of a contract over all operands, as one run or as one shard of several.
+//! `glint cosim --exhaustive`: checks the error bound of a contract for every operand combination that the contract or the user
+//! lists, as one run or as one shard of several.
 
 pub mod show;
 

@@ -1,4 +1,5 @@
-//! `glint synth --front`: measures a configuration in each of its architectures, from the sequential core to a point every clock.
+//! `glint synth --front`: measures a configuration in each of its architectures, from the sequential core to a point every
+//! clock. It leaves out a pipeline if a faster one has no more multipliers.
 
 use anyhow::{Context, Result, bail};
 use rayon::prelude::*;

@@ -1,6 +1,6 @@
 //! Computes many points (sets of operands) with the built-in simulator.
 //!
-//! [`RustHdl`] has one simulator for each thread. A simulator runs many instances of the design side by side, one in each lane,
+//! [`RustHdl`] has one simulator for each thread. A simulator runs 32 instances of the design side by side, one in each lane,
 //! and each instance computes a point of its own.
 
 use std::array;

@@ -1,8 +1,8 @@
 //! Records which features of a design each computation exercises.
 //!
-//! A feature is one event at one net of the design: a mux takes one of its inputs, a comparison is true or false, a bit is 1 or
-//! 0. The words that a computation reads from ROMs are recorded too. The module `directed` uses the record to choose a few
-//! computations that together exercise every feature.
+//! A feature is one event at one net of the design: a mux takes one of its inputs, a comparison has one of its outcomes, a bit
+//! is 1 or 0. The words that a computation reads from ROMs are recorded too. The module `directed` uses the record to choose a
+//! few computations that together exercise as many features as a limit of clocks allows.
 
 use super::side_by_side::{LANES, Lanes};
 use glint_base::fixed::mask;

@@ -1,4 +1,4 @@
-//! Gives each lane of the built-in simulator its own copy of a design's ROMs.
+//! Gives each lane of the built-in simulator its own copy of a design's ROMs, except the control ROM.
 //!
 //! The search for test computations inverts bits of ROM words, to find out whether the results of a computation change. With a
 //! copy for each lane, one simulation tries a different inverted bit in every lane.

@@ -1,20 +1,21 @@
 //! Chooses computations for the test bench that is emitted with a core, so that the bench detects faults in the core.
 //!
-//! A user who ports the core, edits a memory or changes the synthesis tool relies on this bench. Random points (sets of operands)
-//! reach neither every word of a ROM nor both outcomes of every comparison. This module therefore draws a large pool of
-//! computations, simulates them, and chooses some of them:
+//! A user who ports the core, edits a memory or changes the synthesis tool relies on this bench. Random points (sets of
+//! operands) may miss words of a ROM and outcomes of a comparison. This module therefore draws a large pool of computations,
+//! simulates them, and chooses some of them:
 //!
-//! - For each ROM word that any computation reads, and each bit in the upper half of the word: one computation whose results
-//!   change if the bit is inverted. If the pool has no such computation, the module searches near the computations that read the
-//!   word, and gives up after some rounds. For a device that computes a line of points, and reads a word in each clock, the
-//!   module chooses a line that reads the word. If all this takes too many clocks, only every second word has such a computation,
-//!   or every third, and so on.
+//! - For each word of a ROM, except the control ROM, that any computation reads, and each bit in the upper half of the word:
+//!   one computation whose results change if the bit is inverted. If the pool has no such computation, the module searches near
+//!   the computations that read the word, and gives up after some rounds. For a device that computes a line of points, and
+//!   reads a word in each clock, the module chooses a line that reads the word. If all this takes too many clocks, only every
+//!   second word has such a computation, or every third, and so on.
 //! - For a highlight device that computes lines: one line of the largest length in the contract's domain, but of at most 4095
 //!   intervals.
-//! - Every combination of the smallest and the largest values of the operands that determine `f`, but at most the first 128
-//!   combinations. Lines have at most three points in these combinations.
-//! - For each bit of each net, each input of a mux and each outcome of a comparison: some computations that exercise this bit,
-//!   input or outcome with large results, some with small results and some with results of 0.
+//! - Every combination of the smallest and the largest values of the operands, but at most the first 128 combinations. Colours
+//!   have only their largest value. Lines have at most three points in these combinations.
+//! - For each bit of each net, each input of a mux and each outcome of a comparison: two computations that exercise this bit,
+//!   input or outcome with large results, two with small results and two with results of 0. Fewer are chosen if the pool has no
+//!   more, or if all chosen computations would take more than 20 000 clocks.
 //!
 //! The choice depends neither on time nor on threads: the same design always gets the same computations.
 

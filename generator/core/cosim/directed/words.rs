@@ -1,8 +1,8 @@
 //! Finds computations that detect faults in the words of a design's ROMs.
 //!
-//! A computation detects a fault if its results change when a bit in the upper half of a word is inverted. The search first tries
-//! the candidates of the pool that read the word. If no candidate detects a bit, the search tries other computations with similar
-//! operands.
+//! A computation detects a fault if its results change when a bit in the upper half of a word is inverted. The search first
+//! tries the candidates of the pool that read the word. If no candidate detects a bit, the search tries other computations with
+//! similar operands, and gives up after twelve rounds.
 
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};

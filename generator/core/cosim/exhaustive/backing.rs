@@ -1,7 +1,7 @@
 //! Finds the evidence for the error bound that a contract states.
 //!
-//! A device of the catalogue has a proof in the Rust code of its golden model. For another device, the evidence is the record of
-//! an exhaustive check by `glint cosim --exhaustive`, or the record of a proof by `glint certify`. Without any of these, only the
+//! A device of Glint has a proof in the Rust code of its golden model. For another device, the evidence is the record of an
+//! exhaustive check by `glint cosim --exhaustive`, or the record of a proof by `glint certify`. Without any of these, only the
 //! author states the bound. Datasheets and reports print the evidence next to the bound.
 
 use std::fmt;

@@ -1,7 +1,8 @@
-//! Compares every register and every output with the golden model at every clock, for every combination of operands.
+//! Compares every signal that the golden model predicts at every clock, for every combination of operands. In a sequential
+//! core, the signals are the outputs and all architectural registers; in a pipeline, the outputs and the checkpoints.
 //!
 //! This check is feasible only for devices whose operands have at most 26 bits in total; a device of full width is checked
-//! through a narrow configuration. The combinations are numbered and divided into blocks. Each lane of a simulator runs some
+//! through a narrow configuration. The combinations are numbered and divided into blocks. Each lane of a simulator runs 512
 //! consecutive combinations from power-up on, and each computation begins with the register values of the previous computation.
 //! The result does not depend on the order of the blocks.
 

@@ -1,7 +1,8 @@
 //! Converts the progress of an exhaustive check to the text of a file, and back.
 //!
-//! The file has a checksum, so that a file that was cut or edited is rejected. `glint cosim --exhaustive --resume FILE` keeps its
-//! progress in such a file and continues from it, and `glint merge` reads the files of all shards.
+//! The file has a checksum, so that a file that was cut, or edited without a new checksum, is rejected. `glint cosim
+//! --exhaustive --resume FILE` keeps its progress in such a file and continues from it, and `glint merge` reads the files of
+//! all shards.
 
 use anyhow::{Context, Result, ensure};
 use serde::{Deserialize, Serialize};

@@ -1,7 +1,8 @@
 //! Generates the bit-exact model of a core in C: a header, the functions, and an example in Python that calls them.
 //!
 //! A function computes the raw results of one point, or of a line of points, from raw operands. The module `print` prints the
-//! function from the unrolled microprogram. A core that waits for a second `start` within a computation has no model.
+//! function from the unrolled microprogram, or for a line from one clock of the core. A core that waits for a second `start`
+//! within a computation has no model.
 
 use glint_base::fill;
 use std::collections::BTreeMap;

@@ -1,7 +1,8 @@
 //! Generates the host's part of a device that computes a line of points, in C and in Python.
 //!
-//! The host starts such a device once for a whole line. The generated functions compute the operands of a line from the vectors
-//! or angles at its two ends. The functions use the same formulas as `render::setup`, and tests compare the results.
+//! The host starts such a device once for a whole line. A device with other operands than these formulas give has no such
+//! functions. The generated functions compute the operands of a line from the vectors or angles at its two ends. The functions
+//! use the same formulas as `render::setup`, and tests compare the results.
 
 use anyhow::Result;
 use glint_base::fill;

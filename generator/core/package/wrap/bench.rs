@@ -1,6 +1,7 @@
 //! Generates the test benches of a core's wrappers, `<name>_axis_tb.v`, and `<name>_axil_tb.v` or `<name>_wb_tb.v`.
 //!
-//! The benches send the same computations through the wrapper as the core's own bench sends through the core.
+//! The benches send the finished computations of the core's own bench through the wrapper, up to 4096 results. A bench of a bus
+//! wrapper leaves some out if there are more than 256 computations.
 
 use anyhow::Result;
 use glint_base::fill;

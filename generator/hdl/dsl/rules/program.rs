@@ -1,5 +1,5 @@
-//! Checks the microprogram of a description. The microprogram must raise `valid`, but only after the result is loaded. Some
-//! microinstruction must select an input of every mux. Every loop must be able to end.
+//! Checks the microprogram of a description. The microprogram must raise `valid`, but only after the result is loaded. For the
+//! select lines of every mux, some microinstruction must make a choice. Every loop must be able to end.
 
 use std::collections::HashSet;
 

@@ -1,7 +1,7 @@
 //! Finds a minimum cut in a netlist: a set of nets with the fewest bits that together determine some wanted nets.
 //!
-//! For example, a sum of 5 bits is a smaller cut than its two operands of 4 bits each. The method is a maximum flow whose
-//! capacities are the bits of the nets.
+//! For example, a sum of 5 bits is a smaller cut than its two operands of 4 bits each. The caller names nets that must not be
+//! in the cut, because the fault changes them. The method is a maximum flow whose capacities are the bits of the nets.
 
 use std::collections::{BTreeMap, BTreeSet};
 

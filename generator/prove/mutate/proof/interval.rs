@@ -1,8 +1,9 @@
-//! Computes the interval of values of each net from the cell that drives it and the intervals of the cell's operands. The proofs
-//! about faults try only values within these intervals.
+//! Computes the interval of values of each net from the cell that drives it and the intervals of the cell's operands. The
+//! proofs about faults try only values within these intervals.
 //!
-//! The device's description also states intervals. The module uses them only for registers: the stated interval of an operand
-//! of a shared multiplier may hold for some of its products only.
+//! The device's description also states intervals. The module uses them only for registers that are not internal and whose
+//! interval contains 0. The stated interval of an operand of a shared multiplier may hold for some of its products only, and a
+//! register is 0 at power-up.
 
 use super::pairs::{self, Pairs};
 use glint_base::interval::{Interval, fits, hull, of_values};

@@ -1,10 +1,11 @@
 //! Proves that a fault never changes an output or a register that the golden model predicts.
 //!
-//! There are two proofs. The first is an induction over clocks: in every microinstruction, it evaluates the fault-free design and
-//! the mutant together, and tracks which pairs of values each bit can have in the two ([`pairs`]). An internal register, for
-//! example one behind a multiplier, may differ: the induction passes its possible pairs on to the next microinstructions. If no
-//! output and no predicted register differs in any microinstruction, the mutant is equivalent. The second proof tries every
-//! combination of values on the nets around the fault ([`window`]).
+//! There are two proofs. The first is an induction over clocks: in every microinstruction, it evaluates the fault-free design
+//! and the mutant together, and tracks which pairs of values each bit can have in the two ([`pairs`]). An internal register,
+//! for example one behind a multiplier, may differ: the induction passes its possible pairs on to the next microinstructions.
+//! If no output and no predicted register differs in any microinstruction, the mutant is equivalent. A pipeline has slots in
+//! place of microinstructions, and its checkpoints are compared too. The induction proves no fault that changes a reset. The
+//! second proof tries every combination of values on the nets around the fault ([`window`]).
 
 mod cut;
 mod flat;

@@ -2,8 +2,8 @@
 //!
 //! A window is a part of the netlist. The window reaches forward from the fault over some cells, at most to registers, ROMs and
 //! outputs. The window reaches backward to a minimum cut: the fewest bits that determine the window. The proof tries every
-//! value in the intervals of these nets, at most 2^22 combinations. For example, the window of an inverted bit may end at an
-//! AND that masks the bit.
+//! value in the intervals of these nets; if there are more than 2^22 combinations, it fails. For example, the window of an
+//! inverted bit may end at an AND that masks the bit.
 
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};

@@ -1,7 +1,8 @@
-//! Makes the datasheet of a configuration: one HTML page, like a vendor's product guide, that needs no other file and no network.
+//! Makes the datasheet of a configuration: one HTML page, like a vendor's product guide, that needs no other file and no
+//! network.
 //!
-//! All content comes from the netlist, the golden model, the contract and simulation. No code here depends on the name of a
-//! device.
+//! All content comes from the configuration, the netlist, the golden model, the contract, simulation, synthesis and records of
+//! checks and measurements. No code here depends on the name of a device.
 
 mod measured;
 mod microprogram;

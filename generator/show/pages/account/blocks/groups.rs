@@ -1,8 +1,10 @@
-//! Groups the nets of a netlist into blocks for a block diagram: one block for each statement of the device's description.
+//! Groups the nets of a netlist into blocks for a block diagram: one block for each statement of the device's description. A
+//! statement makes several blocks if its operators do not belong together, such as a multiplier and an adder in a sequential
+//! core.
 //!
-//! For each net, the module finds its *sources*: the blocks, ports and ROMs whose values reach it through wiring and gates alone.
-//! If several sources meet in one net, and an operator such as an adder takes the net, that net is a *joint*. A joint is drawn as
-//! a block of gates or wiring.
+//! For each net, the module finds its *sources*: the blocks, ports and ROMs whose values reach it through wiring and gates
+//! alone. If several sources meet in one net, and an operator such as an adder takes the net, that net is a *joint*. A joint is
+//! drawn as a block of gates or wiring.
 
 use std::collections::BTreeSet;
 

@@ -1,9 +1,9 @@
 //! Finds the blocks of a datapath, which pages list and the block diagram draws.
 //!
-//! A block is the hardware of one statement in the device's description, for example a rounding with its limits, a tree of
-//! muxes, or a product in parts. Every register, ROM and operator of the datapath is in exactly one block. Wiring, and gates
-//! with one signal, belong to the connection between two blocks. In a pipeline, a register belongs to the block or the operand
-//! port whose value it delays, and the registers of the handshake are in no block.
+//! A block is the hardware of one statement in the device's description, or a part of it, for example a rounding with its
+//! limits, a tree of muxes, or a product in parts. Every register, ROM and operator of the datapath is in exactly one block.
+//! Wiring, and gates with one signal, belong to the connection between two blocks. In a pipeline, a register belongs to the
+//! block or the operand port whose value it delays, and the registers of the handshake are in no block.
 
 mod groups;
 mod kind;
