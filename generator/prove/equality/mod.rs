@@ -111,9 +111,9 @@ impl fmt::Display for OutputDifference {
     }
 }
 
-/// Proves that a pipeline computes the same outputs as its sequential core, or finds a point for which an output differs. The
-/// designs are simulated at 400 random points before the solver is asked. `limit` is the time limit of all answers of the
-/// solver together.
+/// Proves that a pipeline computes the same outputs as its sequential core, or finds a point for which an output differs, or
+/// leaves the question open if the solver does not decide it. The designs are simulated at 400 random points before the solver
+/// is asked. `limit` is the time limit of all answers of the solver together.
 ///
 /// # Errors
 /// Fails if `pipeline` is no pipeline, if the designs have different operands, or if the core lacks an output of the pipeline.
