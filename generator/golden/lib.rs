@@ -425,8 +425,8 @@ pub struct Term {
 }
 
 impl Bound {
-    /// Returns the bound of a device that is no highlight. The bound is the sum of the terms, or infinite if there are no
-    /// terms.
+    /// Returns the bound of a device that is no highlight. The bound is the sum of the terms, or infinite if there are no terms
+    /// or the sum is NaN.
     pub fn of(terms: Vec<Term>) -> Self {
         let sum: f64 = terms.iter().map(|term| term.units).sum();
         // A sum that is NaN limits nothing.

@@ -133,8 +133,8 @@ impl Formula for Normaliser {
         Some((0..3).map(|_| ((2.0 * unit() - 1.0) * most).round() as i64).collect())
     }
 
-    /// Returns every sum of squares. The sum determines the inverse root, and so the largest error of a component. The result
-    /// is never `None`.
+    /// Returns every sum of squares from 1 on; the zero vector is left out. The sum determines the inverse root, and so the
+    /// largest error of a component. The result is never `None`.
     fn sweep(&self) -> Option<Sweep> {
         Some(self.root.sweep())
     }
