@@ -175,7 +175,8 @@ impl DecayArithmetic {
     }
 }
 
-/// Returns the golden model of `blinn` or `gauss`; `of` says which.
+/// Returns the golden model of `blinn` or `gauss`; `of` says which. Panics if the check of the schema has not accepted the
+/// configuration.
 pub fn model(config: &Config, of: Decay) -> Box<dyn Model> {
     let it = Arc::new(DecayArithmetic::new(of, Keys::of(config)));
     let keys = &it.keys;
@@ -211,7 +212,8 @@ pub fn model(config: &Config, of: Decay) -> Box<dyn Model> {
     Box::new(products.behind(frame, reflectance, program))
 }
 
-/// Returns the accuracy contract of `blinn` or `gauss`; `of` says which. The control operands are `cos_gamma` and `exponent`.
+/// Returns the accuracy contract of `blinn` or `gauss`; `of` says which. Panics if the check of the schema has not accepted the
+/// configuration. The control operands are `cos_gamma` and `exponent`.
 pub fn contract(config: &Config, of: Decay) -> Box<dyn Contract> {
     let it = DecayArithmetic::new(of, Keys::of(config));
     let operands = highlight::operands(&it.keys.operands, &it.keys.domain);

@@ -246,7 +246,7 @@ pub trait Contract: Send + Sync {
         self.bound().units
     }
 
-    /// Returns the largest error of an output at raw operands, in units.
+    /// Returns the largest error of an output at raw operands, in units, in the first result of the computation.
     fn largest_error(&self, operands: &[i64]) -> f64 {
         let (mut raw, mut exact) = (Vec::new(), Vec::new());
         self.results(operands, 0, &mut raw);

@@ -41,7 +41,7 @@ impl Normaliser {
     }
 
     /// Returns the raw component of the unit vector for a raw component of v. The component is shifted left by `pairs` places,
-    /// and multiplied by `inverse`, the inverse root of the shifted v·v.
+    /// and multiplied by `inverse`, the inverse root of the shifted v·v. The product is rounded.
     fn scaled(&self, component: i64, pairs: i64, inverse: i64) -> i64 {
         let shifted = if component == 0 { 0 } else { component << pairs };
         self.rounded.apply(shifted * inverse)
