@@ -216,9 +216,9 @@ impl TargetFunction {
         RBig::from(raw) * scale
     }
 
-    /// Returns two neighbouring operands, as real numbers, between which the formula has a pole, or comes so near to a pole that
-    /// interval arithmetic cannot exclude the pole. Returns `None` if there are no such operands, if the function is a curve
-    /// through samples, or if 65536 intervals do not suffice for the search.
+    /// Returns two neighbouring operands, as real numbers, between which the formula has a pole, or has no value, or comes so
+    /// near to such a place that interval arithmetic cannot exclude it. Returns `None` if there are no such operands, if the
+    /// function is a curve through samples, or if 65536 intervals do not suffice for the search.
     pub fn pole(&self) -> Option<(f64, f64)> {
         let Curve::Formula(formula) = &self.curve else { return None };
         let mut open = vec![self.domain];

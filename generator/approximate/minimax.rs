@@ -10,7 +10,8 @@ const MOST: usize = 4;
 const EXCHANGES: usize = 30;
 
 /// Returns the polynomial of degree `degree` with the smallest largest distance from `values` at the points `at`, and this
-/// distance. The coefficients start with the constant; unused coefficients are 0. The points must be in rising order, and the
+/// distance. If the search does not settle within [`EXCHANGES`] exchanges of a point, the result is the best polynomial until
+/// then. The coefficients start with the constant; unused coefficients are 0. The points must be in rising order, and the
 /// degree must be at most 3. If there are not more points than coefficients, the polynomial passes through all points, with a
 /// lower degree if necessary, and the distance is 0.
 pub fn minimax(at: &[f64], values: &[f64], degree: usize) -> ([f64; MOST], f64) {

@@ -107,7 +107,8 @@ pub(super) fn search(function: &TargetFunction, wish: Wish) -> Result<Piecewise,
     ))
 }
 
-/// Returns the cheapest approximation with a proved bound, or `None` if the search finds none.
+/// Returns the cheapest approximation with a proved bound, or `None` if the search finds none. The first numbering of the
+/// operands that has an approximation decides; later numberings are not tried.
 ///
 /// # Errors
 /// Fails if the function has no value at an operand, if a found approximation cannot be proved, or as [`attempt_reduced`] does if
@@ -239,9 +240,10 @@ fn most_words(seen: &AllowedResults, degree: u32, least: f64) -> usize {
     (((least - STEP * f64::from(degree)) / word).max(0.0) as usize).min(1 << ADDRESS)
 }
 
-/// Returns the divisions of the domain into at most `most` segments that are fine enough for polynomials of degree `degree`, in
-/// order of rising numbers of segments. A division is fine enough if polynomials with unrounded coefficients keep the error.
-/// `layout` restricts the divisions to one layout.
+/// Returns divisions of the domain into at most `most` segments that are fine enough for polynomials of degree `degree`, in
+/// order of rising numbers of segments. These are the coarsest division of a layout and a number of octaves, if more octaves
+/// have made it coarser than the divisions before, and the same with twice as many segments. A division is fine enough if
+/// polynomials with unrounded coefficients keep the error. `layout` restricts the divisions to one layout.
 fn cuts(seen: &AllowedResults, degree: u32, layout: Option<Layout>, most: usize) -> Vec<Segments> {
     let mut search = CutSearch { seen, degree, most, worst: None };
     let mut cuts: Vec<Segments> = Vec::new();

@@ -74,8 +74,8 @@ impl Segments {
         u32::from(self.overhang > 0)
     }
 
-    /// Returns whether the last segment can contain the overhang. The overhang must have at most half as many numbers as the
-    /// longest segment, and the layout must not be `Halving`. Without an overhang, returns `true`.
+    /// Returns whether the last segment can contain the overhang. The longest segment must have at least four numbers, the
+    /// overhang at most half as many, and the layout must not be `Halving`. Without an overhang, returns `true`.
     pub fn holds_overhang(&self) -> bool {
         if self.overhang == 0 {
             return true;

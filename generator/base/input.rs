@@ -13,8 +13,9 @@ pub const STDIN: &str = "-";
 /// Returns the name under which written files mention the file `path`: without directories, so that the name is the same on every
 /// machine. For example, `configs/rough.toml` becomes `rough.toml`.
 ///
-/// A name with blanks is in single quotes, as a shell needs it: `'my core.toml'`. A character that could end a comment or a
-/// string of an emitted file becomes `%` with its bytes in hexadecimal, as in a URL.
+/// A name with blanks or other signs of a shell is in single quotes, as a shell needs it: `'my core.toml'`. A name with a
+/// character that could end a comment or a string of an emitted file has no quotes: in such a name, every character except
+/// letters, digits and `._+-` becomes `%` with its bytes in hexadecimal, as in a URL.
 pub fn label(path: &str) -> String {
     let name = path.rsplit('/').next().unwrap_or(path);
     let plain = |sign: char| sign.is_alphanumeric() || "._+-".contains(sign);

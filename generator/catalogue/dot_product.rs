@@ -11,7 +11,7 @@ use glint_keys::dot_product::Keys;
 use glint_rtl::dsl::{About, Designer, Signal, end, step, valid};
 
 /// Describes the hardware of `dot-product`, which computes the cosine between a vector of any length and a unit vector. A
-/// negative cosine becomes 0, or positive with the key `two_sided`.
+/// negative cosine becomes 0, or positive with the key `two_sided`. A result above 1 becomes 1, and the zero vector gives 0.
 pub fn describe(d: &Designer, config: &Config) {
     let keys = Keys::of(config);
     let lower = if keys.two_sided { "abs(" } else { "max(0, " };

@@ -30,8 +30,9 @@ enum Sink {
 }
 
 impl Destination {
-    /// Makes sure that `path` can be written. A command must call this function before it does any work for the file. If `path`
-    /// is a symbolic link, the file to which the link leads is replaced, and not the link.
+    /// Makes sure that `path` can be written. Directories that do not exist are made. A path that is no regular file, such as a
+    /// pipe, is opened and written itself. A command must call this function before it does any work for the file. If `path` is
+    /// a symbolic link, the file to which the link leads is replaced, and not the link.
     ///
     /// # Errors
     /// Fails if `path` cannot be written, if a link leads nowhere, or if its directory cannot be made.

@@ -95,8 +95,8 @@ fn template(width: usize) -> String {
     }
 }
 
-/// Formats a number with three digits, and with k, M or G for thousands, millions or billions. For example, 1234.5678 is
-/// `1.23k`.
+/// Formats a number with three digits, and with k, M or G for thousands, millions or billions. A number below 1000 has no
+/// letter, and one of 10¹² or more has more digits. For example, 1234.5678 is `1.23k`.
 fn rounded(number: f64) -> String {
     let (size, unit) = match number {
         1e9.. => (1e9, "G"),

@@ -141,7 +141,7 @@ fn not_glints(path: &Path) -> String {
     )
 }
 
-/// Returns the contents of a file; `None` if there is no file.
+/// Returns the contents of a file; `None` if there is no file. Fails if the file cannot be read.
 fn contents(path: &Path) -> Result<Option<Vec<u8>>> {
     match fs::read(path) {
         Ok(found) => Ok(Some(found)),

@@ -18,8 +18,8 @@ const LARGEST: u64 = 1 << 16;
 /// Reads a configuration file, or standard input if the path is `-`. `schemas` must contain the schemas of all devices.
 ///
 /// # Errors
-/// Fails if the file cannot be read, has more than 65,536 bytes, is not UTF-8, or has a problem that [`parse`](super::parse())
-/// finds. The error lists all problems at once.
+/// Fails if the path is a pipe, a device or a directory, or if the file cannot be read, has more than 65,536 bytes, is not
+/// UTF-8, or has a problem that [`parse`](super::parse()) finds. The error lists all problems at once.
 pub fn read(path: &Path, schemas: &[Schema]) -> Result<Config, Problems> {
     read_located(path, schemas).map(|(config, _)| config)
 }

@@ -94,8 +94,8 @@ impl TextPattern {
     }
 }
 
-/// Returns whether a text is the path of a file with points, and not the points themselves: it ends in .csv, .tsv, .txt or
-/// .dat.
+/// Returns whether a text is the path of a file with points, and not the points themselves: it ends, in small or capital
+/// letters, in .csv, .tsv, .txt or .dat.
 pub(super) fn is_path_of_points(text: &str) -> bool {
     let ending = text.rsplit_once('.').map(|(_, ending)| ending.to_ascii_lowercase());
     ending.is_some_and(|ending| ["csv", "tsv", "txt", "dat"].contains(&ending.as_str()))

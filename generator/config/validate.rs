@@ -226,7 +226,7 @@ pub(super) struct Draft<'a> {
 }
 
 /// Checks the conditions between keys: the conditions of `only_when` and `unless`, the conditions between shared keys, and the
-/// device's own check.
+/// device's own check. The first are reported only for a key that the user gave with another value than its default.
 ///
 /// A value that is not accepted is unknown. A condition is reported only if the condition fails for all trial values of the
 /// unknown keys, so that one mistake raises no messages about other keys.

@@ -97,8 +97,8 @@ impl TableEntry {
         }
     }
 
-    /// Returns the number in a field. Returns `None` if the user did not give the field, or if the value of the field is no
-    /// number.
+    /// Returns the number in a field. Returns `None` if the user did not give the field, or if its value is no
+    /// [`Value::Number`]; an integer is none.
     pub fn number(&self, name: &str) -> Option<f64> {
         match self.field(name)? {
             Value::Number(value) => Some(*value),

@@ -195,7 +195,7 @@ pub(super) fn tables(schema: &Schema) -> Vec<(&'static str, Vec<&Key>)> {
     tables
 }
 
-/// Returns a text as comment lines of at most [`WIDTH`] columns.
+/// Returns a text as comment lines of at most [`WIDTH`] bytes; only a longer word makes a longer line.
 fn comment(text: &str) -> String {
     let mut lines = String::new();
     let mut line = String::from("#");

@@ -194,8 +194,8 @@ impl Core {
         Lockstep::new(design, model, self.contract.as_ref(), seed)
     }
 
-    /// Returns the exhaustive check of this core. The check tests the error bound and, if the operands have few bits, compares
-    /// model and hardware clock by clock for every combination of operands.
+    /// Returns the exhaustive check of this core. The check tests the error bound and, if the operands have at most 26 bits in
+    /// total, compares model and hardware clock by clock for every combination of operands.
     ///
     /// # Errors
     /// Fails if golden model, design and contract do not have the same signals, operands and outputs.
@@ -211,7 +211,8 @@ impl Core {
         Ok(Job::of_sweep(self.contract.as_ref(), sweep).with(self.clocks()?))
     }
 
-    /// Returns the check that compares golden model and simulated hardware clock by clock for every combination of operands.
+    /// Returns the check that compares golden model and simulated hardware clock by clock for every combination of operands. If
+    /// the operands have more than 26 bits in total, the check compares nothing.
     ///
     /// # Errors
     /// Fails if golden model, design and contract do not have the same signals, operands and outputs.
@@ -221,7 +222,7 @@ impl Core {
     }
 
     /// Returns the numbers of clocks between the events of the handshake, such as `start` and `valid`. [`trial::timing`]
-    /// measures them.
+    /// measures them. A number that depends on the operands is `None`.
     ///
     /// # Errors
     /// Fails if a simulated computation does not finish within 65 536 clocks, or never raises `valid`.
@@ -314,7 +315,7 @@ impl Core {
     }
 
     /// Returns every emitted file of the configuration. `config` is the path of the configuration file, which the heads of the
-    /// files print in a command. Without `vectors` there are no test benches.
+    /// files print in a command. Without `vectors` there are no test benches and no formal proofs.
     ///
     /// # Errors
     /// Fails if golden model and simulation differ, if a computation does not end, or if a file or wrapper that the

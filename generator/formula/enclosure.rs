@@ -85,7 +85,7 @@ impl Enclosure {
     }
 
     /// Returns the interval of an exponential function, whose values are never below 0. If a value is beyond the range of
-    /// `f64`, the interval is from the largest `f64` to infinity.
+    /// `f64`, the upper end is infinity, and the lower end is at most the largest `f64`.
     pub(super) fn exponential(self, function: fn(f64) -> f64) -> Self {
         let Self { low, high } = self.rising(function);
         Self { low: low.clamp(0.0, f64::MAX), high }

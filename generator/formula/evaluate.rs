@@ -30,7 +30,8 @@ impl Expression {
     }
 
     /// Evaluates the formula for exact operands. The function increases the precision until all comparisons and jumps are
-    /// decided, and until the `f64` limits of the result are at most two steps apart.
+    /// decided, and until the `f64` limits of the result are at most two steps apart. With 1024 bits, it returns also wider
+    /// limits.
     ///
     /// For example, `floor(x * 0.1)` is 3 for x = 30, although 0.1 is no `f64`. The function is about a thousand times slower
     /// than [`Expression::enclose`].
@@ -52,7 +53,8 @@ impl Expression {
     /// For example, `0.3` with two fraction bits gives (2, false), and `log2(16)` with none gives (4, true).
     ///
     /// # Errors
-    /// Fails as [`Expression::evaluate_exactly`] does, or if 1024 bits do not show whether the value is an integer.
+    /// Fails as [`Expression::evaluate_exactly`] does, or if 1024 bits do not show whether the value is an integer, or if the
+    /// integer has more than 127 bits.
     pub fn ceiling(&self, fraction: u32) -> Result<(i128, bool), Fault> {
         let (precise, value) =
             self.decided(&[], |precise, value| precise.ceiling(value, fraction).is_some())?;

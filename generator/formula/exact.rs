@@ -165,7 +165,7 @@ impl Exact {
 }
 
 /// Returns the root of a number if the root is rational, and `None` otherwise. A negative number has a root only if `degree` is
-/// 1. For example, the root of degree 3 of 8/27 is 2/3.
+/// 1. A degree above [`MOST_BITS`] gives `None` too. For example, the root of degree 3 of 8/27 is 2/3.
 fn root(value: &RBig, degree: usize) -> Option<RBig> {
     if degree == 1 {
         return Some(value.clone());

@@ -198,7 +198,8 @@ impl Expression {
         count
     }
 
-    /// Returns the formula unchanged if `operand` is its only operand and it has no words of ROMs.
+    /// Returns the formula unchanged if it has no operand except `operand` and no words of ROMs. A formula without operands is
+    /// accepted too.
     ///
     /// # Errors
     /// Fails at the first other operand or word of a ROM. The error has its location.

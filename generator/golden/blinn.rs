@@ -9,12 +9,14 @@ use super::{Contract, Model};
 use glint_config::Config;
 use glint_keys::decay::Decay;
 
-/// Returns the golden model of the device `blinn` for a configuration.
+/// Returns the golden model of the device `blinn` for a configuration. Panics if the check of the schema has not accepted the
+/// configuration.
 pub fn model(config: &Config) -> Box<dyn Model> {
     decay::model(config, Decay::Logarithm)
 }
 
-/// Returns the accuracy contract of the device `blinn` for a configuration.
+/// Returns the accuracy contract of the device `blinn` for a configuration. Panics if the check of the schema has not accepted
+/// the configuration.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     decay::contract(config, Decay::Logarithm)
 }

@@ -149,8 +149,9 @@ impl Reflectance for SquaredArithmetic {
         Some((end(step) - f).max(f - end(step + 1)))
     }
 
-    /// Returns two contributions to the error of f. One is the distance of the formula from the middle of its values in a step.
-    /// The other is the rounding of the word of ROM 12. The angle and its step are exact.
+    /// Returns two contributions to the error of f. One is the distance of the formula from the middle of its values in a step;
+    /// in the last step, whose word is 0, it is the distance from 0. The other is the rounding of the word of ROM 12. The angle
+    /// and its step are exact.
     fn shares(&self) -> Vec<ErrorShare> {
         let table = &self.table;
         vec![

@@ -175,7 +175,8 @@ impl DecayArithmetic {
     }
 }
 
-/// Returns the golden model of `blinn` or `gauss`; `of` says which.
+/// Returns the golden model of `blinn` or `gauss`; `of` says which. Panics if the check of the schema has not accepted the
+/// configuration.
 pub fn model(config: &Config, of: Decay) -> Box<dyn Model> {
     let it = Arc::new(DecayArithmetic::new(of, Keys::of(config)));
     let keys = &it.keys;
@@ -211,7 +212,8 @@ pub fn model(config: &Config, of: Decay) -> Box<dyn Model> {
     Box::new(products.behind(frame, reflectance, program))
 }
 
-/// Returns the accuracy contract of `blinn` or `gauss`; `of` says which. The control operands are `cos_gamma` and `exponent`.
+/// Returns the accuracy contract of `blinn` or `gauss`; `of` says which. Panics if the check of the schema has not accepted the
+/// configuration. The control operands are `cos_gamma` and `exponent`.
 pub fn contract(config: &Config, of: Decay) -> Box<dyn Contract> {
     let it = DecayArithmetic::new(of, Keys::of(config));
     let operands = highlight::operands(&it.keys.operands, &it.keys.domain);
@@ -238,7 +240,8 @@ impl Reflectance for DecayArithmetic {
         Some(self.formula(cosine, exponent as f64))
     }
 
-    /// Returns the largest n as an upper limit of the slope, and the jump of the smallest n at a right angle:
+    /// Returns the largest n as an upper limit of the slope, and the jump of the smallest n at a right angle. The result is
+    /// never `None`.
     /// - cosⁿγ has the slope n·c^(n − 1), at most n. With n = 0 it jumps from 1 to 0 at a right angle.
     /// - exp(−n·γ²/2) has the slope n·(γ/sin γ)·exp(−n·γ²/2). It is at most n, since γ/sin γ ≤ exp(γ²/2) up to a right angle:
     ///   the logarithm of γ/sin γ is γ²/6 + γ⁴/180 + …, of positive terms that are together below γ²/2 there. At a right angle

@@ -270,9 +270,9 @@ impl<F: Formula> Contract for OfModel<F> {
         &self.device.outputs
     }
 
-    /// Appends the raw outputs from [`Formula::results`] if the author has written that method. Otherwise it appends the
-    /// outputs of a run of the golden model. If the model never shows the result, each output gets a number that is further off
-    /// than any bound.
+    /// For result number 0, appends the raw outputs from [`Formula::results`] if that method computes them for these operands.
+    /// Otherwise, and for every later result, it appends the outputs of a run of the golden model. If the model never shows the
+    /// result, each output gets a number that is further off than any bound.
     fn results(&self, operands: &[i64], index: u64, raw: &mut Vec<i64>) {
         if index == 0 && self.formula.results(operands, raw) {
             return;

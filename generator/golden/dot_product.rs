@@ -169,7 +169,8 @@ impl Formula for CosineFormula {
         Some([normal, half].concat())
     }
 
-    /// Returns every sum of squares N·N, as a raw value. The sum determines the inverse root. The result is never `None`.
+    /// Returns every sum of squares N·N from 1 on, as a raw value; the zero vector is left out. The sum determines the inverse
+    /// root. The result is never `None`.
     fn sweep(&self) -> Option<Sweep> {
         Some(self.root.sweep())
     }

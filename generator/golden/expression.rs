@@ -101,8 +101,9 @@ impl Formula for ProvedFormulas {
         result.promise.is_none() || result.is_promised(&self.enclosed(operands)) != Some(false)
     }
 
-    /// Appends the raw results of the plan and returns true, if the operands are in the domain. No value leaves its format
-    /// there, which was proved. Returns false for other operands.
+    /// Appends the raw results of the plan and returns true, if the operands are in the domain. An operand that the device
+    /// limits to its domain is limited first. No value leaves its format there, which was proved. Returns false for other
+    /// operands.
     fn results(&self, operands: &[i64], raw: &mut Vec<i64>) -> bool {
         let mut computed = Vec::with_capacity(operands.len());
         for (operand, raw) in self.found.statement.operands.iter().zip(operands) {

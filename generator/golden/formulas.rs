@@ -10,7 +10,8 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-/// Returns Blinn's function `cⁿ` (device `blinn`), which the formulas of all other highlight devices approximate.
+/// Returns Blinn's function `cⁿ` (device `blinn`), or 0 if `c ≤ 0`, also for n = 0. It is the function that the formulas of all
+/// other highlight devices approximate.
 ///
 /// `c` is the cosine of the angle γ between the surface normal and the half vector, and `n` the specular exponent. For example, c
 /// = 0.5 and n = 2 give 0.25.
@@ -39,7 +40,7 @@ fn rough_base(c: f64, cd: f64, dgamma_negative: bool, n: f64) -> f64 {
 }
 
 /// Returns the formula of the device `rough` (patent UA 60139, seed 001): `(n/2·(cos(γ ± dγ) − 1) + 1)²`, or 0 if the base is
-/// negative.
+/// negative or `c ≤ 0`.
 ///
 /// `c` is cos γ and `cd` is cos dγ, where dγ is the deviation of the normal on a rough surface. `dgamma_negative` selects cos(γ −
 /// dγ), as trigger 4 in the patent's figure does; otherwise the formula uses cos(γ + dγ).
@@ -53,7 +54,8 @@ pub fn rough(c: f64, cd: f64, dgamma_negative: bool, n: f64) -> f64 {
 }
 
 /// Returns the formula of the device `rough` without its clamp: `(n/2·(cos(γ ± dγ) − 1) + 1)²` also if the base is negative,
-/// where the parabola rises again. The result is limited to 1. The parameters are the same as for [`rough`].
+/// where the parabola rises again. The result is limited to 1; it is 0 if `c ≤ 0`. The parameters are the same as for
+/// [`rough`].
 #[inline]
 pub fn rough_unclamped(c: f64, cd: f64, dgamma_negative: bool, n: f64) -> f64 {
     if c <= 0.0 {
@@ -63,8 +65,8 @@ pub fn rough_unclamped(c: f64, cd: f64, dgamma_negative: bool, n: f64) -> f64 {
     (base * base).min(1.0)
 }
 
-/// Returns the parabola `(n/2·(c − 1) + 1)²`, or 0 if the base is negative. The device `threshold` (UA 30041, cited in seed 001)
-/// compares this value with a level.
+/// Returns the parabola `(n/2·(c − 1) + 1)²`, or 0 if the base is negative or `c ≤ 0`. The device `threshold` (UA 30041, cited
+/// in seed 001) compares this value with a level.
 #[inline]
 pub fn parabola(c: f64, n: f64) -> f64 {
     rough(c, 1.0, false, n)
@@ -87,7 +89,8 @@ pub fn lyon(distance: f64, beta: f64, m: u32) -> f64 {
     (0..m.ilog2()).fold(base, |power, _| power * power)
 }
 
-/// Returns the formula of the device `quadratic` (UA 20998, cited in seed 001): `c + a·(c² − c)`, or 0 if that is negative.
+/// Returns the formula of the device `quadratic` (UA 20998, cited in seed 001): `c + a·(c² − c)`, or 0 if that is negative or
+/// `c ≤ 0`.
 ///
 /// The coefficient a = a(n) depends on the exponent n and comes from a table; it is never negative. For example, c = 0.5 and a =
 /// 1 give 0.25.
@@ -100,7 +103,7 @@ pub fn quadratic(c: f64, a: f64) -> f64 {
 }
 
 /// Returns the formula of the device `cosine-power`, the function W of the paper (seed 002): `(n/m·(c − 1) + 1)^m`, or 0 if the
-/// base is negative.
+/// base is negative or `c ≤ 0`.
 ///
 /// `m` is a power of two; the paper uses 2 to 16. For example, c = 0.5, n = 1 and m = 2 give 0.5625.
 #[inline]

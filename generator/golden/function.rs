@@ -51,7 +51,8 @@ pub(super) fn at(formula: &str, x: f64) -> f64 {
 }
 
 /// Returns a proven limit of the absolute slope of the formula over its domain, from interval derivatives. Returns `None` if
-/// the formula may jump or be infinitely steep, or if the function is given by samples.
+/// the formula may jump or be infinitely steep, if the function is given by samples, or if the configuration has no such
+/// function.
 pub(super) fn slope(config: &Config) -> Option<f64> {
     let (function, it) = found(config).ok()?;
     let Curve::Formula(formula) = &function.curve else { return None };
@@ -82,8 +83,9 @@ impl Formula for Stated {
         vec![value * exp2(-(self.function.fraction as i32))]
     }
 
-    /// Appends the raw result and returns true, if the operand is in the domain. No sum leaves its format there: this was
-    /// proved at every operand. Returns false for another operand.
+    /// Appends the raw result and returns true, if the operand is in the domain. An operand that the device limits to its
+    /// domain is limited first. No sum leaves its format there: this was proved at every operand. Returns false for another
+    /// operand.
     fn results(&self, operands: &[i64], raw: &mut Vec<i64>) -> bool {
         let (first, last) = self.polynomials.domain;
         let x = operand(&self.polynomials).computed_raw(operands[0]);

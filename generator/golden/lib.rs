@@ -246,7 +246,7 @@ pub trait Contract: Send + Sync {
         self.bound().units
     }
 
-    /// Returns the largest error of an output at raw operands, in units.
+    /// Returns the largest error of an output at raw operands, in units, in the first result of the computation.
     fn largest_error(&self, operands: &[i64]) -> f64 {
         let (mut raw, mut exact) = (Vec::new(), Vec::new());
         self.results(operands, 0, &mut raw);
@@ -425,8 +425,8 @@ pub struct Term {
 }
 
 impl Bound {
-    /// Returns the bound of a device that is no highlight. The bound is the sum of the terms, or infinite if there are no
-    /// terms.
+    /// Returns the bound of a device that is no highlight. The bound is the sum of the terms, or infinite if there are no terms
+    /// or the sum is NaN.
     pub fn of(terms: Vec<Term>) -> Self {
         let sum: f64 = terms.iter().map(|term| term.units).sum();
         // A sum that is NaN limits nothing.

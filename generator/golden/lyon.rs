@@ -44,8 +44,8 @@ impl Keys {
         }
     }
 
-    /// Returns the operand `shift` or `exponent` for the exponent n: log₂ n rounded to the nearest integer, or n itself. For
-    /// example, n = 6 gives the shift 3.
+    /// Returns the operand `shift` or `exponent` for the exponent n: log₂ n rounded to the nearest integer (0 for n = 0), or n
+    /// itself. For example, n = 6 gives the shift 3.
     fn scale_operand(&self, n: i64) -> i64 {
         match self.scale {
             Scale::Multiplier => n,

@@ -41,7 +41,7 @@ impl Normaliser {
     }
 
     /// Returns the raw component of the unit vector for a raw component of v. The component is shifted left by `pairs` places,
-    /// and multiplied by `inverse`, the inverse root of the shifted v·v.
+    /// and multiplied by `inverse`, the inverse root of the shifted v·v. The product is rounded.
     fn scaled(&self, component: i64, pairs: i64, inverse: i64) -> i64 {
         let shifted = if component == 0 { 0 } else { component << pairs };
         self.rounded.apply(shifted * inverse)
@@ -133,8 +133,8 @@ impl Formula for Normaliser {
         Some((0..3).map(|_| ((2.0 * unit() - 1.0) * most).round() as i64).collect())
     }
 
-    /// Returns every sum of squares. The sum determines the inverse root, and so the largest error of a component. The result
-    /// is never `None`.
+    /// Returns every sum of squares from 1 on; the zero vector is left out. The sum determines the inverse root, and so the
+    /// largest error of a component. The result is never `None`.
     fn sweep(&self) -> Option<Sweep> {
         Some(self.root.sweep())
     }

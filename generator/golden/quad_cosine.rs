@@ -84,8 +84,8 @@ impl QuadCosineArithmetic {
     }
 }
 
-/// Returns `√(n/k)` rounded to the nearest raw value with G = `fraction` fraction bits, by integer arithmetic. It is the r with
-/// (r − ½)² ≤ n·2^2G/k < (r + ½)². For example, √(2/2) with 14 fraction bits is 16 384.
+/// Returns `√(n/k)` rounded to the nearest raw value with G = `fraction` fraction bits, by integer arithmetic. It is 0 for n =
+/// 0, and otherwise the r with (r − ½)² ≤ n·2^2G/k < (r + ½)². For example, √(2/2) with 14 fraction bits is 16 384.
 fn root(n: i64, k: i64, fraction: u32) -> i64 {
     let square = n << (2 * fraction);
     let floor = (square / k).isqrt();

@@ -112,8 +112,8 @@ impl Reflectance for QuadraticArithmetic {
         Some(formulas::quadratic(cosine, self.exact[exponent as usize]))
     }
 
-    /// Returns the slope 1 + |a|, as an upper limit, and no jump. If the formula is not clamped, its slope is 1 − a + 2·a·c. At
-    /// a right angle the formula is 0, so it has no jump.
+    /// Returns the slope 1 + |a| for the largest |a| of the domain, as an upper limit, and no jump. The result is never `None`.
+    /// If the formula is not clamped, its slope is 1 − a + 2·a·c. At a right angle the formula is 0, so it has no jump.
     fn variation(&self) -> Option<Variation> {
         let (least, most) = self.keys.domain.exponents();
         let exact = self.exact[least as usize..=most as usize].iter();
@@ -180,7 +180,7 @@ impl Reflectance for QuadraticArithmetic {
 }
 
 /// Returns the largest difference between the parabola with the coefficient `a` and cⁿ. The grid of cosines covers the
-/// highlight: 1 − c goes from 0 to 8/n.
+/// highlight: 1 − c goes from 0 to 8/n, but at most to 1. The zero of the parabola is one more point.
 fn formula_error(n: i64, a: f64) -> f64 {
     const GRID: u32 = 2048;
     let n = n as f64;

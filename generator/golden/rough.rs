@@ -210,8 +210,8 @@ impl RoughArithmetic {
         }
     }
 
-    /// Returns the first raw value of register 13: n/2·(cos(γ ± dγ) − 1), or −1.0 for a surface that faces away, which has cos
-    /// γ = 0.
+    /// Returns the first raw value of register 13: n/2·(cos(γ ± dγ) − 1), or, in the exact arithmetic, −1.0 for a surface that
+    /// faces away, which has cos γ = 0.
     #[inline]
     fn scaled(&self, adder_15: i64, exponent: i64, cos_gamma: i64) -> i64 {
         match &self.kind {
@@ -223,7 +223,8 @@ impl RoughArithmetic {
         }
     }
 
-    /// Returns the second raw value of register 13: the square of the output of adder 16, which is register 13 + 1.0.
+    /// Returns the second raw value of register 13: the square of the output of adder 16, which is register 13 + 1.0. In the
+    /// exact arithmetic, a surface that faces away (cos γ = 0) has −1.0 instead.
     #[inline]
     fn squared(&self, result: i64, cos_gamma: i64) -> i64 {
         match &self.kind {

@@ -75,8 +75,8 @@ impl ThresholdArithmetic {
         self.scaled.apply((cosine - self.keys.operands.cosine.one()) * exponent)
     }
 
-    /// Returns the word of ROM(n), a raw f, for the octave of `exponent`: the exponents from 2^k to below 2^(k + 1). The last
-    /// word serves all octaves beyond it.
+    /// Returns the word of ROM(n), a raw f, for the octave of `exponent`: the exponents from 2^k to below 2^(k + 1). The
+    /// exponent 0 counts as 1. The last word serves all octaves beyond it.
     #[inline]
     fn threshold(&self, exponent: i64) -> i64 {
         let octave = exponent.max(1).ilog2() as usize;
@@ -148,8 +148,9 @@ impl Reflectance for ThresholdArithmetic {
     }
 
     /// Returns the largest n as an upper limit of the slope n·base, since the base is at most 1, and the largest jump. The
-    /// formula jumps to 0 once, since the base falls with the cosine. It jumps from the level in ROM(n), where either side is
-    /// right within the margin. If (1 − n/2)² is above that level, the formula jumps from this value at a right angle instead.
+    /// result is never `None`. The formula jumps to 0 once, since the base falls with the cosine. It jumps from the level in
+    /// ROM(n), where either side is right within the margin. If (1 − n/2)² is above that level, the formula jumps from this
+    /// value at a right angle instead.
     fn variation(&self) -> Option<Variation> {
         let (least, most) = self.keys.domain.exponents();
         let mut jump: f64 = 0.0;
@@ -206,7 +207,8 @@ impl Reflectance for ThresholdArithmetic {
         ]
     }
 
-    /// Returns a remark if a level hides outputs above 0. Such a level is visible as an edge around the highlight.
+    /// Returns a remark if a level hides outputs above 0, for one n of each octave. Such a level is visible as an edge around
+    /// the highlight.
     fn remarks(&self) -> Vec<String> {
         let (f, colour_bits) = (&self.keys.f, self.keys.operands.colours.bits);
         let largest = (1 << colour_bits) - 1;

@@ -92,7 +92,8 @@ impl<'p> ResultProof<'p> {
     }
 
     /// Returns the box with the largest error. Boxes are divided until this error is at most `enough` units, or `divisions`
-    /// times. No operands have a larger error than this box states. Returns `None` if the result is promised for no operands.
+    /// times, or until this box is a single combination. No operands have a larger error than this box states. Returns `None`
+    /// if the result is promised for no operands.
     pub(super) fn worst(&self, enough: f64, divisions: usize) -> Option<BoxError> {
         let mut open = BinaryHeap::new();
         open.extend(self.error_in(self.statement.domain()));

@@ -148,7 +148,8 @@ fn rounding_node(plan: &ExpressionPlan, renumbered: &[NodeId], at: usize) -> Nod
     }
 }
 
-/// Returns the plan with the fewest look-up tables by the estimate, among the plans of all styles.
+/// Returns the plan with the fewest look-up tables by the estimate, among the plans of all styles. A style that keeps functions
+/// is tried only if a formula has a function of an operand.
 ///
 /// # Errors
 /// Fails if no style has a plan, with the refusal of the first style.
@@ -226,8 +227,10 @@ fn with_polynomials(
     }
 }
 
-/// Returns the polynomials of a function with the lowest estimated cost in a pipeline. Each degree needs a product, a sum, and
-/// registers for all values that wait for them. Fails if the function has no polynomials.
+/// Returns the polynomials of a function with the lowest estimated cost in a pipeline, among those of degree 1, 2 and 3 and
+/// those with a range reduction. If none of these exists, returns the polynomials that [`glint_approximate::find`] chooses.
+/// Each degree needs a product, a sum, and registers for all values that wait for them. Fails if the function has no
+/// polynomials.
 fn cheapest_polynomials(function: &TargetFunction) -> Result<Arc<Piecewise>, PlanRefusal> {
     let mut wishes = Vec::new();
     for degree in [1, 2, 3] {

@@ -65,9 +65,9 @@ impl CaptureBuffer {
     }
 }
 
-/// Returns the last 12 non-empty lines of `output` as the end of an error message, indented and without control characters. For
-/// example, the output `no module` gives `; its last lines:`, followed by `no module` on a line of its own. An output without
-/// text gives `; it printed nothing`.
+/// Returns the last 12 non-empty lines of `output` as the end of an error message, indented, without control characters, and
+/// cut after [`QUOTED_CHARACTERS`] characters. For example, the output `no module` gives `; its last lines:`, followed by `no
+/// module` on a line of its own. An output without text gives `; it printed nothing`.
 pub(super) fn quote(output: &str) -> String {
     let lines: Vec<&str> = output.lines().filter(|line| !line.trim().is_empty()).collect();
     if lines.is_empty() {

@@ -141,7 +141,8 @@ impl Tool {
     }
 
     /// Runs the tool in `directory` with an empty standard input. Returns its exit status and output when the tool and all
-    /// processes that write to its output have ended. A tool that exits with an error is no error here.
+    /// processes that write to its output have ended. Of a very long output, the middle is left out. A tool that exits with an
+    /// error is no error here.
     ///
     /// # Errors
     /// Fails if the tool does not start. Fails with [`LimitReached`] if the run takes longer than the time limit; the tool and
@@ -200,8 +201,8 @@ impl Tool {
         )));
     }
 
-    /// Runs the tool in `directory` with an empty standard input, and returns the output of a successful run: standard output and
-    /// standard error together.
+    /// Runs the tool in `directory` with an empty standard input, and returns the output of a successful run: standard output
+    /// and standard error together. Of a very long output, the middle is left out.
     ///
     /// # Errors
     /// Fails if the tool does not start, takes longer than its time limit, or exits with a status other than 0.

@@ -48,9 +48,9 @@ pub struct Arguments {
     force: bool,
 }
 
-/// Runs `glint generate`, which writes the files of each configuration: Verilog, ROM contents, manifest, FuseSoC core and test
-/// bench. With `--check` it writes nothing, and returns whether the files on disk equal the generated files. Otherwise it
-/// returns true.
+/// Runs `glint generate`, which writes the files of each configuration: Verilog, ROM contents, manifest, FuseSoC core and,
+/// without `--no-bench`, test bench. With `--check` it writes nothing, and returns whether the files on disk equal the
+/// generated files. Otherwise it returns true.
 ///
 /// # Errors
 /// Fails if a configuration has problems, or if a file was edited or cannot be written.
@@ -190,7 +190,8 @@ fn files(one: &Loaded, known: &ComputationCache, with_bench: bool) -> Result<Mad
 }
 
 /// Writes the files of a configuration into `out`, and the Python driver that its bench shares with other benches. Without
-/// `force`, it refuses to replace edited files. Returns whether a file has changed.
+/// `force`, it refuses to replace edited files. Returns whether a file of the configuration has changed; the driver does not
+/// count.
 ///
 /// # Errors
 /// Fails if a file was edited, or cannot be written.

@@ -23,8 +23,8 @@ Example:
   glint list --json")]
 pub struct Arguments;
 
-/// Runs `glint list`, which lists the devices, and the configurations in `configs/`. Returns true, because the command checks
-/// nothing.
+/// Runs `glint list`, which lists the devices, and the configurations in `configs/`, if there is such a directory. Returns
+/// true, because the command checks nothing.
 ///
 /// # Errors
 /// Never fails.

@@ -27,8 +27,8 @@ struct MainJobResult {
     failures: Vec<String>,
 }
 
-/// Runs the main job, and returns whether every configuration has passed. With `details` it also prints where the largest
-/// error of each configuration is, and the remarks on its formula.
+/// Runs the main job on the configurations in `configs/`, and returns whether every one has passed. With `details` it also
+/// prints where the largest error of each configuration is, and the remarks on its formula.
 ///
 /// # Errors
 /// Fails if a configuration has problems, if files cannot be written, or if a simulation cannot be run.

@@ -13,7 +13,7 @@ use glint_base::input;
 ///
 /// # Errors
 /// Fails if the file cannot be read, has a quote that is not closed, or has no row below the headings. Fails also if `columns`
-/// or `of_row` fails; the error then names the row.
+/// or `of_row` fails; the error then names the first row or the line of the row.
 pub fn read<C, T>(
     path: &Path,
     columns: impl FnOnce(&StringRecord) -> Result<C>,

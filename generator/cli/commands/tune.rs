@@ -86,8 +86,8 @@ pub struct Arguments {
     csv: bool,
 }
 
-/// Runs `glint tune`, which finds the smallest configuration of a device whose error bound is at most a given limit. Returns
-/// true, because the command checks nothing.
+/// Runs `glint tune`, which searches for a small configuration of a device whose error bound is at most a given limit. The
+/// search does not try every configuration, so a smaller one may exist. Returns true, because the command checks nothing.
 ///
 /// # Errors
 /// Fails if an option is not valid, if no configuration reaches the goal, or if a file cannot be written.

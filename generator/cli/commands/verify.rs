@@ -88,8 +88,9 @@ impl Files {
     }
 }
 
-/// Runs `glint verify`, which runs every test and proof that Glint has on configurations, and writes a record and a page about
-/// each. Returns whether every configuration is verified, with or without the checks that `--without-tools` leaves out.
+/// Runs `glint verify`, which runs tests and proofs on configurations, all that apply and that no option leaves out, and writes
+/// a record and a page about each. Returns whether every configuration is verified, with or without the checks that
+/// `--without-tools` leaves out.
 ///
 /// # Errors
 /// Fails if a configuration has problems, or if a file was not written by Glint or cannot be written. A tool that is missing is

@@ -102,7 +102,8 @@ impl<'a> Binding<'a> {
         self.points.shorten(results - 1);
     }
 
-    /// Returns an upper bound of the number of results of one computation. Returns 1 for a device without lines.
+    /// Returns the largest number of results of one computation whose operands are within their domains. Returns 1 for a device
+    /// without lines.
     pub(super) fn longest(&self) -> u64 {
         let Some(length) = self.points.length() else { return 1 };
         let (_, longest) = self.measure.contract.operands()[length].domain;

@@ -86,8 +86,9 @@ impl<'a> Lockstep<'a> {
         self
     }
 
-    /// Compares random computations until `points` results were compared, or until model and hardware differ. The function uses
-    /// all threads of rayon's pool, and returns the outcome of all streams.
+    /// Compares random computations until `points` results were compared, or until model and hardware differ. A run of few
+    /// results is one stream on one thread; a longer run has several streams, on all threads of rayon's pool. The function
+    /// returns the outcome of all streams.
     ///
     /// The function calls `progress` now and then with the number of results since the last call.
     ///

@@ -60,8 +60,9 @@ impl Outcome {
         outcome
     }
 
-    /// Returns a sentence for each failure of the run: a difference between model and hardware, or an error above `bound` by more
-    /// than 10^−6 units, the rounding of the measurement. Returns an empty list if the run passed.
+    /// Returns a sentence for each failure of the run: a difference between model and hardware, a formula without a finite
+    /// value, or an error above `bound` by more than 10^−6 units, the rounding of the measurement. For an output with a smaller
+    /// bound of its own, this bound counts. Returns an empty list if the run passed.
     pub fn failures(&self, bound: &Bound) -> Vec<String> {
         let mut failures = Vec::new();
         if let Some(mismatch) = &self.mismatch {

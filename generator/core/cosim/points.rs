@@ -297,9 +297,9 @@ impl<'a> PointSource<'a> {
         }
     }
 
-    /// Returns the straight line from the peak (the operands with the largest `f`) to the control operands `far`. If the formula
-    /// is as large at `far` as at the peak, the line ends earlier, at a point where the formula is smaller. Returns `None` if
-    /// there is no such point, or if the device is no highlight.
+    /// Returns the straight line from the peak (the operands with the largest `f`) to the control operands `far`. If the
+    /// formula is as large at `far` as at the peak, the line ends earlier, at a point where the formula is smaller. Returns
+    /// `None` if the formula is not smaller at any of the points that are tried, or if the device is no highlight.
     fn way(&self, far: &[i64]) -> Option<Way> {
         let highlight = self.highlight?;
         let peak = self.peak(highlight, far);

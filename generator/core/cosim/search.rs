@@ -189,8 +189,9 @@ impl<'a> Climber<'a> {
     }
 
     /// Tries all nearby values of each pair of operands around the given control operands, moves to the largest error, and
-    /// repeats this search there until the error no longer grows. For a device that is no highlight, the function stops after
-    /// about 65536 combinations. Returns all operands of the largest error.
+    /// repeats this search there until the error no longer grows. The function tries nothing if there is only one operand. For
+    /// a device that is no highlight, the function stops after about 65536 combinations. Returns all operands of the largest
+    /// error.
     fn look_around(&self, mut operands: Vec<i64>) -> Vec<i64> {
         let highlight = self.contract.highlight();
         let terms = self.contract.bound().terms;

@@ -127,8 +127,9 @@ impl Stimulus {
         self.phase = Phase::Running(reset);
     }
 
-    /// Drives one clock after `start`. While the device is busy, this clock may have random writes and starts, which the device
-    /// must ignore, or the reset. Once the device is free, the next point begins in the same clock.
+    /// Drives one clock after `start`. While the device is busy, this clock may have random writes and starts, or the reset.
+    /// The device must ignore these writes and starts, except that operand buffers take the writes. Once the device is free,
+    /// the next point begins in the same clock.
     fn run(&mut self, busy: bool, reset: Option<u64>, points: &PointSource) {
         if busy {
             if self.random.once_in(6) {
@@ -216,7 +217,8 @@ impl Stimulus {
         }
     }
 
-    /// Drives random strobes and data, which the device must ignore. If `busy` is true, `start` is random too.
+    /// Drives random strobes and data. A busy device must ignore them, unless it has operand buffers. A device in reset must
+    /// ignore them too. If `busy` is true, `start` is random too.
     fn noise(&mut self, busy: bool, points: &PointSource) {
         self.idle = false;
         let random = &mut self.random;

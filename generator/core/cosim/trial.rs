@@ -57,8 +57,10 @@ impl ComputationTrial {
 }
 
 /// Measures the numbers of clocks between the events of the handshake, such as `start` and `done`. A number is stated only if
-/// the microprogram makes it the same for all bit patterns of the operand ports, and is otherwise `None`. The clocks from
-/// result to result are measured with the smallest, the middle and the largest operands.
+/// the microprogram makes it the same for all bit patterns of the operand ports, and is otherwise `None`.
+/// `start_to_done_at_most` is an upper limit, which is stated only if `start_to_done` depends on the operands and a limit is
+/// known. The clocks from result to result are the exception: they are stated if they are the same for the smallest, the middle
+/// and the largest operands.
 ///
 /// # Errors
 /// Fails if the design cannot be simulated or does not belong to the contract, if a computation does not end within 65536
@@ -231,10 +233,11 @@ fn quantity(name: &str, format: Format, raw: i64) -> Quantity {
     Quantity { name: name.to_owned(), raw, value: format.to_f64(raw) }
 }
 
-/// Returns typical raw operands of a contract, for a worked example. An operand with a value in `given` keeps this value; `given`
-/// may be shorter than the operands. For a highlight, the function lowers a control operand with fraction bits, such as a cosine
-/// or an angle, until `f` is between 0.4 and 0.8. The function takes the first operand with which `f` reaches this range, and
-/// lowers no operand if there is none. For other devices, the function prefers operands from [`Contract::hint`].
+/// Returns typical raw operands of a contract, for a worked example. An operand with a value in `given` keeps this value;
+/// `given` may be shorter than the operands. For a highlight, the function lowers a control operand with fraction bits, such as
+/// a cosine or an angle, until `f` is between 0.4 and 0.8. The function takes the first operand with which `f` reaches this
+/// range, and lowers no operand if there is none. If the device computes lines, the function then also lowers operands such as
+/// a step (`slow_down`). For other devices, the function prefers operands from [`Contract::hint`].
 pub fn typical(contract: &dyn Contract, given: &[Option<i64>]) -> Vec<i64> {
     let given = |at: usize| given.get(at).copied().flatten();
     let mut colour = 0;
@@ -280,8 +283,9 @@ pub fn typical(contract: &dyn Contract, given: &[Option<i64>]) -> Vec<i64> {
     values
 }
 
-/// Lowers the operands of a line that change `f` only after the first point, such as a step, until `f` in the middle of the line
-/// is at least a quarter of `f` at the first point. The function does nothing if the device computes no lines.
+/// Lowers the operands of a line that change `f` only after the first point, such as a step, until `f` in the middle of the
+/// line is at least a quarter of `f` at the first point, or until the operand is at the lower end of its domain, or 0. The
+/// function does nothing if the device computes no lines.
 fn slow_down(
     contract: &dyn Contract,
     highlight: &Highlight,
@@ -326,7 +330,7 @@ fn hinted(contract: &dyn Contract) -> Option<Vec<i64>> {
 
 /// Simulates the computation of [`example`], and returns the bit patterns of `nets` in each clock, just before the clock's
 /// rising edge. Clock 0 is the clock in which `start` is high, and the last clock is the first in which the device is idle
-/// again. All of these nets must have names.
+/// again. For a pipeline, the last clock is the clock of the result. All of these nets must have names.
 ///
 /// # Errors
 /// Fails as [`timing`] does.

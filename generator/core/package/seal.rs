@@ -56,8 +56,9 @@ pub fn sealed_json(value: Value) -> Result<String> {
     Ok(serde_json::to_string_pretty(&sealed_object(value)?)? + "\n")
 }
 
-/// Returns whether the digest in a file matches the file's other contents, so that nobody has edited the file since Glint
-/// wrote it. Returns `false` if the file has no digest at the position `seal`.
+/// Returns whether the digest in a file matches the file's other contents, which is so if nobody has edited the file since
+/// Glint wrote it. In JSON, only the members count, and not the spaces and lines between them. An editor who computes the
+/// digest again is not noticed. Returns `false` if the file has no digest at the position `seal`.
 pub fn is_sealed(contents: &[u8], seal: Seal) -> bool {
     match seal {
         Seal::Json => is_sealed_json(contents),

@@ -93,7 +93,7 @@ pub struct FrameStep {
     takes_results: bool,
 }
 
-/// Returns a microinstruction that changes no register.
+/// Returns a microinstruction without an operation: it changes no register itself. Operations of every edge run nevertheless.
 pub fn idle() -> FrameStep {
     FrameStep {
         does: None,

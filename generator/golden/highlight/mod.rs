@@ -73,8 +73,8 @@ pub trait Reflectance: Send + Sync {
         first.to_vec()
     }
 
-    /// Returns the exact f at a cosine that is not rounded to the operand's format, and at a raw exponent. Returns `None` if the
-    /// device has other control operands.
+    /// Returns the exact f at a cosine that is not rounded to the operand's format, and at a raw exponent. Returns `None` if
+    /// the device has other control operands, or if nobody has written this method for it.
     fn at_cosine(&self, cosine: f64, exponent: i64) -> Option<f64> {
         let _ = (cosine, exponent);
         None
@@ -86,7 +86,8 @@ pub trait Reflectance: Send + Sync {
         None
     }
 
-    /// Returns the name of the operand that states how many results a computation has, as [`Contract::length`] does, or `None`.
+    /// Returns the name of the operand that states how many results a computation has, as [`Contract::length`] does, or `None`
+    /// if a computation has one result.
     fn length(&self) -> Option<&str> {
         None
     }

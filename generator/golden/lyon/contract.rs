@@ -175,8 +175,8 @@ impl Reflectance for LyonArithmetic {
         }
     }
 
-    /// Returns a remark if `scale = "shift"` makes the formula worse for some n, because n is rounded to a power of two. The
-    /// remark states the worst n, which is midway between two powers of two.
+    /// Returns a remark if `scale = "shift"` makes the formula worse, because n is rounded to a power of two. Only the two n
+    /// next to the geometric mean of each two adjacent powers of two are compared; the remark states the worst of them.
     fn remarks(&self) -> Vec<String> {
         let (keys, (first, last)) = (&self.keys, self.keys.domain.exponents());
         if keys.scale == Scale::Multiplier {
@@ -205,7 +205,7 @@ impl Reflectance for LyonArithmetic {
 }
 
 /// Returns the largest difference between the formula with β = `rounded`/(2·m) and cosⁿγ, for unit vectors. The grid of cosines
-/// covers the highlight: 1 − cos γ goes from 0 to 8/n.
+/// covers the highlight: 1 − cos γ goes from 0 to 8/n, but at most to 1.
 fn formula_error(n: i64, rounded: i64, power: u32) -> f64 {
     const GRID: u32 = 1024;
     let beta = rounded as f64 / f64::from(2 * power);

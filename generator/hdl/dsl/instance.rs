@@ -162,9 +162,9 @@ impl Designer {
         )
     }
 
-    /// Makes the microprogram from the parts. The microprogram executes the parts in the order of their instances, and then loads
-    /// the outputs into registers. All logic between the parts must be combinational: [`Designer::finish`] reports a mistake for
-    /// a register or a synchronous ROM outside the parts that loads on every clock.
+    /// Makes the microprogram from the parts. The microprogram executes the parts in the order of their instances, and then
+    /// loads each output that is no register yet into a register. All logic between the parts must be combinational:
+    /// [`Designer::finish`] reports a mistake for a register or a synchronous ROM outside the parts that loads on every clock.
     #[track_caller]
     pub fn dataflow(&self) {
         self.register_outputs();

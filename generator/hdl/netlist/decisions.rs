@@ -9,8 +9,9 @@ use std::collections::HashSet;
 use super::{Design, Driver, NetId, Role, Sequence};
 use glint_base::cone;
 
-/// Returns the addresses of the microinstructions whose successor depends on an operand, in ascending order. For example, the
-/// condition of a loop may be that a value computed from an operand is not 0.
+/// Returns the addresses of the microinstructions whose successor may depend on an operand, in ascending order: an operand or
+/// an undriven net affects the condition of their loop or jump. For example, the condition of a loop may be that a value
+/// computed from an operand is not 0.
 pub fn decided_by_data(design: &Design) -> Vec<usize> {
     let microprogram = design.control.microprogram.iter().enumerate();
     let decided = microprogram.filter(|(_, microinstruction)| match microinstruction.sequence {

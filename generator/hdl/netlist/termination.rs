@@ -17,7 +17,9 @@ pub struct Left {
     pub counter: Option<RegId>,
 }
 
-/// Returns for each microinstruction of a design an upper limit of the clocks from its execution to the clock with `done`.
+/// Returns for each microinstruction of a design an upper limit of the clocks from its execution to the clock with `done`. The
+/// limit holds only if the register of each loop's condition counts down to the end of the loop, by one in each iteration. The
+/// function does not check this.
 ///
 /// Returns `None` if a microinstruction waits for `start`, if the last microinstruction does not end the computation, or if a
 /// loop has several microinstructions. Returns `None` if the condition of a loop depends on anything but one register. A jump
@@ -49,8 +51,9 @@ pub fn remaining(design: &Design) -> Option<Vec<Left>> {
     Some(left)
 }
 
-/// Returns the number of the latest clock in which the output `done` can be high. Clock 0 is the clock that accepts `start`.
-/// Returns `None` if [`remaining`] finds no limit, or if the design has no microprogram.
+/// Returns the number of the latest clock in which the output `done` can be high, under the assumption of [`remaining`] about
+/// counters. Clock 0 is the clock that accepts `start`. Returns `None` if [`remaining`] finds no limit, or if the design has no
+/// microprogram.
 pub fn latest_done(design: &Design) -> Option<u32> {
     // Microinstruction 0 is executed in clock 1.
     let first = *remaining(design)?.first()?;

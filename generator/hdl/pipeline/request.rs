@@ -128,8 +128,8 @@ impl<'a> Request<'a> {
         self.error(kind, message, Some(limiting))
     }
 
-    /// Returns whether `clock`, in MHz, can be reached only if products use the output registers of multipliers. Returns `false`
-    /// if the options request these registers already.
+    /// Returns whether `clock`, in MHz, which cannot be reached with the present options, can be reached if products use the
+    /// output registers of multipliers. Returns `false` if the options request these registers already.
     fn needs_registered(&self, clock: f64, interval: usize) -> bool {
         if self.options.registered {
             return false;

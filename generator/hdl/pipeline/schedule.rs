@@ -285,9 +285,9 @@ impl<'a> ScheduleProblem<'a> {
         }
     }
 
-    /// Returns the schedule that reaches a clock period in nanoseconds. The schedule has as few stages as possible, and among all
-    /// such schedules the fewest register bits. If products share multipliers, Glint chooses the stages of these products first.
-    /// The schedule may then have more stages or bits than necessary.
+    /// Returns the schedule that reaches a clock period in nanoseconds. The schedule has as few stages as possible, and among
+    /// all such schedules the fewest register bits; some muxes count as bits too (`solve`). If products share multipliers,
+    /// Glint chooses the stages of these products first. The schedule may then have more stages or bits than necessary.
     ///
     /// # Errors
     /// Fails if an operation takes longer than the period, or if the solver fails.

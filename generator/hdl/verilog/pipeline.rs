@@ -77,8 +77,8 @@ fn is_written_in(design: &Design, pipeline: &Pipeline, net: NetId, stage: usize)
     pipeline.clock_of(net) - usize::from(is_clocked) == stage
 }
 
-/// Returns the comment on a shared multiplier, such as `multiplier_1: in slots 0, 1 it takes the factors of base, -`. Its operand
-/// registers load the factors of a product in the slot before the product.
+/// Returns the comment on a shared multiplier, such as `multiplier_1: in slots 0, 1 it loads the factors of base, -`. Its
+/// operand registers load the factors of a product in the slot before the product.
 fn reservations(unit: &Unit) -> Vec<String> {
     let slots = unit.serves.len();
     let (mut numbers, mut products) = (Vec::new(), Vec::new());
@@ -200,7 +200,7 @@ fn enable(design: &Design, pipeline: &Pipeline) -> Option<NetId> {
     design.registers.iter().find(|it| pipeline.valid.contains(&it.q))?.enable
 }
 
-/// Returns the comment above a stage, such as `Stage 3, of the microinstructions accumulator <- base^2`. A stage without
+/// Returns the comment above a stage, such as `Stage 3, from the microinstructions: accumulator <- base^2`. A stage without
 /// microinstructions only passes values on.
 fn title(number: usize, microinstructions: &[String]) -> Vec<String> {
     let what = match microinstructions {

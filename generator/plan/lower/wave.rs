@@ -115,7 +115,8 @@ impl Lowering<'_> {
     }
 
     /// Returns the node of a sine or a cosine (`kind`), computed by tables of the sine and the cosine in an octant. `core`
-    /// times 2^`power` is the angle in quarter turns. A sine and a cosine of the same angle share the tables.
+    /// times 2^`power` is the angle in quarter turns. A sine and a cosine of the same angle share the tables. Fails if a part
+    /// has too many bits, no finite values, or no rule.
     ///
     /// In the octants 0 to 3, the absolute value of the sine is the sine, the cosine, the cosine and the sine of the reduced
     /// angle. The absolute value of the cosine is the other value in each octant. The octants 4 to 7 repeat this pattern. The

@@ -112,9 +112,9 @@ impl fmt::Display for OutputDifference {
     }
 }
 
-/// Proves that a pipeline computes the same outputs as its sequential core, or finds a point for which an output differs. The
-/// designs are simulated at 400 random points before the solver is asked. `limit` is the time limit of all answers of the
-/// solver together.
+/// Proves that a pipeline computes the same outputs as its sequential core, or finds a point for which an output differs, or
+/// leaves the question open if the solver does not decide it. The designs are simulated at 400 random points before the solver
+/// is asked. `limit` is the time limit of all answers of the solver together.
 ///
 /// # Errors
 /// Fails if `pipeline` is no pipeline, if the designs have different operands, or if the core lacks an output of the pipeline.
@@ -134,9 +134,9 @@ pub fn compare(
     PipelineComparison::new(&pair, solver, limit)?.run()
 }
 
-/// Simulates both designs at 400 random points, and returns the first difference, or `None` if all outputs are equal. If
-/// `near`, the bit patterns of one point's operands, is given, each operand of a random point takes its value in `near` with a
-/// probability of one half.
+/// Simulates both designs at 400 random points, and returns the first difference, or `None` if all outputs are equal at these
+/// points. Fails if a design cannot be simulated to a result. If `near`, the bit patterns of one point's operands, is given,
+/// each operand of a random point takes its value in `near` with a probability of one half.
 fn tried(pair: &DesignPair<'_>, near: Option<&[u64]>) -> Result<Option<OutputDifference>> {
     let mut random = ChaCha8Rng::seed_from_u64(1);
     for _ in 0..TRIALS {
@@ -439,7 +439,7 @@ impl<'p> PipelineComparison<'p> {
     /// Proves the checkpoints of microinstruction number `address`. A checkpoint states that a register of the core equals a
     /// net of the pipeline when this microinstruction begins. Each register that is proved equal takes the pipeline's term. A
     /// checkpoint that the solver does not decide is skipped. Returns `Different` for a real difference in an output, and
-    /// otherwise `Equal`.
+    /// otherwise `Equal`, which does not say that every checkpoint holds. Fails if the solver cannot be run.
     fn lemmas(
         &mut self,
         core: &Execution<'_>,
@@ -499,7 +499,8 @@ impl<'p> PipelineComparison<'p> {
     }
 
     /// Finds the products that the pipeline computes in parts, and stores the sum of the parts of each in `divided`. If a net
-    /// of the pipeline provably has the low bits of such a sum, the term of this net replaces these low bits.
+    /// of the pipeline provably has the low bits of such a sum, the term of this net replaces these low bits. Fails if the
+    /// solver cannot be run.
     fn divide(&mut self, stages: &[Vec<VectorTermId>]) -> Result<()> {
         let mut roots = self.results_of(stages);
         if let Some(pipeline) = &self.pair.pipeline.pipeline {
@@ -553,7 +554,7 @@ impl<'p> PipelineComparison<'p> {
 
     /// Asks the solver whether the one-bit terms `wanted` can all be 1. The first question has the sums in `divided` in place
     /// of products. If its answer is not "never", a second question has the original products and all facts about partial
-    /// products.
+    /// products. Fails if the solver cannot be run.
     fn ask(&mut self, wanted: Vec<VectorTermId>) -> Result<SolverAnswer> {
         self.divide_by_lowest(&wanted)?;
         let mut divided = wanted.clone();

@@ -47,7 +47,8 @@ impl<'a> Solver<'a> {
     }
 
     /// Asks the SMT solver whether all `wanted` terms, of one bit each, can be 1 at once. The question contains arithmetic
-    /// facts about the products; if `parts` is set, also the facts about their partial products.
+    /// facts about the products; if `parts` is set, also the facts about their partial products. The answer is
+    /// [`SolverAnswer::Undecided`] if the solver says `unknown` or the time is over.
     ///
     /// # Errors
     /// Fails if the solver cannot be run, or if its output is not `sat`, `unsat` or `unknown`.

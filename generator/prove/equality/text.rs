@@ -54,8 +54,10 @@ pub struct TextProof {
     pub questions: usize,
 }
 
-/// Proves that the emitted Verilog of a pipeline equals the pipeline's netlist, or finds a difference. `text` is the JSON of
-/// [`glint_tools::elaborate`] for this Verilog. `limit` is the time limit of all answers of the solver together.
+/// Proves that the emitted Verilog of a pipeline equals the pipeline's netlist, or finds a difference. The verdict is
+/// [`TextVerdict::Open`] if the solver does not decide, and [`TextVerdict::Unread`] if the Verilog has a form that Glint does
+/// not understand. `text` is the JSON of [`glint_tools::elaborate`] for this Verilog. `limit` is the time limit of all answers
+/// of the solver together.
 ///
 /// # Errors
 /// Fails if the design is no pipeline, if the Verilog lacks an output of the netlist or has an output of another width, or if

@@ -41,8 +41,8 @@ pub(super) fn addressing(core: &Core, rom: RomId, word: usize) -> Option<Operand
     Some(vec![(operand_of(design, register)?.to_owned(), word as i64)])
 }
 
-/// Compares a mutant with the golden model for 131 072 random points, in which the operands `held` keep their values. Returns
-/// the first difference, or `None` if there is no difference.
+/// Compares a mutant with the golden model for 131 072 random points, in which the operands `held` nearly always keep their
+/// values. Returns the first difference, or `None` if there is no difference.
 ///
 /// # Errors
 /// Fails if the mutant cannot be simulated.
@@ -56,8 +56,8 @@ pub(super) fn drawn(
     Ok(mismatch.map(|mismatch| SignalDifference { held, mismatch }))
 }
 
-/// Compares a mutant with the golden model for 64 points in which the operands `held` keep their values; the others are random.
-/// Returns the first difference, or `None` if there is no difference.
+/// Compares a mutant with the golden model for 64 points in which the operands `held` nearly always keep their values; the
+/// others are random. Returns the first difference, or `None` if there is no difference.
 ///
 /// # Errors
 /// Fails if the mutant cannot be simulated.
@@ -83,7 +83,8 @@ pub(super) enum Tried {
 }
 
 /// Compares a mutant with the golden model for all values of the operands that determine `f`, if these have at most `most_bits`
-/// bits together. The operands `held` keep their raw values, and each colour operand has its largest value.
+/// bits together. The operands `held` keep their raw values, and each colour operand has its largest value. Returns
+/// [`Tried::Nothing`] if the operands have more bits, or if the device computes lines of points.
 ///
 /// # Errors
 /// Fails if the mutant cannot be simulated.

@@ -210,8 +210,8 @@ impl<'a> Search<'a> {
         smallest.map(|(_, candidate)| candidate)
     }
 
-    /// Returns the candidates that differ from `candidate` by `changes` changed keys, 1 or 2. Changes that make no design are
-    /// left out.
+    /// Returns the candidates that differ from `candidate` by `changes` changed keys, 1 or 2. Changes that make no design, or a
+    /// design with another interface, are left out.
     fn around(&self, candidate: &Candidate, changes: usize) -> Vec<Candidate> {
         let moves = self.space.moves(&candidate.config);
         let mut changed: Vec<Vec<(&'static str, Value)>> = Vec::new();

@@ -57,9 +57,9 @@ impl SearchSpace {
         Ok(space)
     }
 
-    /// Returns whether a key has other values, and every one of these values makes a design with the same interface of the
-    /// core. Values that the schema refuses do not count. Returns `false` for the keys of the tables `domain` and `function`,
-    /// and for a key whose value is a number with a fraction.
+    /// Returns whether a key has other values, and each value that is tried (the values next to its own, and the ends of its
+    /// range) makes a design with the same interface of the core. Values that the schema refuses do not count. Returns `false`
+    /// for the keys of the tables `domain` and `function`, and for a key whose value is a number with a fraction.
     fn is_free(&self, device: &Device, base: &Config, key: &Key) -> bool {
         let (table, _) = key.table_and_leaf();
         if STATEMENT.contains(&table) {

@@ -57,7 +57,8 @@ impl<'a> CheckSubject<'a> {
     }
 
     /// Returns the files of the core that tools read for a target, as pairs of a file name without directories and contents.
-    /// `target` is the name of an FPGA family, or empty for files that suit every target.
+    /// `target` is the name of an FPGA family, or empty for files that suit every target. Fails if the files of the core cannot
+    /// be made.
     fn sources(&self, target: &str) -> Result<Vec<(String, String)>> {
         Ok(self.files()?.sources_for(FileKind::CORE_SOURCES, target))
     }

@@ -50,7 +50,7 @@ struct Better {
 
 /// Returns changes of configuration keys that reduce the error bound of a core. If the core violates its accuracy contract, the
 /// changes are enough to keep it, if at most 40 steps find such changes. Otherwise only one key changes: among the smallest
-/// steps that help any key, the key that reduces the bound most. Returns `None` if no change of one key reduces the bound.
+/// steps that help any key, the key that reduces the bound most. Returns `None` if no step of one key reduces the bound.
 pub fn of(core: &Core) -> Option<Advice> {
     let (device, bound) = (&core.device, core.contract.bound());
     let first = better(device, &core.config, &bound)?;

@@ -13,9 +13,8 @@ const PLACES: i64 = 160;
 const OPERANDS: i64 = 256;
 
 /// Returns the charts of a device with one operand and one output: the function and its error over the domain. If the domain
-/// has fewer than 160 values, the charts show each value. Returns no charts for a device that multiplies colours by a
-/// reflectance, or has more operands or outputs. Returns none either if the operand sets the number of results of a
-/// computation.
+/// has at most 160 values, the charts show each value. Returns no charts for a device that multiplies colours by a reflectance,
+/// or has more operands or outputs. Returns none either if the operand sets the number of results of a computation.
 pub fn charts(contract: &dyn Contract) -> Vec<Chart> {
     let ([operand], [output]) = (contract.operands(), contract.outputs()) else {
         return Vec::new();

@@ -23,11 +23,12 @@ use glint_base::input;
 use glint_core::core::Core;
 
 /// Returns the documentation page of `core` in Markdown. `config` is the path of the core's configuration file, as the user
-/// gave it. `proofs` is the directory with the records of exhaustive checks, which the page cites as evidence for the error
-/// bound.
+/// gave it. `proofs` is the directory with the records of exhaustive checks and certificates, which the page cites as evidence
+/// for the error bound.
 ///
 /// # Errors
-/// Fails if a simulated computation does not finish within 65 536 clocks, or if a record cannot be read.
+/// Fails if a simulated computation does not finish within 65 536 clocks, or never raises `valid`. Fails if a record cannot be
+/// read, or does not fit the contract.
 pub fn of(core: &Core, config: &str, proofs: &Path) -> Result<String> {
     let line = core.line()?;
     let inputs = PageInputs {

@@ -182,7 +182,8 @@ fn points(chart: &Chart) -> Vec<(usize, (f64, f64), bool)> {
 }
 
 /// Returns the connected parts of a curve inside the range of the vertical axis, as positions. A line that leaves the range is
-/// cut at its border. For example, in a range that ends at 4, a line from 3 to 5 is cut half way.
+/// cut at its border. For example, in a range that ends at 4, a line from 3 to 5 is cut half way. A line between two points
+/// outside the range is left out, and so is a point without neighbours in the range.
 fn runs(chart: &Chart, values: &[f64]) -> Vec<Vec<(f64, f64)>> {
     let low = chart.y.place(chart.y.range.0).unwrap_or(f64::NEG_INFINITY);
     let high = chart.y.place(chart.y.range.1).unwrap_or(f64::INFINITY);
@@ -257,7 +258,7 @@ fn ticks(axis: &ChartAxis) -> Vec<f64> {
 }
 
 /// Returns the label of a tick: at most six digits after the point, without trailing zeros. A number nearer to 0 than 0.001 has
-/// two digits and an exponent. For example, `0.5`, or `1.5e−4`.
+/// at most two digits and an exponent. For example, `0.5`, or `1.5e−4`.
 fn number(value: f64) -> String {
     if value != 0.0 && value.abs() < 0.001 {
         return format!("{value:.1e}").replace(".0e", "e").replace("e-", "e\u{2212}");

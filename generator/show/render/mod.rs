@@ -139,8 +139,8 @@ pub fn draws(core: &Core) -> bool {
 /// Checks the settings and the scene before rendering.
 ///
 /// # Errors
-/// Fails if the size, the number of samples or the number of lights is outside its limits. Fails if the scene has a height
-/// map and a mesh without texture coordinates.
+/// Fails if the size, the number of samples or the number of lights is outside its limits. Fails if the picture has too many
+/// samples in all. Fails if the scene has a height map and a mesh without texture coordinates.
 pub fn check(settings: &Settings, scene: &Scene) -> Result<()> {
     let (width, height) = settings.size;
     let sides = 1..=LARGEST_SIDE;

@@ -152,7 +152,8 @@ impl<'a> Visibility<'a> {
         }
     }
 
-    /// Returns a triangle with the rows and columns in which it may be visible. Returns `None` if it is visible nowhere.
+    /// Returns a triangle with the rows and columns in which it may be visible. Returns `None` if it is certainly not visible,
+    /// because it lies behind the eye or beside the picture.
     fn candidate(&self, object: u32, triangle: u32) -> Option<CandidateSurface> {
         let corners = self.corners(object, triangle);
         let distances = corners.map(|corner| -corner.0[2]);

@@ -78,9 +78,10 @@ pub struct Cleared {
     _list: MutexGuard<'static, List>,
 }
 
-/// Kills all children with all processes that they have started, and deletes all temporary directories. Other threads stop at
-/// their next child or temporary directory until the result is dropped. This function is meant for the end of the process. For
-/// example, Ctrl-C during a bench kills `vvp` and deletes the bench's directory.
+/// Kills all children with all processes that they have started, and deletes all temporary directories. It tries each of both
+/// for at most 5 seconds. Other threads stop at their next child or temporary directory until the result is dropped. This
+/// function is meant for the end of the process. For example, Ctrl-C during a bench kills `vvp` and deletes the bench's
+/// directory.
 pub fn clear() -> Cleared {
     let undivided = UNDIVIDED.lock().unwrap_or_else(PoisonError::into_inner);
     let list = list();

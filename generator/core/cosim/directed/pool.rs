@@ -204,7 +204,8 @@ fn combinations(values: &[Vec<i64>]) -> usize {
 
 /// Draws lines from the peak to the edge of the highlight, which read the words of a table one after another. There is a line
 /// for each value in [`FIRST_VALUES`] of the operands that choose a table, and for each number of bits in [`LINE_BITS`] of the
-/// line's length. A length beyond its domain is replaced by the end of the domain. The longest lines are first.
+/// line's length. There is no line if the formula does not fall on it. A length beyond its domain is replaced by the end of the
+/// domain. The longest lines are first.
 fn lines(highlight: &Highlight, points: &PointSource, length: usize) -> Vec<Vec<i64>> {
     let mut random = Random::new(2);
     let mut lines = Vec::new();

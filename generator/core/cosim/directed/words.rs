@@ -162,9 +162,10 @@ impl WordSearch<'_> {
     }
 
     /// Searches for computations that detect the bits in the mask `left` of a word. The function starts from the computations
-    /// `nearest`, which detect the bit `probe`, and goes on to computations near them in which a fault of this bit changes the
-    /// results more and more. Within the domain, some words are read only far from any highlight. The last rounds therefore take
-    /// operands from their whole formats, where the golden model still predicts the device.
+    /// `nearest`, which detect the bit `probe`, and goes on, for a limited number of rounds, to computations near them in which
+    /// a fault of this bit changes the results more and more. Within the domain, some words are read only far from any
+    /// highlight. The last rounds therefore take operands from their whole formats, where the golden model still predicts the
+    /// device.
     ///
     /// # Errors
     /// Fails if the simulation fails.

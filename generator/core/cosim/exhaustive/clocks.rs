@@ -145,11 +145,12 @@ impl<'a> Clocks<'a> {
     }
 
     /// Checks the blocks with the given numbers on all threads of rayon's pool; the numbers must be in ascending order. Returns
-    /// the number of the first combination for which model and hardware differ, or `None` if they always agree. The function
-    /// calls `progress` with the number of combinations in each finished block.
+    /// the number of the first combination in these blocks for which model and hardware differ, or `None` if they always agree.
+    /// The function calls `progress` with the number of combinations in each finished block.
     ///
     /// # Errors
-    /// Fails if the design cannot be simulated, or if its signals do not settle in a clock.
+    /// Fails if the design cannot be simulated, if its signals do not settle in a clock, or if the golden model of a pipeline
+    /// does not finish a computation.
     pub fn check(&self, blocks: Vec<u64>, progress: &(dyn Fn(u64) + Sync)) -> Result<Option<u64>> {
         let found = blocks.into_par_iter().find_map_first(|block| {
             let places = self.of_block(block);
@@ -162,7 +163,7 @@ impl<'a> Clocks<'a> {
     }
 
     /// Returns the first of some consecutive combinations at which a signal differs, or `None` if no signal differs. Each lane
-    /// runs 512 combinations from power-up on.
+    /// runs at most 512 combinations from power-up on.
     ///
     /// # Errors
     /// Fails as [`Clocks::check`] does.

@@ -279,12 +279,14 @@ impl<'a> Job<'a> {
         Ok(Duration::from_secs_f64(sum / threads.max(1) as f64))
     }
 
-    /// Continues a shard from `state` to its end, and updates `state`. The function calls `look` with the state after every few
-    /// blocks. The function returns `ControlFlow::Break` as soon as `look` returns it, and `ControlFlow::Continue` when the shard
-    /// is done. The function calls `progress` with the number of combinations in each finished block.
+    /// Continues a shard from `state` to its end, and updates `state`. The comparison clock by clock ends at its first
+    /// difference. The function calls `look` with the state after every few blocks. The function returns `ControlFlow::Break`
+    /// as soon as `look` returns it, and `ControlFlow::Continue` when the shard is done. The function calls `progress` with the
+    /// number of combinations in each finished block.
     ///
     /// # Errors
-    /// Fails if the design cannot be simulated, or if its signals do not settle in a clock.
+    /// Fails if the design cannot be simulated, if its signals do not settle in a clock, or if the golden model of a pipeline
+    /// does not finish a computation.
     pub fn run(
         &self,
         state: &mut ShardState,

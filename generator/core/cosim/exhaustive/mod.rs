@@ -85,8 +85,8 @@ impl Proof {
     }
 
     /// Returns the verdict of the check in words. "proved" means that the errors are within the bound, that the bound keeps the
-    /// accuracy contract, and that `sweep` leaves out no operand that determines `f`. The other verdicts are "FAILS", "no bound
-    /// is stated", "within its bound, outside the contract" and "passed, not proved".
+    /// accuracy contract, and that `sweep` leaves out no operand that determines `f`, and none of its values. The other
+    /// verdicts are "FAILS", "no bound is stated", "within its bound, outside the contract" and "passed, not proved".
     pub fn verdict(&self, contract: &dyn Contract, sweep: &Sweep) -> &'static str {
         if !self.failures.is_empty() {
             "FAILS"
@@ -117,8 +117,9 @@ impl Proof {
         )
     }
 
-    /// Returns an upper bound of the error of an output in units: the largest error of `f`, plus the largest rounding error of a
-    /// product with a colour.
+    /// Returns an upper bound, over the checked combinations, of the error of an output in units. For a highlight, the bound is
+    /// the largest error of `f` times the largest colour, plus the largest rounding error of a product with a colour. For any
+    /// other device, it is the largest error of an output.
     pub fn together(&self) -> f64 {
         self.f_units + self.colours.error
     }

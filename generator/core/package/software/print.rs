@@ -94,7 +94,8 @@ impl<'a> Printer<'a> {
     }
 
     /// Returns the C statements that the expressions of the values `wanted` need. An operand, a named value, and a value that
-    /// is used several times get a statement and a variable each, with a name from `names`.
+    /// is used several times get a statement and a variable each, with a name from `names`. Constants, relabelled values and
+    /// values extended with zeros get none.
     pub fn lines(&mut self, names: &mut Names, wanted: &[NodeId]) -> Vec<CStatement> {
         let graph = self.graph;
         let needed = graph.cone(wanted.iter().copied());

@@ -83,7 +83,8 @@ impl PortValues<'_> {
 }
 
 /// Returns the finished computations of a core with a microprogram. Strobes write the operands one by one, and `start` begins a
-/// computation with the operands that are written by then. Returns `None` if the design lacks a signal of the handshake.
+/// computation with the operands that are written by then. A computation is left out if a reset interrupts it, or if an operand
+/// has not been written since the latest reset. Returns `None` if the design lacks a signal of the handshake.
 fn computed<'a>(
     design: &Design,
     rows: impl Iterator<Item = PortValues<'a>>,
@@ -130,8 +131,8 @@ fn computed<'a>(
     Some(done)
 }
 
-/// Returns the finished computations of a pipeline, whose results leave in the order in which the points entered. Returns
-/// `None` if the design lacks a signal of the handshake, or if a result has no point.
+/// Returns the finished computations of a pipeline, whose results leave in the order in which the points entered. A reset
+/// removes the points inside. Returns `None` if the design lacks a signal of the handshake, or if a result has no point.
 fn streamed<'a>(rows: impl Iterator<Item = PortValues<'a>>) -> Option<Vec<BenchPoint>> {
     let mut done = Vec::new();
     let mut inside: VecDeque<Vec<u64>> = VecDeque::new();

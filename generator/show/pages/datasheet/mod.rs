@@ -134,7 +134,7 @@ pub fn timing_diagram(core: &Core) -> Result<(String, String)> {
     Ok((timing::drawing(&waves).file()?, waves.described()))
 }
 
-/// Renders a ball in the default light, through the golden model and with Blinn's function.
+/// Renders a ball in the two default lights, through the golden model and with Blinn's function.
 ///
 /// # Errors
 /// Fails if the picture cannot be rendered.

@@ -271,7 +271,8 @@ fn target(design: &Design) -> Option<&str> {
     design.pipeline.as_ref().map(|pipeline| pipeline.target.as_str())
 }
 
-/// Returns the cells on the FPGA family `target`, or on the first family if `target` is `None` or not among them.
+/// Returns the cells on the FPGA family `target`, or on the first family if `target` is `None` or not among them. Returns
+/// `None` if `usage` is empty.
 fn first_usage<'u>(usage: &'u [FamilyUsage], target: Option<&str>) -> Option<&'u FamilyUsage> {
     let family = FAMILIES.iter().find(|family| Some(family.name()) == target);
     let on_target = usage.iter().find(|it| family.is_some_and(|own| own.title == it.family));

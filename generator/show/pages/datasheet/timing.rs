@@ -64,8 +64,8 @@ fn label(lane: &Lane) -> String {
     }
 }
 
-/// Returns two widths for a clock, both limited to [`CLOCK`]. With the first width, all texts fit. With the second one, all
-/// texts fit if the diagram shows addresses instead of the names of microinstructions.
+/// Returns two widths for a clock, both limited to [`CLOCK`]. Unless the limit is too small, all texts fit with the first
+/// width. With the second one, they fit if the diagram shows addresses instead of the names of microinstructions.
 fn clock_widths(waves: &Waves) -> [i32; 2] {
     let (mut with_names, mut with_addresses) = (0, 0);
     for lane in &waves.lanes {

@@ -47,8 +47,9 @@ fn line(table: &TextTable, widths: &[usize], cells: &[String]) -> String {
     format!("| {} |", padded.join(" | "))
 }
 
-/// Escapes the characters of a text that Markdown would interpret. Inside backquotes, it escapes only `|`, which would end the
-/// cell of a table. For example, `a*b` outside of backquotes becomes `a\*b`.
+/// Escapes `|`, `*`, `[`, `\` and, where Markdown would interpret them, `_` and `<`. Inside backquotes, it escapes only `|`,
+/// which would end the cell of a table. Other characters stay as they are. For example, `a*b` outside of backquotes becomes
+/// `a\*b`.
 pub fn prose(text: &str) -> String {
     let mut plain = String::with_capacity(text.len());
     let mut name = false;
