@@ -1,7 +1,9 @@
-//! Tests the devices that compute the points of a scan line, in the built-in simulator: lines of 1, 2 and 4096 points, the
-//! exponents at which the power changes, angles that wrap, and resets within a line.
+//! Tests the devices that compute the points of a scan line. `quad-cosine` runs in the built-in simulator: lines of 1, 2 and
+//! 4096 points, the exponents at which the power changes, angles that wrap, and resets within a line.
 //!
-//! It also bounds how far the results of the longest line drift from the unquantised formula.
+//! Other tests check, for `quad-cosine` and `cosine-squared`, the words of the tables, and that the same results come later
+//! with more `line.stages`. They also bound how far the contract's results of the longest line drift from the unquantised
+//! formula.
 
 use std::f64::consts::FRAC_PI_2;
 

@@ -1,5 +1,6 @@
-//! Tests a shared multiplier whose operands have different signs: each register gets the whole product, on whichever input the
-//! negative operands are, loaded at once or one microinstruction later.
+//! Tests a multiplier that computes one product with a signed operand and one of unsigned operands. Each register gets its
+//! whole product, whichever input the signed operand is on, with or without a register behind each operand mux. Another test
+//! checks that the multiplier has no sign bits.
 
 use glint::dsl::{Designer, end, hold, step, valid};
 use glint::fixed::Format;

@@ -248,7 +248,8 @@ enum By {
     Sum,
 }
 
-/// Returns the clock frequency in MHz of a pipeline of one stage in which a register loads a sum.
+/// Returns the clock frequency in MHz of a pipeline of one stage. A register loads a sum, or 0 if the signal that `by` names is
+/// 0. With `By::Nothing` it always loads the sum.
 fn clock_of_a_sum(by: By) -> f64 {
     let design = design(|d| {
         let wide = Format::unsigned(40, 0);

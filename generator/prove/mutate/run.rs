@@ -1,9 +1,10 @@
 //! Plants faults one at a time in the netlist of a core, and finds the verdict on each: caught by a check, proved equivalent,
 //! or undecided.
 //!
-//! For each fault, the module tries in turn a short test, the proofs, the default test, and a last check: directed tests for a
-//! fault in a table, or a search for any other fault in a pipeline. The module ends with the first check that decides. For a
-//! fault that is not proved equivalent, it also finds whether the shipped bench notices the fault.
+//! For each fault, the module tries in turn a short test, the proofs, the default test and a last check, and ends with the
+//! first that decides. The last check of a fault in a table is directed tests. The last check of any other fault in a pipeline
+//! is a search for a point at which the mutant differs. Any other fault in a sequential core has no last check. For a fault
+//! that is not proved equivalent, the module also finds whether the shipped bench notices the fault.
 
 use std::sync::OnceLock;
 

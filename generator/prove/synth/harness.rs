@@ -1,7 +1,8 @@
 //! Generates the harness of a core: a Verilog module that contains the core, with registers at all ports except the clock.
 //!
-//! With the registers, timing analysis covers the paths at the ports, and the FPGA's pins do not limit the frequency. The
-//! registers are shift registers, so the harness has only four pins: `clk`, `in`, `take` and `out`.
+//! With the registers, timing analysis covers the paths at the ports, and the FPGA's pins do not limit the frequency. One shift
+//! register feeds the inputs, and another takes the captured outputs and shifts them out. So the harness has only four pins:
+//! `clk`, `in`, `take` and `out`.
 
 use anyhow::Result;
 use glint_base::fill;

@@ -78,7 +78,7 @@ impl Architecture {
     }
 }
 
-/// Returns the number of products in a netlist.
+/// Returns the number of multipliers in a netlist. A shared multiplier counts once.
 fn multipliers(design: &Design) -> usize {
     let products = design.nets.iter().filter(|net| matches!(net.driver, Driver::Op(Op::Mul(..))));
     products.count()

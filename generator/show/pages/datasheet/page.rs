@@ -1,4 +1,5 @@
-//! Collects all facts about a configuration in views, plain structs, which the template of the datasheet prints as an HTML page.
+//! Collects the facts that the datasheet of a configuration shows, as plain structs, and prints them with a template as an HTML
+//! page.
 
 use anyhow::Result;
 use base64::Engine;
