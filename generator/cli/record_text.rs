@@ -1,6 +1,7 @@
-//! Formats JSON for the records in the repository: indented, but with every value that fits on a single line.
+//! Formats JSON for the records in the repository. A value stays on one line if the line then has at most 150 characters.
+//! Otherwise each of its entries begins an indented line of its own. The outermost object always has a line for each entry.
 //!
-//! For example, the counts of one kind of fault are a line: `"inverted": { "planted": 848, "undecided": 0 }`.
+//! For example, a kind of fault with short counts is one line: `"rounding": { "planted": 4, "caught": { "cosim": 4 }, … }`.
 
 use serde_json::Value;
 

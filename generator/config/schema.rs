@@ -71,8 +71,8 @@ impl Condition {
         (value.bare() == self.value) == self.is_equal
     }
 
-    /// Returns the condition as text, for example `architecture = "pipelined"`. `value` must be some value of the other key;
-    /// its type decides whether quotes are written.
+    /// Returns the condition as text, for example `architecture = "pipelined"`. `value` must be some value of the other key. If
+    /// it is a text, the value in the condition has quotes, unless it is an integer, as in `power = 4`.
     pub fn words(&self, value: &Value) -> String {
         let needed = match value {
             Value::Text(_) => Value::Text(self.value.to_owned()).toml(),

@@ -1,8 +1,8 @@
 //! Makes parts of the accuracy contracts that several devices need: the operands `cos_gamma` and `exponent`, the error bound of
 //! a device that multiplies colours, and Python expressions.
 //!
-//! An accuracy contract states the operands, the exact formula and the error bound of one device. The bound may be missing in a
-//! contract of a user's device. The module of each device has its formula.
+//! An accuracy contract states the operands, the exact formula and the error bound of one device. The bound may be missing, for
+//! example in a contract of a user's device. The module of each device has its formula.
 
 use super::{Bound, Operand, Term};
 use glint_base::fixed::{Format, Rounding, exp2};

@@ -88,12 +88,16 @@ impl Points {
 /// An engine that computes the results of many points (sets of operands). There are three engines: the golden model, the
 /// built-in simulator and the emitted Verilog.
 pub trait Engine {
-    /// Returns the raw outputs of all computations, one after another. Each result has one value for each output, in the
-    /// order of the [`Contract`]. A computation with several results has them in the order of their index.
+    /// Returns the raw outputs of all computations, one after another. Each result has one value for each output, in the order
+    /// of the [`Contract`]. A computation with several results has them in the order of their index.
     ///
     /// # Errors
-    /// Fails if a device does not finish a computation, if it gives more or fewer results than `points` expects, or if an
-    /// outside tool fails. Fails if the number of operands per computation is wrong for the golden model.
+    /// Fails if a device does not finish a computation, if it gives more or fewer results than `points` expects, if a pipeline
+    /// shows results in another clock than its latency states, or if a simulator or an outside tool fails. [`Golden`] also
+    /// fails if the number of operands per computation is not that of the contract.
+    ///
+    /// # Panics
+    /// The other engines panic if a computation lacks an operand of the design.
     fn compute(&mut self, points: &Points) -> Result<Vec<i64>>;
 }
 

@@ -106,7 +106,10 @@ fn a_loop_without_a_bound_cannot_be_unrolled() {
         ]
     });
     let text = refused(&design, Goal::ClockMhz(100.0)).to_string();
-    assert!(text.contains("`count` goes on by a condition for which no bound is found"), "{text}");
+    assert!(
+        text.contains("`count` repeats a loop for which no largest trip count is found"),
+        "{text}"
+    );
 }
 
 #[test]

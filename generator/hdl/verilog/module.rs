@@ -377,7 +377,8 @@ impl<'a> Builder<'a> {
     }
 
     /// Returns the lines of each `always` block of the module, for the registers for whose output net `wanted` returns true.
-    /// Registers with the same enable and the same reset behaviour share a block.
+    /// Registers inside multipliers and delay lines are left out. Registers with the same enable share a block if all of them
+    /// have a reset or none has one; their reset values may differ.
     pub(super) fn groups(&mut self, wanted: &dyn Fn(NetId) -> bool) -> Vec<Vec<String>> {
         /// The enable of the registers, and whether the reset sets them.
         type ResetGroup = (Option<NetId>, bool);

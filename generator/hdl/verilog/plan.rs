@@ -1,9 +1,11 @@
-//! Decides how each net appears in the Verilog: declared under its name, written into the expression that uses it, or as
-//! wiring.
+//! Decides how each net appears in the Verilog: declared under its name, written into the expression that uses it, as wiring,
+//! or not at all.
 //!
-//! Wiring (slices, extensions, concatenations, constants) that the description's author did not name is written as [`Bits`]
-//! wherever it is used. Any other cell without such a name is written into the only expression that uses it, as long as that
-//! expression stays short. Cells without such a name that no written part reads are left out. All other nets are declared.
+//! Wiring (slices, extensions, concatenations) that the description's author did not name is written as [`Bits`] wherever it is
+//! used, and so is a constant that is no port. Any other cell without such a name is written into the expression that uses it,
+//! if it is used once, as a whole and in the same module, and if the expression stays short. In a pipeline, some named wiring
+//! and cells are treated in the same way. Cells without a name that no written part reads are left out, and so are products and
+//! registers inside multipliers and delay lines. All other nets are declared.
 
 use std::collections::{BTreeMap, HashSet};
 

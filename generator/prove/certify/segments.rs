@@ -294,7 +294,8 @@ fn decided_address(
 }
 
 /// Returns an interval, in right angles, that contains the formula's angle if the angle of the point is from `low` to `high`.
-/// Returns `None` if the formula's angle depends on anything but the angle of the point.
+/// Returns `None` if the formula's angle depends on anything but the angle of the point, or if it may have no value there, for
+/// example at a pole.
 fn enclosed(angle: &Expression, (low, high): (f64, f64)) -> Option<Enclosure> {
     angle.enclose(&[(POINT, Enclosure::between(low, high))]).ok()
 }

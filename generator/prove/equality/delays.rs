@@ -171,9 +171,10 @@ fn course(
     Ok(None)
 }
 
-/// Returns the number of clocks from write to read, for each read port and each slot. `course` has the accesses in each clock
-/// of a period, which repeats. A number is `None` if it is not the same in all clocks of the slot. For example, with one slot,
-/// write addresses 0, 1, 2, 3 and read addresses 2, 3, 0, 1 give 2 clocks.
+/// Returns the number of clocks from the latest write of a word to its read, for each read port and each slot. `course` has the
+/// accesses in each clock of a period, which repeats. A number is `None` if it is not the same in all clocks of the slot, if
+/// the address of the read is unknown, or if nothing writes to this address. For example, with one slot, write addresses 0, 1,
+/// 2, 3 and read addresses 2, 3, 0, 1 give 2 clocks.
 fn lags(course: &[&MemoryClock], reads: usize, interval: usize) -> Vec<Vec<Option<usize>>> {
     let period = course.len();
     let lag = |read: usize, now: usize| {

@@ -200,7 +200,7 @@ fn of_architecture(
         let space = SearchSpace::new(device, base, fixed, slower)?;
         Search::new(device, &space, goal, progress).run(base)
     };
-    let of_device = || format!("`{}` cannot be tuned", device.name);
+    let of_device = || format!("the search for a configuration of `{}` failed", device.name);
     let answer = run(slower).with_context(of_device)?;
     let fits = |answer: &Answer| answer.best.cost.excess(goal.target).is_empty();
     if slower || fits(&answer) {

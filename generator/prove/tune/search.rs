@@ -324,8 +324,8 @@ impl<'a> Search<'a> {
         )
     }
 
-    /// Returns the neighbour with the smallest cost that meets the goal, by `changes` changed keys, or `None` if it is not
-    /// smaller than `here`.
+    /// Returns the candidate with the smallest cost among those that differ from `here` in `changes` keys and meet the goal.
+    /// Returns `None` if there is no such candidate, or if its cost is not smaller than the cost of `here`.
     fn descend(&self, here: &Candidate, changes: usize) -> Option<Candidate> {
         let smallest = self.smallest(self.around(here, changes))?;
         let is_smaller = self.goal.order(&smallest) < self.goal.order(here);

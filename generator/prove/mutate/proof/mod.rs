@@ -124,8 +124,9 @@ impl<'a> Prover<'a> {
     }
 }
 
-/// Returns, for each microinstruction, a mask for each net: the bits that are compared in this microinstruction. The compared
-/// bits are the bits of outputs and of predicted registers, and in a pipeline also of checkpoints.
+/// Returns, for each microinstruction (in a pipeline, for each slot), a mask for each net: the bits that are compared in it.
+/// The bits of outputs and of predicted registers are always compared. In a pipeline, the bits of a checkpoint are compared
+/// too, in the slot in which its stage can hold a point.
 fn compared_bits(design: &Design, length: usize) -> Vec<Vec<u64>> {
     let mut always: Vec<NetId> = design.outputs().map(|port| port.net).collect();
     for register in &design.registers {
