@@ -296,7 +296,7 @@ impl TargetFunction {
         let x = self.operand.to_f64(raw.into());
         Refusal {
             key: "function.formula",
-            place: Some(fault.span.clone()),
+            place: Some(fault.span.bytes.clone()),
             message: format!("at x = {x}: {}", fault.message),
             remedy: "exclude such operands from the domain: change function.from or function.to"
                 .to_owned(),
@@ -363,10 +363,21 @@ impl Piecewise {
         sums
     }
 
-    /// Returns the raw result that the hardware computes for a raw operand of the domain. The function does not apply `outside`:
-    /// the caller must first clamp or wrap an operand outside the domain.
+    /// Returns the raw result that the hardware computes for a raw operand. Each partial sum keeps the bits of its register. Within
+    /// the domain, the proof shows that these are all bits; outside, higher bits are dropped. The function does not apply
+    /// `outside`: the caller must first clamp or wrap an operand outside the domain.
     pub fn result(&self, raw: i64) -> i64 {
-        self.restored(raw, self.sums_of(raw)[0])
+        let place = self.place(raw);
+        let mut above = 0;
+        for k in (0..self.coefficients.len()).rev() {
+            let sum = self.sum(k, place, above);
+            let shortened = if k == 0 { sum >> self.guard() } else { sum };
+            above = match self.sums.get(k) {
+                Some(register) => register.raw(register.bits(shortened.into())) as i64,
+                None => shortened,
+            };
+        }
+        self.restored(raw, above)
     }
 
     /// Returns the polynomial without the range reduction, as a function of the number that the reduction computes. Without a

@@ -5,6 +5,8 @@
 //! few points. The bound of the error does not rely on the identity, because [`super::Piecewise::prove`] compares the result of
 //! every operand of the large domain with the formula.
 
+use std::sync::Arc;
+
 use super::{Curve, Outside, Refusal, TargetFunction};
 use glint_base::fixed::{Format, exp2};
 use glint_formula::Function::Log2;
@@ -318,7 +320,7 @@ impl Whole<'_> {
     /// # Errors
     /// Fails if the formula has no value or no logarithm at `x`.
     fn logarithm_at(&self, x: f64) -> Result<f64, Refusal> {
-        let kind = Kind::Unary(Log2, Box::new(self.formula.clone()));
+        let kind = Kind::Unary(Log2, Arc::new(self.formula.clone()));
         self.value_of(&Expression::new(kind, self.formula.span.clone()), x)
     }
 

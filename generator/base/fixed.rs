@@ -195,14 +195,26 @@ pub enum Rounding {
 impl Rounding {
     /// Divides `raw` by `2^places` and rounds; a negative `places` multiplies (exactly). For example, −3 by one place gives
     /// −2 if truncated, and −1 if rounded to the nearest.
+    ///
+    /// # Panics
+    /// Panics if a multiplication gives more than 127 bits and a sign.
     pub fn shift(self, raw: i128, places: i32) -> i128 {
         match (self, places) {
-            (_, ..=0) => raw << -places,
+            (_, ..=0) => shifted_left(raw, -places).expect("a value of at most 128 bits"),
             // If `places` exceeds the number of bits, only the sign is left.
             (Self::Truncate, _) => raw >> places.min(127),
             (Self::Nearest, _) => ((raw >> (places - 1).min(127)) + 1) >> 1,
         }
     }
+}
+
+/// Returns `raw` times 2^`places`, or `None` if the product has more than 127 bits and a sign. `places` must not be negative.
+pub fn shifted_left(raw: i128, places: i32) -> Option<i128> {
+    if raw == 0 {
+        return Some(0);
+    }
+    let shifted = raw.checked_shl(u32::try_from(places).ok()?)?;
+    (shifted >> places == raw).then_some(shifted)
 }
 
 /// How a conversion treats a value that its format cannot represent.

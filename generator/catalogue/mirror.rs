@@ -120,7 +120,10 @@ impl MirrorChain {
         let [value, inverted] = match self.choice {
             Some((condition, cases)) => {
                 let cases = cases.map(|case| signal(case).as_signed().with_fraction(frac));
-                let inverted = cases.map(|case| d.not(&format!("{name}_inverted"), case));
+                let inverted = [
+                    d.not(&format!("{name}_zero_inverted"), cases[0]),
+                    d.not(&format!("{name}_one_inverted"), cases[1]),
+                ];
                 let condition = signal(condition);
                 [
                     d.choose(&format!("{name}_chosen"), condition, cases),

@@ -187,7 +187,7 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
                 return register.doc(doc).q();
             }
             Operation::Constant { raw, .. } => d.raw_constant(name, *raw, *format),
-            Operation::Add(a, b) => match is_above(input(a), input(b)) {
+            Operation::Add(a, b) => match are_joined(input(a), input(b), *format) {
                 true => d.join(name, &[input(a), input(b)], *format),
                 false => d.add(name, input(a), input(b)),
             },
@@ -433,10 +433,12 @@ fn left_by<'d>(
     row.read_as(format)
 }
 
-/// Returns whether the second number has no sign, and all bits of the first number have larger weights than the bits of the
-/// second. The sum of the two numbers then needs no adder.
-fn is_above(first: Signal<'_>, second: Signal<'_>) -> bool {
-    !second.format().signed && second.format().int == -first.format().frac
+/// Returns whether the bits of two numbers, one after the other, are their sum in the format `sum`, so that the sum needs no
+/// adder. The second number must have no sign, and all bits of the first number must have larger weights than its bits.
+fn are_joined(first: Signal<'_>, second: Signal<'_>, sum: Format) -> bool {
+    let [upper, lower] = [first, second].map(|number| number.format());
+    let is_above = !lower.signed && lower.int == -upper.frac;
+    is_above && upper.width() + lower.width() == sum.width()
 }
 
 /// Returns a noun in the singular for a count of 1, and in the plural otherwise. For example, 2 gives `operands`.

@@ -2,6 +2,8 @@
 //! no value.
 
 use std::cmp::Ordering;
+use std::collections::HashMap;
+use std::ptr;
 
 use dashu_ratio::RBig;
 
@@ -99,14 +101,45 @@ impl Expression {
         arithmetic: &A,
         operands: &[(&str, A::Value)],
     ) -> Result<A::Value, Fault> {
-        if let Some(value) = self.constant.and_then(|constant| arithmetic.folded(constant)) {
+        Evaluation { arithmetic, operands, known: HashMap::new() }.value(self)
+    }
+}
+
+/// A formula with fewer parts is evaluated without a look at the parts that were evaluated before, which is faster.
+pub(super) const FEW_PARTS: u32 = 200;
+
+/// The evaluation of a formula for given operands.
+struct Evaluation<'e, A: Arithmetic> {
+    arithmetic: &'e A,
+    operands: &'e [(&'e str, A::Value)],
+    /// The values of parts with at least [`FEW_PARTS`] parts of their own, so that no shared part is evaluated twice.
+    known: HashMap<*const Expression, A::Value>,
+}
+
+impl<A: Arithmetic> Evaluation<'_, A> {
+    fn value(&mut self, part: &Expression) -> Result<A::Value, Fault> {
+        if part.size() < FEW_PARTS {
+            return self.new_value(part);
+        }
+        let place = ptr::from_ref(part);
+        if let Some(known) = self.known.get(&place) {
+            return Ok(known.clone());
+        }
+        let value = self.new_value(part)?;
+        self.known.insert(place, value.clone());
+        Ok(value)
+    }
+
+    fn new_value(&mut self, part: &Expression) -> Result<A::Value, Fault> {
+        let arithmetic = self.arithmetic;
+        if let Some(value) = part.constant.and_then(|constant| arithmetic.folded(constant)) {
             return Ok(value);
         }
-        let fault = |message: String| Fault::new(self.span.clone(), message);
-        let value = match &self.kind {
+        let fault = |message: String| Fault::new(part.span.clone(), message);
+        let value = match &part.kind {
             Kind::Number(literal) => arithmetic.literal(literal),
             Kind::Constant(name, below) => arithmetic.constant(name, *below),
-            Kind::Operand(name) => match operands.iter().find(|(own, _)| own == name) {
+            Kind::Operand(name) => match self.operands.iter().find(|(own, _)| own == name) {
                 Some((_, value)) => value.clone(),
                 None => return Err(fault(format!("`{name}` has no value here"))),
             },
@@ -114,23 +147,23 @@ impl Expression {
                 return Err(fault(format!("the words of `{name}` have no values here")));
             }
             Kind::Unary(function, a) => {
-                let a = a.evaluate(arithmetic, operands)?;
+                let a = self.value(a)?;
                 unary(arithmetic, *function, &a).map_err(fault)?
             }
             Kind::Binary(operator, a, b) => {
-                let a = a.evaluate(arithmetic, operands)?;
-                let b = b.evaluate(arithmetic, operands)?;
+                let a = self.value(a)?;
+                let b = self.value(b)?;
                 binary(arithmetic, *operator, &a, &b).map_err(fault)?
             }
             Kind::If(comparison, yes, no) => {
-                let left = comparison.left.evaluate(arithmetic, operands)?;
-                let right = comparison.right.evaluate(arithmetic, operands)?;
+                let left = self.value(&comparison.left)?;
+                let right = self.value(&comparison.right)?;
                 match comparison.decided(arithmetic, &left, &right).map_err(fault)? {
-                    Some(true) => yes.evaluate(arithmetic, operands)?,
-                    Some(false) => no.evaluate(arithmetic, operands)?,
+                    Some(true) => self.value(yes)?,
+                    Some(false) => self.value(no)?,
                     None => {
-                        let yes = yes.evaluate(arithmetic, operands)?;
-                        let no = no.evaluate(arithmetic, operands)?;
+                        let yes = self.value(yes)?;
+                        let no = self.value(no)?;
                         let doubt =
                             "1024 bits cannot decide which of the two compared values is larger";
                         arithmetic.either(yes, no, doubt).map_err(fault)?

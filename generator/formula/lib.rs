@@ -15,8 +15,13 @@ mod precise;
 mod print;
 mod slope;
 
+use std::collections::{HashMap, HashSet};
 use std::fmt;
+use std::hash::{DefaultHasher, Hash, Hasher};
+use std::mem;
 use std::ops::Range;
+use std::ptr;
+use std::sync::Arc;
 
 pub use dashu_ratio::RBig;
 pub use enclosure::Enclosure;
@@ -26,15 +31,39 @@ pub use print::CArithmetic;
 
 /// A formula, or a part of a formula, as a tree. Two formulas are equal if their kinds are equal, even if they have different
 /// locations.
-#[derive(Clone, Debug)]
+///
+/// Several operations may read the same part. For example, with `p = x + 1`, both factors of `p * p` are one part. Methods visit
+/// such a part only once, so that their cost grows with the number of different parts.
+#[derive(Clone)]
 pub struct Expression {
     /// The operation, the operand or the number at the root of the tree. For example, the root of `1 / x` is a division.
     pub kind: Kind,
-    /// The range of bytes in the text from which this part was parsed; 0..0 if it comes from no text.
-    pub span: Range<usize>,
+    /// The location in the text from which this part was parsed; empty if it comes from no text.
+    pub span: TextSpan,
+    /// A number that is equal for equal formulas, and nearly always different for different ones.
+    hash: u64,
+    /// The number of parts, where a part that several operations read counts once for each. At most `u32::MAX`.
+    size: u32,
+    /// Whether the formula reads an operand.
+    varies: bool,
     /// The value, if the part contains no operand and no word of a ROM, and has a value. The value is computed only once,
     /// because formulas are evaluated at millions of operands.
     constant: Option<Enclosure>,
+}
+
+/// A location in the texts of a formula.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct TextSpan {
+    /// The number of the text: 0 for the formula itself. A caller that puts formulas together numbers the other texts.
+    pub text: usize,
+    /// The range of bytes in this text.
+    pub bytes: Range<usize>,
+}
+
+impl From<Range<usize>> for TextSpan {
+    fn from(bytes: Range<usize>) -> Self {
+        Self { text: 0, bytes }
+    }
 }
 
 /// The kinds of parts of a formula, such as a number, an operand or an operation.
@@ -47,28 +76,28 @@ pub enum Kind {
     /// An operand, by its name. Its value is a real number, not a raw integer.
     Operand(String),
     /// A word of a ROM as a real number. The fields are the name of the ROM, and the formula for the index of the word.
-    Word(String, Box<Expression>),
+    Word(String, Arc<Expression>),
     /// A function of one number.
-    Unary(Function, Box<Expression>),
+    Unary(Function, Arc<Expression>),
     /// A function of two numbers.
-    Binary(Operator, Box<Expression>, Box<Expression>),
+    Binary(Operator, Arc<Expression>, Arc<Expression>),
     /// The first formula if the comparison holds, otherwise the second.
-    If(Comparison, Box<Expression>, Box<Expression>),
+    If(Comparison, Arc<Expression>, Arc<Expression>),
 }
 
 /// A comparison: whether the left number is larger than the right number.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
     /// The number on the left of `>`.
-    pub left: Box<Expression>,
+    pub left: Arc<Expression>,
     /// The number on the right of `>`.
-    pub right: Box<Expression>,
+    pub right: Arc<Expression>,
     /// Whether the comparison also holds for equal numbers (`>=`).
     pub or_equal: bool,
 }
 
 /// The elementary functions of one number.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[expect(missing_docs, reason = "the names are those of mathematics")]
 pub enum Function {
     Negate,
@@ -87,7 +116,7 @@ pub enum Function {
 }
 
 /// The functions of two numbers, such as a sum or a power.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[expect(missing_docs, reason = "the names are those of mathematics")]
 pub enum Operator {
     Add,
@@ -107,8 +136,8 @@ pub enum Operator {
 /// A mistake in a formula, with its location in the text.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fault {
-    /// The range of bytes in the text that is wrong.
-    pub span: Range<usize>,
+    /// The location of the part that is wrong.
+    pub span: TextSpan,
     /// The description of the mistake, for the user.
     pub message: String,
 }
@@ -122,42 +151,77 @@ impl fmt::Display for Fault {
 impl std::error::Error for Fault {}
 
 impl Fault {
-    fn new(span: Range<usize>, message: impl Into<String>) -> Self {
-        Self { span, message: message.into() }
+    fn new(span: impl Into<TextSpan>, message: impl Into<String>) -> Self {
+        Self { span: span.into(), message: message.into() }
     }
 
     /// Returns the text on one line, and on the next line carets under the mistake and the message. For example, in `sqrt(y)`
     /// the operand y has the mistake "there is no `y`: the operand is `x`", and a caret is under the y.
     pub fn under(&self, text: &str) -> String {
         let count = |range: Range<usize>| text.get(range).map_or(0, |it| it.chars().count());
-        let carets = count(self.span.clone()).max(1);
-        let before = " ".repeat(count(0..self.span.start.min(text.len())));
+        let bytes = self.span.bytes.clone();
+        let carets = count(bytes.clone()).max(1);
+        let before = " ".repeat(count(0..bytes.start.min(text.len())));
         format!("{text}\n{before}{} {}", "^".repeat(carets), self.message)
+    }
+}
+
+/// The text is the formula in Python if it has few parts. A formula of many parts, which may be shared, is not written out; its
+/// hash stands for it.
+impl fmt::Debug for Expression {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        const MOST_PARTS: u32 = 1000;
+        match self.size {
+            0..=MOST_PARTS => f.write_str(&self.python()),
+            size => write!(f, "a formula of {size} parts with the hash {:#x}", self.hash),
+        }
     }
 }
 
 impl PartialEq for Expression {
     fn eq(&self, other: &Self) -> bool {
-        self.kind == other.kind
+        ptr::eq(self, other) || self.hash == other.hash && self.kind == other.kind
     }
 }
 
 impl Expression {
-    /// Makes the formula that consists only of the operand `name`. Its location is 0..0.
+    /// Makes the formula that consists only of the operand `name`. Its location is empty.
     pub fn operand(name: &str) -> Self {
         Self::new(Kind::Operand(name.to_owned()), 0..0)
     }
 
-    /// Makes a formula of this kind, which was parsed from the bytes `span` of a text. The function also computes the value of
-    /// a constant formula.
-    pub fn new(kind: Kind, span: Range<usize>) -> Self {
-        let mut formula = Self { kind, span, constant: None };
+    /// Makes a formula of this kind, which was parsed from the location `span` of a text. The function also computes the value
+    /// of a constant formula.
+    pub fn new(kind: Kind, span: impl Into<TextSpan>) -> Self {
+        let varies = matches!(kind, Kind::Operand(_));
+        let mut formula =
+            Self { kind, span: span.into(), hash: 0, size: 1, varies, constant: None };
+        let mut hasher = DefaultHasher::new();
+        formula.kind.hash_root(&mut hasher);
+        for part in formula.parts() {
+            part.hash.hash(&mut hasher);
+        }
+        formula.hash = hasher.finish();
+        let sizes = formula.parts().into_iter().map(|part| part.size);
+        formula.size = sizes.fold(1, u32::saturating_add);
+        formula.varies |= formula.parts().iter().any(|part| part.varies);
         let is_constant = formula.parts().iter().all(|part| part.constant.is_some())
             && !matches!(formula.kind, Kind::Operand(_) | Kind::Word(..));
         if is_constant {
             formula.constant = formula.enclose(&[]).ok();
         }
         formula
+    }
+
+    /// Returns the number of parts of the formula as a text would state it: a part that several operations read counts once for
+    /// each. The result is at most `u32::MAX`. For example, `x * x + 1` has five parts.
+    pub fn size(&self) -> u32 {
+        self.size
+    }
+
+    /// Returns whether the formula reads an operand. For example, `sqrt(2)` reads none.
+    pub fn varies(&self) -> bool {
+        self.varies
     }
 
     /// Returns the formulas directly below the root of the tree, in the order of the text. A number, a constant or an operand
@@ -171,10 +235,19 @@ impl Expression {
         }
     }
 
-    /// Calls `visit` for every part of the formula and then for the formula itself, each part before the operation that uses
-    /// it.
+    /// Calls `visit` for every part of the formula and then for the formula itself, each part before the operations that use it.
+    /// A part that several operations share is visited once.
     pub fn walk<'f>(&'f self, visit: &mut dyn FnMut(&'f Self)) {
-        self.parts().into_iter().for_each(|part| part.walk(visit));
+        self.walk_unseen(&mut HashSet::new(), visit);
+    }
+
+    fn walk_unseen<'f>(&'f self, seen: &mut HashSet<*const Self>, visit: &mut dyn FnMut(&'f Self)) {
+        if !seen.insert(ptr::from_ref(self)) {
+            return;
+        }
+        for part in self.parts() {
+            part.walk_unseen(seen, visit);
+        }
         visit(self);
     }
 
@@ -191,7 +264,8 @@ impl Expression {
         }
     }
 
-    /// Returns the number of parts for which `is` returns true. The formula itself is also a part.
+    /// Returns the number of parts for which `is` returns true. The formula itself is also a part. A part that several operations
+    /// share counts once.
     pub fn count(&self, is: &dyn Fn(&Self) -> bool) -> usize {
         let mut count = 0;
         self.walk(&mut |part| count += usize::from(is(part)));
@@ -232,51 +306,97 @@ impl Expression {
 
     /// Returns whether `is` returns true for the kind of some part of the formula. The formula itself is also a part.
     pub fn has(&self, is: &dyn Fn(&Kind) -> bool) -> bool {
-        is(&self.kind) || self.parts().into_iter().any(|part| part.has(is))
+        self.count(&|part| is(&part.kind)) > 0
     }
 
     /// Returns the formula with operands replaced by formulas. `replacement` returns the formula for the name of an operand, or
-    /// `None` for an operand that stays. A replacement gets the location of the operand in the text; all other parts keep their
-    /// locations.
-    pub fn with_operands(&self, replacement: &dyn Fn(&str) -> Option<Self>) -> Self {
-        if let Kind::Operand(name) = &self.kind {
-            return match replacement(name) {
-                Some(formula) => formula.at(&self.span),
-                None => self.clone(),
-            };
-        }
-        let kind = self.kind.with_parts(&|part| part.with_operands(replacement));
-        Self::new(kind, self.span.clone())
+    /// `None` for an operand that stays. All parts keep their locations.
+    pub fn with_operands(&self, replacement: &dyn Fn(&str) -> Option<Arc<Self>>) -> Self {
+        let replaced = |part: &Self| match &part.kind {
+            Kind::Operand(name) => replacement(name),
+            _ => None,
+        };
+        let span = |part: &Self| part.span.clone();
+        Arc::unwrap_or_clone(Rewriting::new(&replaced, &span).of(self))
     }
 
-    /// Returns the formula in which all parts have the same location `place`.
-    fn at(&self, place: &Range<usize>) -> Self {
-        let nothing = Self::new(Kind::Operand(String::new()), 0..0);
-        let moved = self.substitute(&nothing, &nothing, place);
-        Self { span: place.clone(), ..moved }
+    /// Returns the formula in which all parts lie in text number `text`, at the same ranges of bytes.
+    pub fn in_text(&self, text: usize) -> Self {
+        let span = |part: &Self| TextSpan { text, bytes: part.span.bytes.clone() };
+        Arc::unwrap_or_clone(Rewriting::new(&|_| None, &span).of(self))
     }
 
     /// Returns the formula in which every part that equals `old` is replaced by `new`. All other parts get the location `call`.
-    pub fn substitute(&self, old: &Self, new: &Self, call: &Range<usize>) -> Self {
-        if self == old {
-            return new.clone();
+    pub fn substitute(&self, old: &Self, new: &Self, call: &TextSpan) -> Self {
+        let new = Arc::new(new.clone());
+        let replaced = |part: &Self| (part == old).then(|| new.clone());
+        let span = |_: &Self| call.clone();
+        Arc::unwrap_or_clone(Rewriting::new(&replaced, &span).of(self))
+    }
+}
+
+/// A rule that replaces parts of a formula, with the parts that were already rewritten. A part that several operations share
+/// stays shared.
+struct Rewriting<'r> {
+    /// Returns the formula that replaces a part; `None` if the part stays and only its own parts are rewritten.
+    replaced: &'r dyn Fn(&Expression) -> Option<Arc<Expression>>,
+    /// Returns the location of a part that is not replaced.
+    span: &'r dyn Fn(&Expression) -> TextSpan,
+    known: HashMap<*const Expression, Arc<Expression>>,
+}
+
+impl<'r> Rewriting<'r> {
+    fn new(
+        replaced: &'r dyn Fn(&Expression) -> Option<Arc<Expression>>,
+        span: &'r dyn Fn(&Expression) -> TextSpan,
+    ) -> Self {
+        Self { replaced, span, known: HashMap::new() }
+    }
+
+    fn of(&mut self, part: &Expression) -> Arc<Expression> {
+        let place = ptr::from_ref(part);
+        if let Some(known) = self.known.get(&place) {
+            return known.clone();
         }
-        let kind = self.kind.with_parts(&|part| part.substitute(old, new, call));
-        Self::new(kind, call.clone())
+        let rewritten = match (self.replaced)(part) {
+            Some(replacement) => replacement,
+            None => {
+                let kind = part.kind.with_parts(&mut |part| self.of(part));
+                Arc::new(Expression::new(kind, (self.span)(part)))
+            }
+        };
+        self.known.insert(place, rewritten.clone());
+        rewritten
     }
 }
 
 impl Kind {
-    /// Returns the kind with its direct parts replaced. `new` returns the replacement of a part.
-    fn with_parts(&self, new: &dyn Fn(&Expression) -> Expression) -> Self {
-        let inner = |part: &Expression| Box::new(new(part));
+    /// Adds everything that distinguishes this kind from others to a hash, except for the formulas below it.
+    fn hash_root(&self, hasher: &mut DefaultHasher) {
+        mem::discriminant(self).hash(hasher);
         match self {
-            Kind::Word(rom, at) => Kind::Word(rom.clone(), inner(at)),
-            Kind::Unary(function, a) => Kind::Unary(*function, inner(a)),
-            Kind::Binary(operator, a, b) => Kind::Binary(*operator, inner(a), inner(b)),
-            Kind::If(it, a, b) => {
-                let (left, right) = (inner(&it.left), inner(&it.right));
-                Kind::If(Comparison { left, right, or_equal: it.or_equal }, inner(a), inner(b))
+            Self::Number(literal) => literal.nearest().to_bits().hash(hasher),
+            Self::Constant(name, _) => name.hash(hasher),
+            Self::Operand(name) | Self::Word(name, _) => name.hash(hasher),
+            Self::Unary(function, _) => function.hash(hasher),
+            Self::Binary(operator, ..) => operator.hash(hasher),
+            Self::If(comparison, ..) => comparison.or_equal.hash(hasher),
+        }
+    }
+
+    /// Returns the kind with its direct parts replaced. `new` returns the replacement of a part.
+    fn with_parts(&self, new: &mut dyn FnMut(&Expression) -> Arc<Expression>) -> Self {
+        match self {
+            Self::Word(rom, at) => Self::Word(rom.clone(), new(at)),
+            Self::Unary(function, a) => Self::Unary(*function, new(a)),
+            Self::Binary(operator, a, b) => {
+                let first = new(a);
+                Self::Binary(*operator, first, new(b))
+            }
+            Self::If(it, a, b) => {
+                let (left, right) = (new(&it.left), new(&it.right));
+                let yes = new(a);
+                Self::If(Comparison { left, right, or_equal: it.or_equal }, yes, new(b))
             }
             leaf => leaf.clone(),
         }

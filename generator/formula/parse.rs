@@ -1,8 +1,9 @@
 //! Parses the text of a formula, such as `1 / sqrt(x)`, to a tree.
 
 use std::ops::Range;
+use std::sync::Arc;
 
-use super::{Comparison, Expression, Fault, Function, Kind, Literal, Operator};
+use super::{Comparison, Expression, Fault, Function, Kind, Literal, Operator, TextSpan};
 
 /// The functions of one number that a formula may call, with their names.
 pub const FUNCTIONS: [(&str, Function); 13] = [
@@ -215,7 +216,7 @@ impl Parser<'_> {
             let comparison = self.comparison()?;
             self.expect("else")?;
             let other = self.choice()?;
-            let kind = Kind::If(comparison, Box::new(choice), Box::new(other));
+            let kind = Kind::If(comparison, Arc::new(choice), Arc::new(other));
             choice = self.made(from, kind);
         }
         self.depth -= 1;
@@ -223,12 +224,12 @@ impl Parser<'_> {
     }
 
     fn comparison(&mut self) -> Result<Comparison, Fault> {
-        let first = Box::new(self.sum()?);
+        let first = Arc::new(self.sum()?);
         let sign = self.peek().to_owned();
         if !self.taken(&["<", ">", "<=", ">="]) {
             return self.fault("`<`, `>`, `<=` or `>=` is missing");
         }
-        let second = Box::new(self.sum()?);
+        let second = Arc::new(self.sum()?);
         let (left, right) = if sign.starts_with('>') { (first, second) } else { (second, first) };
         Ok(Comparison { left, right, or_equal: sign.len() == 2 })
     }
@@ -244,7 +245,7 @@ impl Parser<'_> {
         let mut all = part(self)?;
         while let Some((_, operator)) = signs.iter().find(|(sign, _)| *sign == self.peek()) {
             self.at += 1;
-            let kind = Kind::Binary(*operator, Box::new(all), Box::new(part(self)?));
+            let kind = Kind::Binary(*operator, Arc::new(all), Arc::new(part(self)?));
             all = self.made(from, kind);
         }
         Ok(all)
@@ -280,12 +281,12 @@ impl Parser<'_> {
                 return self.fault(format!("the formula is nested more than {DEEPEST} deep"));
             }
             self.depth += 1;
-            let kind = Kind::Binary(Operator::Power, Box::new(part), Box::new(self.signed()?));
+            let kind = Kind::Binary(Operator::Power, Arc::new(part), Arc::new(self.signed()?));
             self.depth -= 1;
             part = self.made(base, kind);
         }
         if negations % 2 == 1 {
-            part = self.made(from, Kind::Unary(Function::Negate, Box::new(part)));
+            part = self.made(from, Kind::Unary(Function::Negate, Arc::new(part)));
         }
         Ok(part)
     }
@@ -318,7 +319,7 @@ impl Parser<'_> {
         if self.taken(&["["]) {
             // The index of a word is an integer. In Python, `int` makes it one.
             self.taken(&["int"]);
-            let place = Box::new(self.choice()?);
+            let place = Arc::new(self.choice()?);
             self.expect("]")?;
             return Ok(self.made(from, Kind::Word(token, place)));
         }
@@ -339,9 +340,9 @@ impl Parser<'_> {
         if name == "if" {
             let comparison = self.comparison()?;
             self.expect(",")?;
-            let yes = Box::new(self.choice()?);
+            let yes = Arc::new(self.choice()?);
             self.expect(",")?;
-            let no = Box::new(self.choice()?);
+            let no = Arc::new(self.choice()?);
             self.expect(")")?;
             return Ok(self.made(from, Kind::If(comparison, yes, no)));
         }
@@ -363,7 +364,7 @@ impl Parser<'_> {
         if let Some(body) = defined.or(defined_of_two) {
             return written_out(name, body, &arguments, span);
         }
-        let mut boxed = arguments.into_iter().map(Box::new);
+        let mut boxed = arguments.into_iter().map(Arc::new);
         let first = boxed.next().expect("a call has an argument");
         let kind = match (operator, boxed.next(), function) {
             (Some(operator), Some(second), _) => Kind::Binary(operator, first, second),
@@ -402,12 +403,13 @@ fn written_out(
     span: Range<usize>,
 ) -> Result<Expression, Fault> {
     let mut formula = parse(body)?;
-    let mut parts = formula.count(&|_| true);
+    let span = TextSpan::from(span);
+    let mut parts = formula.size() as usize;
     let parameters = [Expression::operand("u"), Expression::operand("v")];
     let mut most_uses = 0;
     for (parameter, argument) in parameters.iter().zip(arguments) {
         let uses = formula.count(&|part| part == parameter);
-        parts += uses * argument.count(&|_| true);
+        parts += uses * argument.size() as usize;
         most_uses = most_uses.max(uses);
     }
     if parts > MOST_PARTS {

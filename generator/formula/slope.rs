@@ -1,8 +1,11 @@
 //! Differentiates a formula: computes limits between which the derivative lies, for an operand in an interval. The computation
 //! fails if the formula may jump in the interval.
 
+use std::collections::HashMap;
+use std::ptr;
+
 use super::arithmetic::Double;
-use super::evaluate::{binary, unary};
+use super::evaluate::{FEW_PARTS, binary, unary};
 use super::{Enclosure, Expression, Fault, Function, Kind, Operator};
 
 /// The limits of a value, and the limits of its derivative.
@@ -20,26 +23,51 @@ impl Expression {
     /// # Errors
     /// Fails if a part of the formula has no value, may jump, or may be infinitely steep.
     pub fn slope(&self, operand: &str, limits: Enclosure) -> Result<(Enclosure, Enclosure), Fault> {
-        self.pair(operand, limits).map(|it| (it.value, it.slope))
+        let mut derivation = Derivation { operand, limits, known: HashMap::new() };
+        derivation.pair(self).map(|it| (it.value, it.slope))
+    }
+}
+
+/// The differentiation of a formula for an operand within limits.
+struct Derivation<'d> {
+    operand: &'d str,
+    limits: Enclosure,
+    /// The values and slopes of parts with at least [`FEW_PARTS`] parts of their own, so that no shared part is computed twice.
+    known: HashMap<*const Expression, ValueAndSlope>,
+}
+
+impl Derivation<'_> {
+    fn pair(&mut self, part: &Expression) -> Result<ValueAndSlope, Fault> {
+        if part.size() < FEW_PARTS {
+            return self.new_pair(part);
+        }
+        let place = ptr::from_ref(part);
+        if let Some(known) = self.known.get(&place) {
+            return Ok(*known);
+        }
+        let pair = self.new_pair(part)?;
+        self.known.insert(place, pair);
+        Ok(pair)
     }
 
-    fn pair(&self, operand: &str, limits: Enclosure) -> Result<ValueAndSlope, Fault> {
-        let fault = |message: String| Fault::new(self.span.clone(), message);
-        let pair = match &self.kind {
+    fn new_pair(&mut self, part: &Expression) -> Result<ValueAndSlope, Fault> {
+        let Self { operand, limits, .. } = *self;
+        let fault = |message: String| Fault::new(part.span.clone(), message);
+        let pair = match &part.kind {
             Kind::Number(..) | Kind::Constant(..) => {
-                ValueAndSlope { value: self.enclose(&[])?, slope: Enclosure::exactly(0.0) }
+                ValueAndSlope { value: part.enclose(&[])?, slope: Enclosure::exactly(0.0) }
             }
             Kind::Operand(_) | Kind::Word(..) => ValueAndSlope {
-                value: self.enclose(&[(operand, limits)])?,
+                value: part.enclose(&[(operand, limits)])?,
                 slope: Enclosure::exactly(1.0),
             },
             Kind::Unary(function, a) => {
-                let a = a.pair(operand, limits)?;
+                let a = self.pair(a)?;
                 let value = unary(&Double, *function, &a.value).map_err(fault)?;
                 ValueAndSlope { value, slope: of_unary(*function, a, value) }
             }
             Kind::Binary(operator, a, b) => {
-                let (a, b) = (a.pair(operand, limits)?, b.pair(operand, limits)?);
+                let (a, b) = (self.pair(a)?, self.pair(b)?);
                 let value = binary(&Double, *operator, &a.value, &b.value).map_err(fault)?;
                 match of_binary(*operator, a, b, value) {
                     Some(slope) => ValueAndSlope { value, slope },
@@ -50,8 +78,8 @@ impl Expression {
                 let left = comparison.left.enclose(&[(operand, limits)])?;
                 let right = comparison.right.enclose(&[(operand, limits)])?;
                 match comparison.decided(&Double, &left, &right).map_err(fault)? {
-                    Some(true) => yes.pair(operand, limits)?,
-                    Some(false) => no.pair(operand, limits)?,
+                    Some(true) => self.pair(yes)?,
+                    Some(false) => self.pair(no)?,
                     None => return Err(fault("the value of this part can jump".to_owned())),
                 }
             }

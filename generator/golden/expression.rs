@@ -48,12 +48,24 @@ fn values_in_format(value: f64, format: Format) -> [f64; 2] {
     [inside, if is_in_upper_half { inside - range } else { inside + range }]
 }
 
+/// The most parts of a formula that is written out as text for benches and programs.
+const MOST_PARTS: u32 = 20_000;
+
 /// The formulas of the configuration, with the plan and with the bound that was proved for each formula.
 struct ProvedFormulas {
     found: Arc<ProvedPlan>,
 }
 
 impl ProvedFormulas {
+    /// Returns whether no formula and no condition has more than [`MOST_PARTS`] parts.
+    fn is_writable(&self) -> bool {
+        self.found.statement.results.iter().all(|result| {
+            let promise = result.promise.iter();
+            let mut sides = promise.flat_map(|it| [it.left.size(), it.right.size()]);
+            result.target().size() <= MOST_PARTS && sides.all(|size| size <= MOST_PARTS)
+        })
+    }
+
     /// Returns the values of the operands by name, as intervals of a single number.
     fn enclosed(&self, operands: &[f64]) -> Vec<(&str, Enclosure)> {
         let mut named = Vec::with_capacity(operands.len());
@@ -169,12 +181,20 @@ impl Formula for ProvedFormulas {
         self.found.statement.results.iter().map(|result| result.error).fold(0.0, f64::max)
     }
 
+    /// Returns the formulas as Python, or an empty list if they are too long to be written out. In the text, each use of a
+    /// named part repeats the formula of this part.
     fn expressions(&self) -> Vec<String> {
+        if !self.is_writable() {
+            return Vec::new();
+        }
         let results = self.found.statement.results.iter();
         results.map(|result| result.target().python()).collect()
     }
 
     fn conditions(&self) -> Option<Vec<Option<Comparison>>> {
+        if !self.is_writable() {
+            return None;
+        }
         let results = self.found.statement.results.iter();
         Some(results.map(|result| result.promise.clone()).collect())
     }

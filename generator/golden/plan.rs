@@ -20,21 +20,58 @@ struct PlanModel {
     registers: Vec<Option<Slot>>,
 }
 
-impl PlanModel {
-    /// Returns the raw value of a node: the value in its register, or the computed value of a node without a register.
-    fn value(&self, id: NodeId, state: &State) -> i128 {
-        match self.registers[id.0] {
-            Some(slot) => state[slot].into(),
-            None => self.computed(id, state),
+/// The nodes between registers from which some nodes are computed in one clock.
+struct ClockCone {
+    /// The nodes in the order of the plan, so that each reads registers or nodes before it.
+    nodes: Vec<NodeId>,
+    /// For each node of the plan its place in `nodes`; `None` for the other nodes.
+    places: Vec<Option<usize>>,
+}
+
+impl ClockCone {
+    /// Returns the cone of the nodes `ends`. The cone ends at nodes with a register, unless these are in `ends` themselves.
+    fn new(model: &PlanModel, ends: &[NodeId]) -> Self {
+        let count = model.plan.nodes.len();
+        let mut needed = vec![false; count];
+        for end in ends {
+            needed[end.0] = true;
         }
+        for at in (0..count).rev() {
+            if !needed[at] {
+                continue;
+            }
+            for input in model.plan.nodes[at].operation.inputs() {
+                needed[input.0] |= model.registers[input.0].is_none();
+            }
+        }
+        let mut nodes = Vec::new();
+        let mut places = vec![None; count];
+        for at in 0..count {
+            if needed[at] {
+                places[at] = Some(nodes.len());
+                nodes.push(NodeId(at));
+            }
+        }
+        Self { nodes, places }
     }
 
-    /// Returns the raw value that a node has now, computed from its inputs. A register of the node takes this value at the next
+    /// Returns the raw values that the nodes `ends` of the cone have now. A register of a node takes this value at the next
     /// edge.
-    fn computed(&self, id: NodeId, state: &State) -> i128 {
-        let operands: Vec<i64> = self.operands.iter().map(|slot| state[*slot]).collect();
-        // Between a product and its register, nodes are computed anew.
-        self.plan.value(id, &operands, &|input| self.value(input, state))
+    fn values(&self, model: &PlanModel, ends: &[NodeId], state: &State) -> Vec<i64> {
+        let operands: Vec<i64> = model.operands.iter().map(|slot| state[*slot]).collect();
+        let mut values: Vec<i128> = Vec::with_capacity(self.nodes.len());
+        for id in &self.nodes {
+            let value = model.plan.value(*id, &operands, &|input| match model.registers[input.0] {
+                Some(slot) => state[slot].into(),
+                None => values[self.place(input)],
+            });
+            values.push(value);
+        }
+        ends.iter().map(|end| values[self.place(*end)] as i64).collect()
+    }
+
+    fn place(&self, id: NodeId) -> usize {
+        self.places[id.0].expect("a node of the cone")
     }
 }
 
@@ -100,13 +137,11 @@ pub(super) fn plan_device(
 
 /// Returns the microinstruction that loads the registers of some nodes.
 fn loads(model: &Arc<PlanModel>, nodes: Vec<NodeId>) -> FrameStep {
+    let cone = ClockCone::new(model, &nodes);
     step_by(model, move |model, state| {
-        let mut loaded = Vec::with_capacity(nodes.len());
-        for node in &nodes {
+        let values = cone.values(model, &nodes, state);
+        for (node, value) in nodes.iter().zip(values) {
             let slot = model.registers[node.0].expect("a register of a node that is held");
-            loaded.push((slot, model.computed(*node, state) as i64));
-        }
-        for (slot, value) in loaded {
             state[slot] = value;
         }
     })
@@ -119,8 +154,12 @@ fn sum_step(
     sums: &Polynomial,
     coefficient: usize,
 ) -> FrameStep {
-    let inputs = model.plan.node(id).operation.inputs();
+    let input = model.plan.node(id).operation.inputs()[0];
+    let cone = ClockCone::new(model, &[input]);
     let reader = model.clone();
-    let operand = move |state: &State| reader.value(inputs[0], state) as i64;
+    let operand = move |state: &State| match reader.registers[input.0] {
+        Some(slot) => state[slot],
+        None => cone.values(&reader, &[input], state)[0],
+    };
     super::frame::step(sums.step(coefficient, operand))
 }

@@ -22,7 +22,7 @@ use super::{
 };
 use glint_base::fixed::{Format, Rounding, exp2};
 use glint_config::Config;
-use glint_formula::{Expression, Kind, parse};
+use glint_formula::{Expression, Kind, TextSpan, parse};
 use glint_keys::shading::{HighlightDevice, Keys, PartConfigs};
 
 /// Returns the device: the parts of each light, one after the other, followed by the sum of ambient, diffuse and specular light.
@@ -310,7 +310,8 @@ impl Formula for Shading {
         for suffix in self.keys.suffixes() {
             facing.push(self.cosine_expression("l", suffix));
             let cosine = parse(&self.cosine_expression("h", suffix)).expect("a formula");
-            let of_light = f.substitute(&Expression::operand(operand), &cosine, &(0..0));
+            let of_light =
+                f.substitute(&Expression::operand(operand), &cosine, &TextSpan::default());
             shine.push(format!("({})", of_light.python()));
         }
         let [facing, shine] = [facing, shine].map(|parts| parts.join(" + "));

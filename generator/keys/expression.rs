@@ -12,7 +12,7 @@ use glint_base::fixed::{Format, MAX_WIDTH, exp2};
 use glint_base::identifier;
 use glint_base::key_error::KeyError;
 use glint_config::{Config, Key, Problems, Schema, TableEntries, TableEntry, TextPattern, Value};
-use glint_formula::{Comparison, Expression, Fault, Kind, Operator, parse};
+use glint_formula::{Comparison, Expression, Fault, Kind, Operator, TextSpan, parse};
 use glint_plan::{
     ExpressionStatement, PlanRefusal, ProvedPlan, StatedOperand, StatedOverflow, StatedResult,
     StatedWidth, find, least_size,
@@ -150,7 +150,7 @@ impl StatementError {
     fn of_fault(key: String, fault: Fault) -> Self {
         let remedy = "write a formula of numbers, pi, e, operands, + - * / ^, parentheses and functions, for \
                       example `sqrt(x^2 + y^2)`";
-        Self { place: Some(fault.span), ..Self::new(key, fault.message, remedy) }
+        Self { place: Some(fault.span.bytes), ..Self::new(key, fault.message, remedy) }
     }
 }
 
@@ -160,19 +160,31 @@ impl StatementError {
 /// Fails if a name, an operand, a formula or an allowed error is wrong, if no result depends on some operand, or if no plan can
 /// be found. The error says why.
 pub fn found(config: &Config) -> Result<Arc<ProvedPlan>, StatementError> {
-    let statement = statement(&Keys::of(config))?;
-    find(&statement).map_err(|refusal| refused(&statement, refusal))
+    let keys = Keys::of(config);
+    let statement = statement(&keys)?;
+    find(&statement).map_err(|refusal| refused(&keys, &statement, refusal))
 }
 
-/// Returns the refusal of a plan as an error in the formula that the refusal concerns, or in the table `results` if it concerns
-/// no single formula.
-fn refused(statement: &ExpressionStatement, refusal: PlanRefusal) -> StatementError {
-    let key = match refusal.result {
-        Some(number) => format!("results.{}.formula", statement.results[number].name),
-        None => "results".to_owned(),
+/// Returns the refusal of a plan as an error in the formula that the refusal concerns, which may be the formula of a named part,
+/// or in the table `results` if it concerns no single formula.
+fn refused(keys: &Keys, statement: &ExpressionStatement, refusal: PlanRefusal) -> StatementError {
+    let of_part = |place: &TextSpan| Some(&keys.parts.0.get(place.text.checked_sub(1)?)?.name);
+    let key = match (refusal.place.as_ref().and_then(of_part), refusal.result) {
+        (Some(name), _) => part_key(name),
+        (None, Some(number)) => format!("results.{}.formula", statement.results[number].name),
+        (None, None) => "results".to_owned(),
     };
     let error = StatementError::new(key, refusal.message, refusal.remedy);
-    StatementError { place: refusal.place, ..error }
+    StatementError { place: refusal.place.map(|place| place.bytes), ..error }
+}
+
+/// The named parts of the formulas, in the order of the table `let`. The formula of part number i lies in text number i + 1
+/// ([`TextSpan::text`]).
+type Parts = Vec<(String, Arc<Expression>)>;
+
+/// Returns the key of the formula of the part `name`.
+fn part_key(name: &str) -> String {
+    format!("let.{name}.formula")
 }
 
 /// Returns the operands and results that a configuration states. The returned formulas contain operands alone: the function
@@ -187,11 +199,11 @@ fn statement(keys: &Keys) -> Result<ExpressionStatement, StatementError> {
     for record in &keys.operands.0 {
         operands.push(operand(record)?);
     }
-    let mut parts: Vec<(String, Expression)> = Vec::new();
-    for record in &keys.parts.0 {
-        let key = format!("let.{}.formula", record.name);
+    let mut parts: Parts = Vec::new();
+    for (number, record) in keys.parts.0.iter().enumerate() {
+        let key = part_key(&record.name);
         let formula = formula(record.text("formula"), &key, keys, &parts)?;
-        parts.push((record.name.clone(), formula));
+        parts.push((record.name.clone(), Arc::new(formula.in_text(number + 1))));
     }
     let mut results = Vec::new();
     for record in &keys.results.0 {
@@ -213,7 +225,7 @@ fn statement(keys: &Keys) -> Result<ExpressionStatement, StatementError> {
     let mut statement = ExpressionStatement { operands, results };
     for (number, record) in keys.results.0.iter().enumerate() {
         if let Some(text) = record.text("error_relative") {
-            statement.results[number].error = error_of_relative(&statement, number, text)?;
+            statement.results[number].error = error_of_relative(keys, &statement, number, text)?;
         }
     }
     Ok(statement)
@@ -227,6 +239,7 @@ fn statement(keys: &Keys) -> Result<ExpressionStatement, StatementError> {
 /// Fails if `text` is not a number between 0 and 1, or if the result may be 0 or near 0. Fails if the smallest absolute value of
 /// the result cannot be computed, or if the error would be below half a unit.
 fn error_of_relative(
+    keys: &Keys,
     statement: &ExpressionStatement,
     number: usize,
     text: &str,
@@ -234,14 +247,15 @@ fn error_of_relative(
     let StatedResult { name, fraction, .. } = &statement.results[number];
     let key = format!("results.{name}.error_relative");
     let part = parse(text).and_then(|part| part.enclose(&[])).map_err(|fault| StatementError {
-        place: Some(fault.span),
+        place: Some(fault.span.bytes),
         ..StatementError::new(&key, fault.message, RELATIVE_ERROR)
     })?;
     if !(part.low > 0.0 && part.high < 1.0) {
         let message = format!("`{text}` is not a number between 0 and 1");
         return Err(StatementError::new(key, message, RELATIVE_ERROR));
     }
-    let least = least_size(statement, number).map_err(|refusal| refused(statement, refusal))?;
+    let least =
+        least_size(statement, number).map_err(|refusal| refused(keys, statement, refusal))?;
     if least == 0.0 {
         let message = format!(
             "`{name}` can be 0 or near 0, and no error is a small enough part of such a value"
@@ -415,11 +429,7 @@ fn end(text: &str, fraction: u32, key: String) -> Result<End, StatementError> {
     })
 }
 
-fn result(
-    record: &TableEntry,
-    keys: &Keys,
-    parts: &[(String, Expression)],
-) -> Result<StatedResult, StatementError> {
+fn result(record: &TableEntry, keys: &Keys, parts: &Parts) -> Result<StatedResult, StatementError> {
     let name = record.name.clone();
     let whole = format!("results.{name}");
     let Some(fraction) = record.bits("fraction") else {
@@ -486,10 +496,10 @@ fn limited(formula: &Expression, format: Format) -> Expression {
     let (least, most) = format.range();
     let limit = |raw: i128| {
         let number = parse(&format!("{raw} / 2^{}", format.frac)).expect("a formula of a number");
-        Box::new(Expression::new(number.kind, span.clone()))
+        Arc::new(Expression::new(number.kind, span.clone()))
     };
-    let not_below = Kind::Binary(Operator::Max, Box::new(formula.clone()), limit(least));
-    let not_below = Box::new(Expression::new(not_below, span.clone()));
+    let not_below = Kind::Binary(Operator::Max, Arc::new(formula.clone()), limit(least));
+    let not_below = Arc::new(Expression::new(not_below, span.clone()));
     Expression::new(Kind::Binary(Operator::Min, not_below, limit(most)), span.clone())
 }
 
@@ -502,7 +512,7 @@ fn formula(
     text: Option<&str>,
     key: &str,
     keys: &Keys,
-    parts: &[(String, Expression)],
+    parts: &Parts,
 ) -> Result<Expression, StatementError> {
     let text = text.unwrap_or_default();
     let formula = parse(text).map_err(|fault| StatementError::of_fault(key.to_owned(), fault))?;
@@ -517,7 +527,7 @@ fn resolved(
     formula: &Expression,
     key: &str,
     keys: &Keys,
-    parts: &[(String, Expression)],
+    parts: &Parts,
 ) -> Result<Expression, StatementError> {
     let mut unknown = None;
     formula.walk(&mut |part| {
@@ -525,7 +535,7 @@ fn resolved(
         let is_operand = keys.operands.0.iter().any(|operand| operand.name == *name);
         let is_part = parts.iter().any(|(own, _)| own == name);
         if !is_operand && !is_part || matches!(part.kind, Kind::Word(..)) {
-            unknown.get_or_insert((part.span.clone(), name.clone()));
+            unknown.get_or_insert((part.span.bytes.clone(), name.clone()));
         }
     });
     if let Some((span, name)) = unknown {
@@ -550,7 +560,7 @@ fn promise(
     text: &str,
     key: &str,
     keys: &Keys,
-    parts: &[(String, Expression)],
+    parts: &Parts,
 ) -> Result<Comparison, StatementError> {
     const BEFORE: &str = "if(";
     let moved = |span: Range<usize>| {
@@ -560,7 +570,7 @@ fn promise(
     let choice = parse(&format!("{BEFORE}{text}, 1, 0)")).map_err(|fault| {
         let remedy = "give a comparison of two formulas, for example `x < y` or `s > 0`";
         let error = StatementError::new(key.to_owned(), fault.message, remedy);
-        StatementError { place: Some(moved(fault.span)), ..error }
+        StatementError { place: Some(moved(fault.span.bytes)), ..error }
     })?;
     let choice = resolved(&choice, key, keys, parts)
         .map_err(|error| StatementError { place: error.place.map(moved), ..error })?;

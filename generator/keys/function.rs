@@ -184,7 +184,7 @@ impl End {
         let (ceiling, is_operand) = formula.ceiling(fraction).map_err(|fault| {
             let remedy =
                 "write the end as a number, for example `2` or `1e-3`, or as a formula of numbers";
-            Refusal { place: Some(fault.span), ..Refusal::new(key, fault.message, remedy) }
+            Refusal { place: Some(fault.span.bytes), ..Refusal::new(key, fault.message, remedy) }
         })?;
         Ok(Self { ceiling, is_operand })
     }
@@ -203,5 +203,5 @@ fn too_wide(from: &End, to: &End, fraction: u32) -> String {
 fn misread(key: &'static str, fault: Fault) -> Refusal {
     let remedy = "write a formula of numbers, pi, e, + - * / ^, parentheses and functions, for example `1 / \
                   sqrt(x)`";
-    Refusal { place: Some(fault.span), ..Refusal::new(key, fault.message, remedy) }
+    Refusal { place: Some(fault.span.bytes), ..Refusal::new(key, fault.message, remedy) }
 }

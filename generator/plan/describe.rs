@@ -55,9 +55,15 @@ impl ExpressionPlan {
     }
 }
 
+/// The most parts of a formula that is written out.
+const MOST_PARTS: u32 = 200;
+
 /// Returns a phrase with the function of a table and the size of the table. `operand` is the name of the function's operand.
 fn table_words(approximation: &Approximation, operand: &str) -> String {
     let function = match &approximation.function.curve {
+        Curve::Formula(formula) if formula.size() > MOST_PARTS => {
+            format!("a function of x with {} parts", formula.size())
+        }
         Curve::Formula(formula) => formula.python(),
         Curve::Samples(_) => "samples".to_owned(),
     };

@@ -33,8 +33,9 @@ impl ExpressionPlan {
     fn whole_value(&self, id: NodeId, operands: &[i64], known: &dyn Fn(NodeId) -> i128) -> i128 {
         let node = self.node(id);
         // Returns the raw value of `input` with `frac` fraction bits, if it has fewer.
-        let aligned =
-            |input: NodeId, frac: i32| known(input) << (frac - self.node(input).format.frac).max(0);
+        let aligned = |input: NodeId, frac: i32| {
+            left_by(known(input), (frac - self.node(input).format.frac).max(0).into())
+        };
         let finest = |a: NodeId, b: NodeId| self.node(a).format.frac.max(self.node(b).format.frac);
         match &node.operation {
             Operation::Operand(number) => operands[*number].into(),
@@ -63,7 +64,11 @@ impl ExpressionPlan {
             Operation::Scale(a) => known(*a),
             Operation::Narrow(a, rounding) => {
                 let places = self.node(*a).format.frac - node.format.frac;
-                if places > 0 { rounding.shift(known(*a), places) } else { known(*a) << -places }
+                if places > 0 {
+                    rounding.shift(known(*a), places)
+                } else {
+                    left_by(known(*a), i128::from(-places))
+                }
             }
             Operation::Middle(a) => middle(known(*a), self.node(*a).format.frac - node.format.frac),
             Operation::Bit(a, number) => known(*a) >> number & 1,
@@ -79,8 +84,8 @@ impl ExpressionPlan {
                 };
                 normalised(known(word), self.node(word).format.width(), by_pairs).1
             }
-            Operation::ShiftLeft(a, places) => known(*a) << known(*places),
-            Operation::ShiftRight(a, places) => known(*a) >> known(*places),
+            Operation::ShiftLeft(a, places) => left_by(known(*a), known(*places)),
+            Operation::ShiftRight(a, places) => known(*a) >> known(*places).min(127),
             Operation::Lookup { address, words } => {
                 let place = usize::try_from(known(*address)).expect("an address has no sign");
                 words.get(place).copied().unwrap_or(0)
@@ -92,6 +97,11 @@ impl ExpressionPlan {
             }
         }
     }
+}
+
+/// Returns the low 128 bits of `raw` · 2^`places`.
+fn left_by(raw: i128, places: i128) -> i128 {
+    u32::try_from(places).ok().and_then(|places| raw.checked_shl(places)).unwrap_or(0)
 }
 
 /// Returns the raw value after the bits beyond the format of the node are dropped.

@@ -12,10 +12,12 @@ mod root;
 mod wave;
 
 use std::collections::HashMap;
+use std::mem;
+use std::ptr;
 use std::sync::Arc;
 
 use glint_approximate::{Curve, Outside, Piecewise, TargetFunction};
-use glint_base::fixed::{Format, Rounding, exp2, nearest};
+use glint_base::fixed::{Format, Rounding, exp2, nearest, shifted_left};
 use glint_formula::{Comparison, Enclosure, Expression, Function, Kind, Operator, RBig};
 
 use super::boxes::ResultProof;
@@ -101,6 +103,14 @@ impl FoundPolynomials {
     }
 }
 
+/// A part of a formula that has a node.
+struct KnownPart {
+    part: Expression,
+    node: NodeId,
+    /// For each result, whether the node has the right value for all operands for which this result is promised.
+    readers: Vec<bool>,
+}
+
 /// The state of the rewriting of formulas as a plan.
 pub(super) struct Lowering<'s> {
     statement: &'s ExpressionStatement,
@@ -108,8 +118,10 @@ pub(super) struct Lowering<'s> {
     first_guard: i32,
     found: &'s FoundPolynomials,
     plan: ExpressionPlan,
-    /// The parts of formulas that already have a node, with this node.
-    known: Vec<(Expression, NodeId)>,
+    /// The parts of formulas that already have a node.
+    known: Vec<KnownPart>,
+    /// For each result, whether it reads the part that is being rewritten.
+    readers: Vec<bool>,
     /// The tables that sines and cosines of the same angle share.
     octants: Vec<wave::OctantWaves>,
     /// The number of rounding operations so far.
@@ -137,16 +149,20 @@ pub(super) fn lowered(
         found,
         plan: ExpressionPlan::default(),
         known: Vec::new(),
+        readers: Vec::new(),
         octants: Vec::new(),
         sources: 0,
         finest: finest.unwrap_or(0),
     };
     for (number, operand) in statement.operands.iter().enumerate() {
         let node = lowering.plan.operand(number, &operand.name, operand.format, operand.domain)?;
-        lowering.known.push((Expression::operand(&operand.name), node));
+        let readers = vec![true; statement.results.len()];
+        lowering.known.push(KnownPart { part: Expression::operand(&operand.name), node, readers });
     }
     for number in 0..statement.results.len() {
         let of_result = |refusal: PlanRefusal| refusal.of_result(number);
+        lowering.readers = vec![false; statement.results.len()];
+        lowering.readers[number] = true;
         let rounded = lowering.result(number).map_err(of_result)?;
         let proved = lowering.saturated(number, rounded).map_err(of_result)?;
         let node = lowering.in_stated_width(number, proved).map_err(of_result)?;
@@ -169,7 +185,7 @@ impl<'s> Lowering<'s> {
         let range = self.plan.node(node).range;
         let rounded = |raw: i128| match places {
             1.. => Rounding::Nearest.shift(raw, places),
-            _ => raw << -places,
+            _ => shifted_left(raw, -places).unwrap_or(if raw < 0 { i128::MIN } else { i128::MAX }),
         };
         // Neither the formula with its allowed error nor the node has values beyond these.
         let low = ((values.low * unit - result.error).ceil() as i128).max(rounded(range.0));
@@ -224,10 +240,22 @@ impl<'s> Lowering<'s> {
         Ok(limited)
     }
 
-    /// Returns an interval that contains the values of a part, for all operands for which a result with this part is promised.
-    /// Fails if the values have no finite limits.
+    /// Returns an interval that contains the values of a part, for all operands for which a result that reads this part is
+    /// promised. Fails if the values have no finite limits.
     fn range(&self, part: &Expression) -> Result<Enclosure, PlanRefusal> {
-        range_of(self.statement, part).map_err(|error| error.refusal(self.statement, part))
+        let readers = self.readers_of(part);
+        range_of(self.statement, &readers, part)
+            .map_err(|error| error.refusal(self.statement, part))
+    }
+
+    /// Returns for each result whether it reads `part`: the results that read the part that is being rewritten, and those whose
+    /// formulas contain `part`.
+    fn readers_of(&self, part: &Expression) -> Vec<bool> {
+        let mut readers = self.readers.clone();
+        for (reads, result) in readers.iter_mut().zip(&self.statement.results) {
+            *reads |= result.formula.count(&|own| own == part) > 0;
+        }
+        readers
     }
 
     /// Chooses a number of fraction bits, and returns the node that `make` adds with this number. The number is `frac` plus the
@@ -252,16 +280,24 @@ impl<'s> Lowering<'s> {
     /// Returns the node of a part of a formula. Adds the node and all nodes that it reads if the part has no node. Fails if a
     /// part has too many bits, no finite values, or no rule. The refusal has the location of the part.
     fn part(&mut self, part: &Expression) -> Result<NodeId, PlanRefusal> {
-        if let Some((_, node)) = self.known.iter().find(|(known, _)| known == part) {
-            return Ok(*node);
+        let is_for_all = |known: &&KnownPart| {
+            let mut readers = self.readers.iter().zip(&known.readers);
+            known.part == *part && readers.all(|(reads, is_right)| !reads || *is_right)
+        };
+        if let Some(known) = self.known.iter().find(is_for_all) {
+            return Ok(known.node);
         }
-        let node = self.new_part(part).map_err(|refusal| refusal.at(&part.span))?;
-        self.known.push((part.clone(), node));
+        let readers = self.readers_of(part);
+        let outer = mem::replace(&mut self.readers, readers);
+        let node = self.new_part(part).map_err(|refusal| refusal.at(&part.span));
+        let readers = mem::replace(&mut self.readers, outer);
+        let node = node?;
+        self.known.push(KnownPart { part: part.clone(), node, readers });
         Ok(node)
     }
 
     fn new_part(&mut self, part: &Expression) -> Result<NodeId, PlanRefusal> {
-        if part.operands().is_empty() {
+        if !part.varies() {
             return self.number(part);
         }
         let core = core_of(part);
@@ -363,7 +399,7 @@ impl<'s> Lowering<'s> {
         part: &Expression,
     ) -> Result<NodeId, PlanRefusal> {
         match operator {
-            Operator::Div if !b.operands().is_empty() => self.quotient(a, b, part),
+            Operator::Div if b.varies() => self.quotient(a, b, part),
             Operator::Atan2 => self.direction(a, b, &direction::Scaling::none()),
             Operator::Power if *b == number("2") => {
                 let a = self.part(a)?;
@@ -375,7 +411,7 @@ impl<'s> Lowering<'s> {
                 "use a constant divisor, for example x % 1",
             )),
             Operator::Mul | Operator::Div => {
-                let factor = [a, b].into_iter().find(|it| it.operands().is_empty());
+                let factor = [a, b].into_iter().find(|it| !it.varies());
                 let exponent = factor.and_then(|factor| power_of_two(factor, operator));
                 if let (Some(exponent), Some(factor)) = (exponent, factor) {
                     let other = if std::ptr::eq(factor, a) { b } else { a };
@@ -541,8 +577,9 @@ impl<'s> Lowering<'s> {
 
     /// Returns whether the value of a node has no rounding error.
     fn is_exact(&self, node: NodeId) -> bool {
-        let node = self.plan.node(node);
-        node.source.is_none() && node.operation.inputs().into_iter().all(|it| self.is_exact(it))
+        let needed = self.plan.needed_by(node);
+        let mut nodes = self.plan.nodes.iter().zip(needed);
+        nodes.all(|(node, is_needed)| !is_needed || node.source.is_none())
     }
 }
 
@@ -568,16 +605,30 @@ pub(super) fn has_functions_of_operands(statement: &ExpressionStatement) -> bool
 /// Returns the smallest part on which a formula depends: the formula is a function of the value of this part alone. This part
 /// is the formula itself if the formula combines different parts. For example, the core of `1 / sqrt(x + y)` is `x + y`.
 fn core_of(formula: &Expression) -> &Expression {
-    let parts = formula.parts();
-    let varying: Vec<&Expression> =
-        parts.into_iter().filter(|part| !part.operands().is_empty()).collect();
-    let Some((first, rest)) = varying.split_first() else { return formula };
-    let core = core_of(first);
-    for part in rest {
-        if core_of(part) != core {
-            return formula;
+    core_with(&mut HashMap::new(), formula)
+}
+
+/// Returns the core of a formula, as [`core_of`] does. `known` has the cores of parts that were seen before, because several
+/// operations may share a part.
+fn core_with<'f>(
+    known: &mut HashMap<*const Expression, &'f Expression>,
+    formula: &'f Expression,
+) -> &'f Expression {
+    let place = ptr::from_ref(formula);
+    if let Some(core) = known.get(&place) {
+        return core;
+    }
+    let mut cores = Vec::new();
+    for part in formula.parts() {
+        if part.varies() {
+            cores.push(core_with(known, part));
         }
     }
+    let core = match cores[..] {
+        [first, ref rest @ ..] if rest.iter().all(|core| *core == first) => first,
+        _ => formula,
+    };
+    known.insert(place, core);
     core
 }
 
@@ -585,10 +636,35 @@ fn core_of(formula: &Expression) -> &Expression {
 /// values. Returns `None` if these operations do not compute the formula. For example, `3 * x * (1 - x)` costs 3: 1 for the
 /// product with a constant, and 2 for the product of two numbers.
 fn products_of(formula: &Expression, core: &Expression) -> Option<u32> {
+    products_with(&mut HashMap::new(), formula, core)
+}
+
+/// Returns the cost of multiplications, as [`products_of`] does. A part that was seen before costs nothing; `known` has these
+/// parts.
+fn products_with(
+    known: &mut HashMap<*const Expression, Option<u32>>,
+    formula: &Expression,
+    core: &Expression,
+) -> Option<u32> {
+    let place = ptr::from_ref(formula);
+    if let Some(cost) = known.get(&place) {
+        return *cost;
+    }
+    let cost = new_products(known, formula, core);
+    known.insert(place, cost.map(|_| 0));
+    cost
+}
+
+fn new_products(
+    known: &mut HashMap<*const Expression, Option<u32>>,
+    formula: &Expression,
+    core: &Expression,
+) -> Option<u32> {
     if formula == core {
         return Some(0);
     }
-    if formula.operands().is_empty() {
+    let mut products_of = |part: &Expression, core: &Expression| products_with(known, part, core);
+    if !formula.varies() {
         return Some(0);
     }
     match &formula.kind {
@@ -597,17 +673,16 @@ fn products_of(formula: &Expression, core: &Expression) -> Option<u32> {
             Some(products_of(a, core)? + products_of(b, core)?)
         }
         Kind::Binary(operator @ (Operator::Mul | Operator::Div), a, b) => {
-            let is_divisor_fixed = b.operands().is_empty();
+            let is_divisor_fixed = !b.varies();
             if *operator == Operator::Div && !is_divisor_fixed {
                 return None;
             }
             let both = products_of(a, core)? + products_of(b, core)?;
             let factor = if is_divisor_fixed { b } else { a };
-            let is_shift =
-                factor.operands().is_empty() && power_of_two(factor, *operator).is_some();
+            let is_shift = !factor.varies() && power_of_two(factor, *operator).is_some();
             match (is_shift, operator) {
                 (true, _) => Some(both),
-                (false, Operator::Mul) if factor.operands().is_empty() => Some(both + 1),
+                (false, Operator::Mul) if !factor.varies() => Some(both + 1),
                 (false, Operator::Mul) => Some(both + PRODUCT),
                 (false, _) => None,
             }

@@ -213,5 +213,5 @@ pub fn normalising_shifts(width: u32, by_pairs: bool) -> Vec<u32> {
 /// Returns a raw value without its lowest `places` bits, and with the lowest remaining bit set to 1. The result has `places`
 /// fraction bits fewer. For example, 0b10110 with 2 places gives 0b101.
 pub(super) fn middle(raw: i128, places: i32) -> i128 {
-    raw >> places | 1
+    raw >> places.min(127) | 1
 }

@@ -1,6 +1,6 @@
 //! Defines the plan of an expression. Its methods append nodes, and compute the formats of their results.
 
-use glint_base::fixed::{Format, MAX_WIDTH, Rounding};
+use glint_base::fixed::{Format, MAX_WIDTH, Rounding, shifted_left};
 use glint_base::interval::{self, Interval};
 use glint_formula::Enclosure;
 
@@ -30,8 +30,13 @@ impl ExpressionPlan {
 
     /// Returns for each node whether the proved value of result number `result` depends on it.
     pub fn needed_for(&self, result: usize) -> Vec<bool> {
+        self.needed_by(self.proved[result])
+    }
+
+    /// Returns for each node whether the node `id` depends on it. A node depends on itself.
+    pub(super) fn needed_by(&self, id: NodeId) -> Vec<bool> {
         let mut needed = vec![false; self.nodes.len()];
-        needed[self.proved[result].0] = true;
+        needed[id.0] = true;
         for at in (0..self.nodes.len()).rev() {
             if needed[at] {
                 for input in self.nodes[at].operation.inputs() {
@@ -231,18 +236,28 @@ impl ExpressionPlan {
 
     /// Returns the raw ranges of two nodes, converted to the same number of fraction bits, and this number, which is the larger
     /// one of the two nodes. For example, the raw range 0 to 3 with one fraction bit becomes 0 to 6 if the other node has two.
-    fn aligned(&self, a: NodeId, b: NodeId) -> (Interval, Interval, i32) {
+    /// Fails if a converted value has more than 64 bits; `name` is the operation of the two nodes.
+    fn aligned(
+        &self,
+        name: &str,
+        a: NodeId,
+        b: NodeId,
+    ) -> Result<(Interval, Interval, i32), PlanRefusal> {
         let (a, b) = (self.node(a), self.node(b));
         let frac = a.format.frac.max(b.format.frac);
-        let in_units = |node: &PlanNode| {
-            let places = frac - node.format.frac;
-            (node.range.0 << places, node.range.1 << places)
-        };
-        (in_units(a), in_units(b), frac)
+        Ok((with_fraction(name, a, frac)?, with_fraction(name, b, frac)?, frac))
     }
 
+    /// Adds a + b, and returns its node. Returns one of the two nodes itself if the other is the constant 0. Fails if the node
+    /// has more than 64 bits.
     pub(super) fn add(&mut self, name: &str, a: NodeId, b: NodeId) -> Result<NodeId, PlanRefusal> {
-        let (first, second, frac) = self.aligned(a, b);
+        if self.is_exactly_zero(a) {
+            return Ok(b);
+        }
+        if self.is_exactly_zero(b) {
+            return Ok(a);
+        }
+        let (first, second, frac) = self.aligned(name, a, b)?;
         let range = (first.0 + second.0, first.1 + second.1);
         self.exact(name, Operation::Add(a, b), range, frac)
     }
@@ -253,9 +268,15 @@ impl ExpressionPlan {
         a: NodeId,
         b: NodeId,
     ) -> Result<NodeId, PlanRefusal> {
-        let (first, second, frac) = self.aligned(a, b);
+        let (first, second, frac) = self.aligned(name, a, b)?;
         let range = (first.0 - second.1, first.1 - second.0);
         self.exact(name, Operation::Subtract(a, b), range, frac)
+    }
+
+    /// Returns whether a node is the exact constant 0.
+    fn is_exactly_zero(&self, id: NodeId) -> bool {
+        let zero = Enclosure::exactly(0.0);
+        matches!(&self.node(id).operation, Operation::Constant { value, .. } if *value == zero)
     }
 
     pub(super) fn negate(&mut self, name: &str, a: NodeId) -> Result<NodeId, PlanRefusal> {
@@ -272,12 +293,10 @@ impl ExpressionPlan {
     ) -> Result<NodeId, PlanRefusal> {
         let (first, second) = (self.node(a), self.node(b));
         let range = if a == b {
-            let least = if first.range.0 <= 0 && first.range.1 >= 0 {
-                0
-            } else {
-                first.range.0.pow(2).min(first.range.1.pow(2))
-            };
-            (least, first.range.0.pow(2).max(first.range.1.pow(2)))
+            let [low, high] =
+                [first.range.0, first.range.1].map(|raw: i128| raw.saturating_mul(raw));
+            let least = if first.range.0 <= 0 && first.range.1 >= 0 { 0 } else { low.min(high) };
+            (least, low.max(high))
         } else {
             interval::product(first.range, second.range)
         };
@@ -301,7 +320,7 @@ impl ExpressionPlan {
         a: NodeId,
         b: NodeId,
     ) -> Result<NodeId, PlanRefusal> {
-        let (first, second, frac) = self.aligned(a, b);
+        let (first, second, frac) = self.aligned(name, a, b)?;
         let range = (first.0.min(second.0), first.1.min(second.1));
         self.exact(name, Operation::Minimum(a, b), range, frac)
     }
@@ -312,12 +331,13 @@ impl ExpressionPlan {
         a: NodeId,
         b: NodeId,
     ) -> Result<NodeId, PlanRefusal> {
-        let (first, second, frac) = self.aligned(a, b);
+        let (first, second, frac) = self.aligned(name, a, b)?;
         let range = (first.0.max(second.0), first.1.max(second.1));
         self.exact(name, Operation::Maximum(a, b), range, frac)
     }
 
     pub(super) fn less(&mut self, name: &str, a: NodeId, b: NodeId) -> Result<NodeId, PlanRefusal> {
+        self.aligned(name, a, b)?;
         self.insert(name, Operation::Less(a, b), Format::BIT, (0, 1))
     }
 
@@ -331,7 +351,7 @@ impl ExpressionPlan {
         condition: NodeId,
         cases: [NodeId; 2],
     ) -> Result<NodeId, PlanRefusal> {
-        let (first, second, frac) = self.aligned(cases[0], cases[1]);
+        let (first, second, frac) = self.aligned(name, cases[0], cases[1])?;
         let range = (first.0.min(second.0), first.1.max(second.1));
         self.exact(name, Operation::Choose { condition, cases }, range, frac)
     }
@@ -376,10 +396,11 @@ impl ExpressionPlan {
             return Ok(a);
         }
         let places = node.format.frac - format.frac;
-        let rounded = |raw: i128| {
-            if places > 0 { rounding.shift(raw, places) } else { raw << -places }
+        let whole = if places > 0 {
+            (rounding.shift(node.range.0, places), rounding.shift(node.range.1, places))
+        } else {
+            with_fraction(name, node, format.frac)?
         };
-        let whole = (rounded(node.range.0), rounded(node.range.1));
         let range = if interval::fits(whole, format) { whole } else { format.range() };
         self.insert(name, Operation::Narrow(a, rounding), format, range)
     }
@@ -554,4 +575,14 @@ impl ExpressionPlan {
         }
         all
     }
+}
+
+/// Returns the raw range of a node, converted to `frac` fraction bits, which must not be fewer than the node has. Fails if a
+/// value then has more than 64 bits; `name` is the operation that needs these bits.
+fn with_fraction(name: &str, node: &PlanNode, frac: i32) -> Result<Interval, PlanRefusal> {
+    let places = frac - node.format.frac;
+    let [low, high] = [node.range.0, node.range.1].map(|raw| shifted_left(raw, places));
+    let fits = |(low, high): &Interval| Format::holding(*low, *high, frac).width() <= MAX_WIDTH;
+    let range = low.zip(high).filter(fits);
+    range.ok_or_else(|| PlanRefusal::too_wide(name, node.format.width() as i32 + places))
 }

@@ -3,6 +3,7 @@
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
+use std::sync::Arc;
 
 use glint_formula::{Enclosure, Expression, Function, Kind};
 
@@ -91,8 +92,8 @@ impl Ord for BoxEnd {
     }
 }
 
-/// Returns an interval that contains the values of `formula`, for all operands for which a result that contains this part is
-/// promised.
+/// Returns an interval that contains the values of `formula`, for all operands for which a result that reads this part is
+/// promised. `readers` says for each result whether it reads the part.
 ///
 /// The domain is divided where the part has no finite limits, and then where its largest and its smallest values are.
 ///
@@ -101,18 +102,15 @@ impl Ord for BoxEnd {
 /// In the first case, the error has a box of operands without finite limits.
 pub(super) fn range_of(
     statement: &ExpressionStatement,
+    readers: &[bool],
     formula: &Expression,
 ) -> Result<Enclosure, NoRange> {
-    // A part that the planner has composed, such as an absolute value, is in no formula. It counts as a part of every result.
-    let reads = |result: &&StatedResult| result.formula.count(&|part| part == formula) > 0;
-    let mut readers: Vec<&StatedResult> = statement.results.iter().filter(reads).collect();
-    if readers.is_empty() {
-        readers = statement.results.iter().collect();
-    }
     let values_in = |limits: &OperandBox| {
         let operands = statement.enclosed_operands(limits);
-        let may_be_promised = |it: &&StatedResult| it.is_promised(&operands) != Some(false);
-        if !readers.iter().any(may_be_promised) {
+        let may_be_promised = |(result, reads): (&StatedResult, &bool)| {
+            *reads && result.is_promised(&operands) != Some(false)
+        };
+        if !statement.results.iter().zip(readers).any(may_be_promised) {
             return None;
         }
         let values = formula
@@ -154,14 +152,14 @@ pub(super) fn range_of(
 pub fn least_size(statement: &ExpressionStatement, result: usize) -> Result<f64, PlanRefusal> {
     let stated = &statement.results[result];
     let target = stated.target();
-    let kind = Kind::Unary(Function::Abs, Box::new(target.clone()));
+    let kind = Kind::Unary(Function::Abs, Arc::new(target.clone()));
     let size = Expression::new(kind, target.span.clone());
     // The condition of this result alone counts.
     let alone = ExpressionStatement {
         operands: statement.operands.clone(),
         results: vec![StatedResult { formula: size.clone(), width: None, ..stated.clone() }],
     };
-    let values = range_of(&alone, &size).map_err(|error| error.refusal(statement, target));
+    let values = range_of(&alone, &[true], &size).map_err(|error| error.refusal(statement, target));
     values.map(|values| values.low.max(0.0)).map_err(|refusal| refusal.of_result(result))
 }
 

@@ -1,17 +1,16 @@
 //! Defines the reason why an expression has no plan, with the part of the expression that causes it and a remedy.
 
-use std::ops::Range;
-
 use glint_base::fixed::MAX_WIDTH;
+use glint_formula::TextSpan;
 
 /// The reason why an expression has no plan, with a remedy.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlanRefusal {
     /// The index of the result that the refusal concerns; `None` if it concerns the whole expression.
     pub result: Option<usize>,
-    /// The part of a formula that the refusal concerns, as a range of bytes. The formula is the one of the result with the index
-    /// `result`. `None` if the refusal concerns no part of a formula.
-    pub place: Option<Range<usize>>,
+    /// The location of the part of a formula that the refusal concerns. Text number 0 is the formula of the result with the index
+    /// `result`; the caller of the planner numbers the other texts. `None` if the refusal concerns no part of a formula.
+    pub place: Option<TextSpan>,
     /// The reason, as a message.
     pub message: String,
     /// The remedy, as a message.
@@ -36,8 +35,8 @@ impl PlanRefusal {
         Self { result: self.result.or(Some(result)), ..self }
     }
 
-    /// Returns the refusal for the bytes `place` of a formula, unless it already concerns a part.
-    pub(super) fn at(self, place: &Range<usize>) -> Self {
+    /// Returns the refusal for the location `place`, unless it already concerns a part.
+    pub(super) fn at(self, place: &TextSpan) -> Self {
         Self { place: self.place.or(Some(place.clone())), ..self }
     }
 }

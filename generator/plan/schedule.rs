@@ -1,7 +1,8 @@
 //! Turns a plan into a microprogram for one multiplier, with registers for the values that later microinstructions read.
 //!
 //! Each product, each step of Horner's rule and each normalised word has its own microinstruction, and a register for its
-//! value. All other operations are combinational logic between these registers.
+//! value. So has a result that other operations read. All other operations are combinational logic between these registers,
+//! and the last microinstruction loads the registers of the other results.
 
 use super::node::{NodeId, Operation};
 use super::plan::ExpressionPlan;
@@ -73,6 +74,12 @@ impl ExpressionPlan {
                     }
                 }
                 _ => {}
+            }
+            // Later microinstructions read the register of a result, so it is loaded before them.
+            let is_read = self.nodes.iter().any(|other| other.operation.inputs().contains(&node));
+            if self.results.contains(&node) && !schedule.held[at] && is_read {
+                schedule.held[at] = true;
+                schedule.steps.push(PlanStep::Hold(vec![node]));
             }
         }
         let mut last = Vec::new();

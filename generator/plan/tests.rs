@@ -185,7 +185,10 @@ fn refusals_name_the_part_and_a_remedy() {
         assert!(refusal.remedy.contains(remedy), "{formula}: {refusal:?}");
         assert_eq!(refusal.result, Some(0));
         if let Some(place) = refusal.place {
-            assert!(place.end <= formula.len() && !place.is_empty(), "{formula}: {place:?}");
+            assert!(
+                place.bytes.end <= formula.len() && !place.bytes.is_empty(),
+                "{formula}: {place:?}"
+            );
         }
     }
 }

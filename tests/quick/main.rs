@@ -21,6 +21,7 @@ mod devices;
 mod diagnostics;
 mod divider;
 mod emission;
+mod expressions;
 mod keys;
 mod lines;
 mod multipliers;

@@ -53,7 +53,17 @@ impl Designer {
         if places <= 0 {
             return a.with_fraction(frac);
         }
-        let places = places as u32;
+        // With more dropped bits than the value has, the result depends on the sign alone. Then as few are dropped as give the
+        // same result, so that the value need not be extended to the weight of the result.
+        let most_places = have.width() + 1;
+        let (a, places) = if places as u32 > most_places {
+            let frac_of_value = frac + most_places as i32;
+            let int = have.width() as i32 - i32::from(have.signed) - frac_of_value;
+            (a.read_as(Format { int, frac: frac_of_value, ..have }), most_places)
+        } else {
+            (a, places as u32)
+        };
+        let have = a.format();
         // If no bit of the value lies above the dropped bits, the value is extended by one bit, so that a bit remains.
         let a = if have.width() > places {
             a

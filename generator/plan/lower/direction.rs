@@ -4,6 +4,8 @@
 //! the larger one, a number from 0 to 1. The other octants are mirror images of this octant, at the diagonal, the y axis and
 //! the x axis.
 
+use std::sync::Arc;
+
 use glint_base::fixed::{Format, exp2};
 use glint_formula::{Enclosure, Expression, Function, Kind, Operator};
 
@@ -26,7 +28,7 @@ impl Scaling {
 
     /// Returns the formula, multiplied or divided by the constant.
     fn of(&self, formula: Expression) -> Expression {
-        let (formula, constant) = (Box::new(formula), Box::new(self.constant.clone()));
+        let (formula, constant) = (Arc::new(formula), Arc::new(self.constant.clone()));
         Expression::new(Kind::Binary(self.operator, formula, constant), 0..0)
     }
 }
@@ -51,7 +53,7 @@ impl Lowering<'_> {
             (false, true, Operator::Mul) => a,
             _ => return Ok(None),
         };
-        if !constant.operands().is_empty() {
+        if constant.varies() {
             return Ok(None);
         }
         let scaling = Scaling { operator: *operator, constant: (**constant).clone() };
@@ -88,7 +90,7 @@ impl Lowering<'_> {
             own.plan.middle("tangent", ratio, format)
         })?;
         let arc = scaling.of(Expression::new(
-            Kind::Unary(Function::Atan, Box::new(Expression::operand("x"))),
+            Kind::Unary(Function::Atan, Arc::new(Expression::operand("x"))),
             0..0,
         ));
         let tangents = Enclosure::between(0.0, 1.0 + exp2(-finest));

@@ -8,10 +8,10 @@
 //! to 10. With the integer part i and the fraction part f of u, 2^u = 2^f · 2^i. A table of 2^f and a shift compute the
 //! function.
 
-use std::ops::Range;
+use std::sync::Arc;
 
 use glint_base::fixed::Rounding;
-use glint_formula::{Expression, Function, Kind, Operator};
+use glint_formula::{Expression, Function, Kind, Operator, TextSpan};
 
 use super::root::FEW_OCTAVES;
 use super::{Lowering, number};
@@ -25,12 +25,12 @@ const SHORT_EXPONENTS: f64 = 3.0;
 pub(super) fn written_with_logarithm(
     a: &Expression,
     b: &Expression,
-    place: &Range<usize>,
+    place: &TextSpan,
 ) -> Expression {
     let part = |kind: Kind| Expression::new(kind, place.clone());
-    let logarithm = part(Kind::Unary(Function::Log2, Box::new(a.clone())));
-    let exponent = part(Kind::Binary(Operator::Mul, Box::new(b.clone()), Box::new(logarithm)));
-    part(Kind::Unary(Function::Exp2, Box::new(exponent)))
+    let logarithm = part(Kind::Unary(Function::Log2, Arc::new(a.clone())));
+    let exponent = part(Kind::Binary(Operator::Mul, Arc::new(b.clone()), Arc::new(logarithm)));
+    part(Kind::Unary(Function::Exp2, Arc::new(exponent)))
 }
 
 /// Returns the base of an exponential function of x: `Some(None)` for the base 2, and `Some(Some(base))` for any other. Returns
@@ -40,7 +40,7 @@ fn base_of(function: &Expression) -> Option<Option<Expression>> {
     match &function.kind {
         Kind::Unary(Function::Exp2, a) if **a == operand => Some(None),
         Kind::Unary(Function::Exp, a) if **a == operand => Some(Some(number("e"))),
-        Kind::Binary(Operator::Power, a, b) if **b == operand && a.operands().is_empty() => {
+        Kind::Binary(Operator::Power, a, b) if **b == operand && !a.varies() => {
             let is_two = **a == number("2");
             Some(if is_two { None } else { Some((**a).clone()) })
         }
@@ -98,8 +98,8 @@ impl Lowering<'_> {
             Some(base) => {
                 let place = &core.span;
                 let part = |kind: Kind| Expression::new(kind, place.clone());
-                let logarithm = part(Kind::Unary(Function::Log2, Box::new(base.clone())));
-                let kind = Kind::Binary(Operator::Mul, Box::new(core.clone()), Box::new(logarithm));
+                let logarithm = part(Kind::Unary(Function::Log2, Arc::new(base.clone())));
+                let kind = Kind::Binary(Operator::Mul, Arc::new(core.clone()), Arc::new(logarithm));
                 part(kind)
             }
         };

@@ -5,6 +5,8 @@
 //! The value is normalised: v = m · 2^k with m from 1/2 to below 1. Then v^p = m^p · 2^(p·k), which a table of m^p and a shift
 //! compute. If p is 1/2 or an odd multiple of it, k must be even, and m goes from 1/4 to below 1.
 
+use std::sync::Arc;
+
 use glint_base::fixed::{Format, Rounding, exp2};
 use glint_formula::{Enclosure, Expression, Function, Kind, Operator, RBig};
 
@@ -14,6 +16,9 @@ use crate::refusal::PlanRefusal;
 
 /// If the largest value of a domain is less than this times the smallest, one table covers the domain.
 pub(super) const FEW_OCTAVES: f64 = 4.0;
+
+/// The most parts of a formula that counts as a power.
+const MOST_PARTS: u32 = 1000;
 
 /// A wide word whose values are all at least 2 to the power of 1 minus this number, 2⁻¹¹, is shortened before it is normalised.
 const MOST_OCTAVES_BELOW_1: i32 = 12;
@@ -25,6 +30,9 @@ pub(super) struct DoubledExponent(i32);
 /// Returns twice the exponent p of a formula that is a constant times x^p. Returns `None` for any other formula, if 2p is no
 /// integer from −8 to 8, or if p is 0 or 1. For example, `3 / sqrt(x)` gives −1.
 pub(super) fn power_of(formula: &Expression) -> Option<DoubledExponent> {
+    if formula.size() > MOST_PARTS {
+        return None;
+    }
     let doubled = doubled_exponent(formula)?;
     let value = i32::try_from(doubled.numerator().clone()).ok()?;
     let is_power = doubled.is_int() && !matches!(value, 0 | 2) && value.abs() <= 8;
@@ -32,7 +40,7 @@ pub(super) fn power_of(formula: &Expression) -> Option<DoubledExponent> {
 }
 
 fn doubled_exponent(formula: &Expression) -> Option<RBig> {
-    if formula.operands().is_empty() {
+    if !formula.varies() {
         return Some(RBig::ZERO);
     }
     match &formula.kind {
@@ -41,7 +49,7 @@ fn doubled_exponent(formula: &Expression) -> Option<RBig> {
         Kind::Unary(Function::Sqrt, a) => Some(doubled_exponent(a)? / RBig::from(2)),
         Kind::Binary(Operator::Mul, a, b) => Some(doubled_exponent(a)? + doubled_exponent(b)?),
         Kind::Binary(Operator::Div, a, b) => Some(doubled_exponent(a)? - doubled_exponent(b)?),
-        Kind::Binary(Operator::Power, a, b) if b.operands().is_empty() => {
+        Kind::Binary(Operator::Power, a, b) if !b.varies() => {
             Some(doubled_exponent(a)? * b.rational()?)
         }
         _ => None,
@@ -76,7 +84,7 @@ impl Lowering<'_> {
         let at_one = function.enclose(&[("x", Enclosure::exactly(1.0))]);
         if at_one.is_ok_and(|value| value.high < 0.0) {
             let negated = |formula: &Expression| {
-                let kind = Kind::Unary(Function::Negate, Box::new(formula.clone()));
+                let kind = Kind::Unary(Function::Negate, Arc::new(formula.clone()));
                 Expression::new(kind, formula.span.clone())
             };
             let exponent = DoubledExponent(doubled);

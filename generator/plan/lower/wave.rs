@@ -8,6 +8,8 @@
 //! If the formulas have both, two tables cover an octant: the sine and the cosine of up to an eighth of a turn. Both read the
 //! same reduced angle, and both results choose between the tables.
 
+use std::sync::Arc;
+
 use glint_formula::{Expression, Function, Kind, Operator, RBig};
 
 use super::{Lowering, core_of, number};
@@ -31,8 +33,8 @@ fn quarter_turns(function: &Expression) -> Option<(Function, i32)> {
         return None;
     }
     let at_one = angle.substitute(&Expression::operand("x"), &number("1"), &angle.span);
-    let quarter = Box::new(number("pi / 2"));
-    let turns = Kind::Binary(Operator::Div, Box::new(at_one), quarter);
+    let quarter = Arc::new(number("pi / 2"));
+    let turns = Kind::Binary(Operator::Div, Arc::new(at_one), quarter);
     let turns = Expression::new(turns, angle.span.clone()).rational()?;
     for power in -MOST_BITS..=MOST_BITS {
         if turns == RBig::from(2).pow(power as isize) {
@@ -47,9 +49,9 @@ fn is_multiple(formula: &Expression) -> bool {
     match &formula.kind {
         Kind::Operand(_) => true,
         Kind::Binary(Operator::Mul, a, b) => {
-            is_multiple(a) && b.operands().is_empty() || a.operands().is_empty() && is_multiple(b)
+            is_multiple(a) && !b.varies() || !a.varies() && is_multiple(b)
         }
-        Kind::Binary(Operator::Div, a, b) => is_multiple(a) && b.operands().is_empty(),
+        Kind::Binary(Operator::Div, a, b) => is_multiple(a) && !b.varies(),
         _ => false,
     }
 }
@@ -225,11 +227,12 @@ impl Lowering<'_> {
 /// Returns whether a formula contains the wave `wanted`: the sine or the cosine of an angle that is `core` times 2 to the given
 /// power in quarter turns.
 fn has_wave(formula: &Expression, core: &Expression, wanted: (Function, i32)) -> bool {
-    if core_of(formula) == core {
-        let function = formula.substitute(core, &Expression::operand("x"), &formula.span);
-        if quarter_turns(&function) == Some(wanted) {
-            return true;
+    let is_wanted = |part: &Expression| {
+        if core_of(part) != core {
+            return false;
         }
-    }
-    formula.parts().into_iter().any(|part| has_wave(part, core, wanted))
+        let function = part.substitute(core, &Expression::operand("x"), &part.span);
+        quarter_turns(&function) == Some(wanted)
+    };
+    formula.count(&is_wanted) > 0
 }

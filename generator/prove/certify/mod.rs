@@ -136,7 +136,7 @@ fn formulas(contract: &dyn Contract) -> Result<Vec<Expression>, String> {
     }
     let parsed = expressions.iter().map(|text| {
         let formula = parse(text).map_err(|fault| {
-            let rest: String = text.chars().skip(fault.span.start).take(40).collect();
+            let rest: String = text.chars().skip(fault.span.bytes.start).take(40).collect();
             format!("{fault}, `{rest}`")
         })?;
         // This check comes before the cases of the hardware, which may be many. Only the formulas of lines may have a cosine

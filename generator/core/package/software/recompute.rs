@@ -7,6 +7,8 @@
 //! open. There is no program for an expression with more than 2^32 combinations, for a core with a result that wraps, or for
 //! any other contract: [`check`] refuses it.
 
+use std::sync::Arc;
+
 use anyhow::Result;
 
 use super::model::{CField, table_names};
@@ -163,7 +165,7 @@ fn field(name: &str, design: &Design, port: &str) -> Result<CField, KeyError> {
 /// Returns the number of nodes of a formula's tree. For example, `x * x + 1` has five: the sum, the product, `x`, `x`, and
 /// `1`.
 fn part_count(formula: &Expression) -> usize {
-    formula.count(&|_| true)
+    formula.size() as usize
 }
 
 /// Returns `text` for a C comment: without `*/`, which would end the comment.
@@ -259,7 +261,7 @@ fn c_return(value: &str) -> Vec<String> {
 fn with_numbered_operands(formula: &Expression, facts: &ContractFacts) -> Expression {
     formula.with_operands(&|name| {
         let number = facts.domain.iter().position(|(operand, _)| operand == name)?;
-        Some(Expression::operand(&format!("x[{number}]")))
+        Some(Arc::new(Expression::operand(&format!("x[{number}]"))))
     })
 }
 
@@ -295,7 +297,7 @@ fn expression_program(
         let mut condition = None;
         if let Some(stated) = &conditions[number] {
             let [left, right] = [&stated.left, &stated.right]
-                .map(|side| Box::new(with_numbered_operands(side, facts)));
+                .map(|side| Arc::new(with_numbered_operands(side, facts)));
             parts += part_count(&left) + part_count(&right) + 1;
             let comparison = Comparison { left, right, or_equal: stated.or_equal };
             let [limits, near] =

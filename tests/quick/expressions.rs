@@ -1,0 +1,122 @@
+//! Tests expressions as people write them: results that other results read, parts that several formulas share, constants that
+//! disappear, and operands outside `where`.
+//!
+//! For every combination of raw operands, also outside the domain and outside `where`, the simulation gives the results that the
+//! contract states. A user gets these results from `glint eval`, and the C model computes them.
+
+use crate::common::cores::{assert_agrees, parsed};
+use glint::core::Core;
+use glint::cosim::batch::{Engine, Golden, Points, RustHdl};
+
+/// The operands x and y with four fraction bits, from 0 to 15/16.
+const UNSIGNED: &str =
+    "operands.x = { bits = 4, fraction = 4 }\noperands.y = { bits = 4, fraction = 4 }";
+
+/// The operands x and y with a sign and three fraction bits, from −1 to 7/8.
+const SIGNED: &str = "operands.x = { bits = 4, fraction = 3, signed = true }
+operands.y = { bits = 4, fraction = 3, signed = true }";
+
+/// Four operands of three bits whose weights are from 2^−40 on.
+const TINY: &str =
+    "operands.a = { bits = 3, fraction = 40 }\noperands.b = { bits = 3, fraction = 40 }
+operands.c = { bits = 3, fraction = 40 }\noperands.d = { bits = 3, fraction = 40 }";
+
+/// Operands, and results that other results read or that need no operation.
+const CASES: [(&str, &str); 14] = [
+    (
+        SIGNED,
+        "results.p = { formula = \"x^2 + y^2\", fraction = 6 }
+results.r = { formula = \"sqrt(x^2 + y^2)\", fraction = 6 }",
+    ),
+    (
+        UNSIGNED,
+        "results.p = { formula = \"x + y\", fraction = 4 }
+results.q = { formula = \"x + y + 1\", fraction = 4 }",
+    ),
+    (
+        UNSIGNED,
+        "results.low = { formula = \"min(x, y)\", fraction = 5 }
+results.high = { formula = \"max(x, y)\", fraction = 5 }
+results.mean = { formula = \"(min(x, y) + max(x, y)) / 2\", fraction = 5 }",
+    ),
+    (
+        UNSIGNED,
+        "results.value = { formula = \"max(x, y)\", fraction = 4 }
+results.saturation = { formula = \"(max(x, y) - min(x, y)) / max(x, y)\", fraction = 6, where = \"max(x, y) > 0\" }",
+    ),
+    (
+        UNSIGNED,
+        "results.p = { formula = \"x * y\", fraction = 8 }\nresults.q = { formula = \"x * y\", fraction = 8 }",
+    ),
+    (
+        "operands.t = { bits = 7, fraction = 5, signed = true }\noperands.x = { bits = 3, fraction = 3 }",
+        "results.c = { formula = \"cos(pi*t)\", fraction = 8 }
+results.s = { formula = \"x*sin(pi*t)\", fraction = 8 }",
+    ),
+    (UNSIGNED, "results.r = { formula = \"0 + x\", fraction = 4 }\nresults.q = { formula = \"y\", fraction = 4 }"),
+    (UNSIGNED, "results.r = { formula = \"ln(1) + x + y\", fraction = 4 }"),
+    (
+        UNSIGNED,
+        "let.offset = \"0\"\nresults.r = { formula = \"offset + x - offset\", fraction = 4 }
+results.q = { formula = \"0 * x - y\", fraction = 4 }\nresults.half = { formula = \"0.5\", fraction = 4 }",
+    ),
+    (
+        "operands.x = { bits = 6, fraction = 6 }\noperands.y = { bits = 6, fraction = 5 }",
+        "results.a = { formula = \"x^y\", fraction = 6, where = \"x > 0.1\" }
+results.b = { formula = \"y * log2(x)\", fraction = 6, where = \"x > 0.9\" }",
+    ),
+    (TINY, "results.r = { formula = \"(a*b)*(c*d)\", fraction = 20 }"),
+    (TINY, "results.r = { formula = \"-(a*b)*(c*d)\", fraction = 20 }"),
+    (
+        "operands.x = { bits = 12, fraction = 12 }",
+        "results.t = { formula = \"1/(1/298.15 + ln(x/(1 - x))/3950)\", fraction = 4, where = \"x >= 0.05\" }",
+    ),
+    (
+        "operands.x = { from = -0.3, to = 0.4, fraction = 6 }\noperands.y = { from = 0.25, to = 0.5, fraction = 6 }",
+        "results.q = { formula = \"sin(3 * x) / y\", fraction = 5 }\nresults.r = { formula = \"exp(x) * y\", fraction = 7 }",
+    ),
+];
+
+/// Returns every combination of raw operands in the formats of their ports.
+fn all_points(core: &Core) -> Points {
+    let operands = core.contract.operands();
+    let mut combinations: Vec<Vec<i64>> = vec![Vec::new()];
+    for operand in operands {
+        let (low, high) = operand.format.range();
+        let mut longer = Vec::new();
+        for combination in &combinations {
+            for raw in low..=high {
+                longer.push([&combination[..], &[raw as i64]].concat());
+            }
+        }
+        combinations = longer;
+    }
+    let mut points = Points::new(operands.len());
+    for combination in combinations {
+        points.push(combination, 1);
+    }
+    points
+}
+
+#[test]
+fn results_are_simulated_as_stated_for_every_operand() {
+    for (operands, results) in CASES {
+        for architecture in ["", "architecture = \"pipelined\"\n"] {
+            let text = format!(
+                "device = \"expression\"\nname = \"core\"\n{architecture}{operands}\n{results}\n"
+            );
+            let core = parsed("core.toml", &text);
+            assert_agrees(&core, 2000, 1, &text);
+            let points = all_points(&core);
+            let stated = Golden(&*core.contract).compute(&points).expect("results");
+            let mut simulator = RustHdl::new(&core.design, &*core.contract).expect("a simulator");
+            let simulated = simulator.compute(&points).expect("a simulation");
+            let outputs = core.contract.outputs().len();
+            for at in 0..points.len() {
+                let results = at * outputs..(at + 1) * outputs;
+                let operands = points.operands(at);
+                assert_eq!(simulated[results.clone()], stated[results], "{operands:?}: {text}");
+            }
+        }
+    }
+}
