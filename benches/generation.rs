@@ -23,7 +23,7 @@ fn generate(registry: &Registry, path: &str, text: &str) -> Result<OutputFiles> 
     let config = config::parse(path, text, &registry.schemas())?;
     let device = registry.device(&config.device).context("a device")?;
     let core = Core::new(*device, config)?;
-    black_box(core.contract.bound());
+    black_box(core.contract.bounds());
     core.files(path, core.shipped_vectors()?)
 }
 

@@ -32,7 +32,7 @@
 //! let registry = Registry::catalogue();
 //! let device = *registry.devices().iter().find(|it| it.name == "cosine-power").unwrap();
 //! let core = Core::new(device, Config::defaults(&(device.schema)(), "highlight")).unwrap();
-//! assert!(core.contract.bound().units < 1.0);
+//! assert!(core.contract.bounds().governing().units < 1.0);
 //! // Golden model and simulation on every clock of a hundred points.
 //! let outcome = core.lockstep(1).unwrap().run(100, &|_| ()).unwrap();
 //! assert!(outcome.mismatch.is_none());

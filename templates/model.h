@@ -54,7 +54,7 @@ void ${ name }$_model_points(const ${ name }$_operands *operands, ${ name }$_res
 
 /* ${ field.name }$, ${ field.doc }$ */
 #define ${ field.constant }$_WIDTH ${ field.format.width() }$
-#define ${ field.constant }$_FRACTION_BITS ${ field.format.frac }$
+#define ${ field.constant }$_FRACTION_BITS ${ field.fraction_bits() }$
 #define ${ field.constant }$_MIN ${ field.least() }$
 #define ${ field.constant }$_MAX ${ field.most() }$
 
@@ -82,7 +82,7 @@ static inline ${ field.kind }$ ${ name }$_${ field.name }$_from(double value)
 
 /* ${ field.name }$, ${ field.doc }$ */
 #define ${ field.constant }$_WIDTH ${ field.format.width() }$
-#define ${ field.constant }$_FRACTION_BITS ${ field.format.frac }$
+#define ${ field.constant }$_FRACTION_BITS ${ field.fraction_bits() }$
 
 static inline double ${ name }$_${ field.name }$_value(${ field.kind }$ raw)
 {

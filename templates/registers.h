@@ -49,19 +49,22 @@ static inline uint32_t ${ name }$_bits(uint32_t value, uint32_t mask, unsigned s
     return (value & mask) >> shift;
 }
 
-/* Converts a number from `from` to `to` fraction bits, each below 64. Rounds to nearest, ties up,
- * and clamps the result to least ... most. */
+/* Converts a number from `from` to `to` fraction bits. Rounds to nearest, ties up, and clamps the
+ * result to least ... most. A negative number of fraction bits means that the last bit weighs more
+ * than 1: -2 fraction bits give multiples of 4. */
 static inline int64_t
-${ name }$_fixed(int64_t value, unsigned from, unsigned to, int64_t least, int64_t most)
+${ name }$_fixed(int64_t value, int from, int to, int64_t least, int64_t most)
 {
     int64_t whole = value;
-    if (from > to) {
-        const unsigned drop = from - to;
+    if (from - to > 63) {
+        whole = 0;
+    } else if (from > to) {
+        const int drop = from - to;
         /* Rounds down, then adds the dropped half. Adding a half first could overflow. */
         whole = value >> drop;
-        whole += (value >> (drop - 1u)) & 1;
-    } else {
-        const unsigned gain = to - from;
+        whole += (value >> (drop - 1)) & 1;
+    } else if (value != 0) {
+        const int gain = to - from < 63 ? to - from : 63;
         if (value > (most >> gain)) {
             return most;
         }
@@ -74,10 +77,10 @@ ${ name }$_fixed(int64_t value, unsigned from, unsigned to, int64_t least, int64
 }
 <% for operand in operands %>
 /* Converts a fixed-point number with `fraction_bits` fraction bits to the raw value of
- * ${ operand.name }$ (${ operand.format }$), clamped to its domain. */
-#define ${ prefix }$_${ operand.constant }$_FRACTION ${ operand.format.frac }$
+ * ${ operand.name }$ (${ operand.format }$), clamped to its range. */
+#define ${ prefix }$_${ operand.constant }$_FRACTION ${ operand.c_fraction() }$
 static inline uint${ operand.bits() }$_t
-${ name }$_${ operand.name }$_from_fixed(int64_t value, unsigned fraction_bits)
+${ name }$_${ operand.name }$_from_fixed(int64_t value, int fraction_bits)
 {
     return (uint${ operand.bits() }$_t)${ name }$_fixed(
         value, fraction_bits, ${ operand.format.frac }$, ${ operand.limits().0 }$, ${ operand.limits().1 }$);

@@ -27,13 +27,19 @@ pub const ${ view.constant }$: u32 = ${ format!("0x{:08x}", view.fields[0].bits.
 <%- endif %>
 <%- endfor %>
 
-/// Converts a number from `from` to `to` fraction bits, each below 64. Rounds to nearest, ties up,
-/// and clamps the result.
-const fn fixed(value: i64, from: u32, to: u32, least: i64, most: i64) -> i64 {
+/// Converts a number from `from` to `to` fraction bits. Rounds to nearest, ties up, and clamps the
+/// result. A negative number of fraction bits means that the last bit weighs more than 1: -2
+/// fraction bits give multiples of 4.
+const fn fixed(value: i64, from: i32, to: i32, least: i64, most: i64) -> i64 {
     let value = value as i128;
-    let whole = if from > to {
+    let whole = if from - to > 64 {
+        0
+    } else if from > to {
         let drop = from - to;
         (value >> drop) + ((value >> (drop - 1)) & 1)
+    } else if to - from > 63 {
+        // At least 2^64 times the value, and the limits have fewer bits.
+        value << 64
     } else {
         value << (to - from)
     };
@@ -46,9 +52,9 @@ const fn fixed(value: i64, from: u32, to: u32, least: i64, most: i64) -> i64 {
     }
 }
 <% for operand in operands %>
-/// Converts a fixed-point number with `fraction_bits` fraction bits, below 64, to the raw value of
-/// `${ operand.name }$` (${ operand.format }$), clamped to its domain.
-pub const fn ${ operand.name }$_from_fixed(value: i64, fraction_bits: u32) -> u${ operand.bits() }$ {
+/// Converts a fixed-point number with `fraction_bits` fraction bits to the raw value of
+/// `${ operand.name }$` (${ operand.format }$), clamped to its range.
+pub const fn ${ operand.name }$_from_fixed(value: i64, fraction_bits: i32) -> u${ operand.bits() }$ {
     fixed(value, fraction_bits, ${ operand.format.frac }$, ${ operand.rust_limits().0 }$, ${ operand.rust_limits().1 }$) as u${ operand.bits() }$
 }
 <%- endfor %>

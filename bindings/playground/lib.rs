@@ -4,6 +4,8 @@
 //! `site/worker.js` reserves memory for the text of a request, writes the text there and calls [`answer`]. The same code as in
 //! the command line makes the pages, pictures and files that the playground shows.
 
+mod errors;
+
 use std::cell::RefCell;
 
 use anyhow::{Context, Result};
@@ -12,22 +14,26 @@ use base64::prelude::BASE64_STANDARD;
 use serde::Deserialize;
 use serde_json::{Value, json};
 
-use glint_base::target::{COMPARED, Family};
 use glint_config::{self as config, Key, KeyKind, Problems};
 use glint_core::core::Core;
 use glint_core::cosim::batch::Golden;
 use glint_core::package::{self, FileKind, OutputFile};
 use glint_core::registry::Registry;
+use glint_golden::{Bound, ComputedPart, Contract};
 use glint_keys::presets;
 use glint_prove::synth::TARGETS;
 use glint_prove::tune::Cost;
+use glint_show::evidence::chart::Chart;
 use glint_show::evidence::curves;
 use glint_show::evidence::domain;
-use glint_show::pages::{datasheet, diagram, plots};
+use glint_show::pages::{account, datasheet, diagram, plots};
 use glint_show::render::{self, BACKGROUND, BuiltIn, Light, Material, Scene, Settings, View};
 
 /// The name under which messages know the text of the editor.
 const FILE: &str = "core.toml";
+
+/// The name of the module if the configuration states none: that of [`FILE`].
+const MODULE: &str = "core";
 
 thread_local! {
     /// Room for a request or an answer.
@@ -44,12 +50,14 @@ enum Question {
     Devices,
     /// The configuration of a preset, as TOML.
     Preset { name: String },
-    /// Describes a core: keys, bound, clocks, estimates, schedule, diagram.
+    /// Describes a core: keys, bounds, parts of the computation, clocks, estimates, schedule, diagram.
     Core { toml: String },
     /// A lit sphere beside Blinn's function in f64 and the difference.
     Picture { toml: String, exponent: Option<u32>, side: u32 },
     /// The error over the domain, or over exponents and angles.
     Charts { toml: String },
+    /// A sample of the errors of each output over the operands, for a device that is no highlight.
+    Errors { toml: String },
     /// The timing diagram of a computation, or of points through the pipeline.
     Waves { toml: String },
     /// The files of `glint generate` that do not depend on the bench, whose points take a while to choose.
@@ -123,6 +131,7 @@ fn answered(request: &[u8]) -> Result<Value> {
             of(&toml, |core| picture(core, exponent, side))
         }
         Question::Charts { toml } => of(&toml, charts),
+        Question::Errors { toml } => of(&toml, |core| errors::answer(core.contract.as_ref())),
         Question::Waves { toml } => of(&toml, |core| {
             let (svg, described) = datasheet::timing_diagram(core)?;
             Ok(json!({ "ok": true, "svg": svg, "described": described }))
@@ -175,32 +184,79 @@ fn plain(value: &config::Value) -> Value {
     }
 }
 
-/// Returns a key for the form.
-fn key(core: &Core, key: &Key) -> Value {
-    let kind = match &key.kind {
+/// Returns the type of a key and the values that it may have, for the form.
+fn kind(kind: &KeyKind) -> Value {
+    match kind {
         KeyKind::Integer { min, max } => json!({ "is": "integer", "min": min, "max": max }),
         KeyKind::Number { min, max, .. } => json!({ "is": "number", "min": min, "max": max }),
         KeyKind::Choice(options) => json!({ "is": "choice", "options": options }),
         KeyKind::Flag => json!({ "is": "flag" }),
         KeyKind::Text(_) => json!({ "is": "text" }),
         KeyKind::Integers { .. } => json!({ "is": "integers" }),
-        KeyKind::Table { .. } => json!({ "is": "entries" }),
-    };
-    json!({
-        "name": key.name,
-        "kind": kind,
-        "doc": key.doc,
-        "default": plain(&key.default),
-        "value": plain(core.config.value(key.name)),
-        "applies": core.config.applies(&(core.device.schema)(), key.name),
-    })
+        KeyKind::Table { fields, shorthand, least, most } => {
+            let fields: Vec<Value> = fields.iter().map(field).collect();
+            json!({ "is": "entries", "fields": fields, "shorthand": shorthand, "least": least, "most": most })
+        }
+    }
 }
 
+/// Returns a key, or a field of an entry, without its value.
+fn field(key: &Key) -> Value {
+    json!({ "name": key.name, "kind": kind(&key.kind), "doc": key.doc, "default": plain(&key.default) })
+}
+
+/// Returns a key for the form.
+fn key(core: &Core, key: &Key) -> Value {
+    let mut described = field(key);
+    described["value"] = plain(core.config.value(key.name));
+    described["applies"] = json!(core.config.applies(&(core.device.schema)(), key.name));
+    described
+}
+
+/// Returns the bound of an output, with the terms that add up to it. A bound that is not stated is `null`.
+fn bound(bound: &Bound) -> Value {
+    let terms: Vec<Value> = bound
+        .terms
+        .iter()
+        .map(|term| json!({ "key": term.key, "what": term.what, "units": term.units }))
+        .collect();
+    json!({ "output": bound.output, "units": bound.units, "limit": bound.limit, "terms": terms })
+}
+
+/// Returns a part of the computation, with its share in the error of each output.
+fn part(part: &ComputedPart) -> Value {
+    json!({ "name": part.name, "words": part.words, "format": account::format_text(part.format),
+        "shares": part.shares, "cells": part.cells, "products": part.products })
+}
+
+/// Returns the estimates of area and clock for every FPGA family, with numbers as `glint estimate` rounds them. `own` marks the
+/// family for which a pipeline is scheduled.
+fn estimates(core: &Core) -> Vec<Value> {
+    let own = core.design.pipeline.as_ref().map_or("", |pipeline| pipeline.target.as_str());
+    let mut estimates = Vec::new();
+    for target in TARGETS {
+        let Some(family) = target.family() else { continue };
+        let cost = Cost::new(&core.design, target);
+        estimates.push(json!({ "target": family.title, "own": family.name() == own,
+            "luts": format!("{:.0}", cost.luts), "dsps": cost.dsps, "block_rams": cost.block_rams,
+            "mhz": format!("{:.0}", cost.mhz) }));
+    }
+    estimates
+}
+
+/// Returns whether the page shows a sample of the errors over the operands. The charts of a highlight show its errors over angles
+/// and exponents instead.
+fn is_sampled(contract: &dyn Contract) -> bool {
+    contract.highlight().is_none() && contract.length().is_none()
+}
+
+/// Returns everything that the page shows of a core as soon as it is built.
 fn described(core: &Core) -> Result<Value> {
     let (design, contract) = (&core.design, core.contract.as_ref());
     let schema = (core.device.schema)();
     let keys: Vec<Value> = schema.all_keys().map(|it| key(core, it)).collect();
-    let bound = contract.bound();
+    let bounds: Vec<Value> = contract.bounds().outputs.iter().map(bound).collect();
+    let parts: Vec<Value> = contract.parts().iter().map(part).collect();
     let (latency, interval) = match &design.pipeline {
         Some(pipeline) => (Some(pipeline.stages.len() as u32), Some(pipeline.interval as u32)),
         None => {
@@ -208,18 +264,6 @@ fn described(core: &Core) -> Result<Value> {
             (timing.start_to_valid, timing.start_to_start)
         }
     };
-    // The families of the other pages, and the one that a pipeline is scheduled for.
-    let own = design.pipeline.as_ref().map_or("", |pipeline| pipeline.target.as_str());
-    let is_shown = |family: &Family| {
-        let is_compared = COMPARED.iter().any(|it| it.name() == family.name());
-        is_compared || family.name() == own
-    };
-    let estimates = TARGETS.iter().filter_map(|target| {
-        let family = target.family().filter(|family| is_shown(family))?;
-        let cost = Cost::new(design, *target);
-        Some(json!({ "target": family.title, "luts": cost.luts.round(), "dsps": cost.dsps,
-            "block_rams": cost.block_rams, "mhz": cost.mhz }))
-    });
     let schedule: Vec<Value> = match &design.pipeline {
         Some(pipeline) => pipeline
             .stages
@@ -239,15 +283,19 @@ fn described(core: &Core) -> Result<Value> {
     Ok(json!({
         "ok": true,
         "name": core.config.name,
+        // The form keeps a name that the text states.
+        "named": core.config.name != MODULE,
         "device": core.device.name,
         "summary": core.device.summary,
         "keys": keys,
-        "bound": { "units": bound.units, "proved": core.device.proved,
-            "terms": bound.terms.iter().map(|it| (it.what, it.units)).collect::<Vec<_>>() },
+        "bounds": bounds,
+        "proved": core.device.proved,
+        "parts": parts,
+        "sampled": is_sampled(contract),
         "latency": latency,
         "interval": interval,
         "pipelined": design.pipeline.is_some(),
-        "estimates": estimates.collect::<Vec<_>>(),
+        "estimates": estimates(core),
         "schedule": schedule,
         "diagram": diagram::svg(design)?,
         "draws": render::draws(core),
@@ -284,10 +332,15 @@ fn charts(core: &Core) -> Result<Value> {
         true => curves::configuration(&core.device, contract, &|| ()).charts,
         false => of_domain,
     };
-    let drawn = charts.iter().map(|chart| {
-        let names: Vec<&str> = chart.series.iter().map(|it| it.name.as_str()).collect();
-        Ok(json!({ "title": chart.title, "caption": chart.caption, "svg": plots::svg(chart)?, "series": names,
-            "y": chart.y.label }))
-    });
-    Ok(json!({ "ok": true, "charts": drawn.collect::<Result<Vec<_>>>()? }))
+    let drawn = charts.iter().map(drawn).collect::<Result<Vec<_>>>()?;
+    Ok(json!({ "ok": true, "charts": drawn }))
+}
+
+/// Returns a chart as the page shows it.
+fn drawn(chart: &Chart) -> Result<Value> {
+    let names: Vec<&str> = chart.series.iter().map(|it| it.name.as_str()).collect();
+    Ok(
+        json!({ "title": chart.title, "caption": chart.caption, "svg": plots::svg(chart)?, "series": names,
+        "y": chart.y.label }),
+    )
 }

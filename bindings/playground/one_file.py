@@ -24,7 +24,7 @@ def put(text, old, new):
 wasm = base64.b64encode(gzip.compress((site / "glint.wasm").read_bytes(), 9, mtime=0)).decode()
 worker = f'globalThis.GLINT_WASM = "{wasm}";\n{scripts("wasi", "glint", "worker")}'
 start = 'globalThis.GLINT_WORKER = URL.createObjectURL(new Blob([document.getElementById("worker").textContent], { type: "text/javascript" }));\n'
-page = start + scripts("toml", "zip", "page")
+page = start + scripts("dom", "toml", "zip", "entries", "views", "page")
 html = (site / "index.html").read_text()
 html = put(html, '<link rel="stylesheet" href="style.css">', f"<style>\n{(site / 'style.css').read_text()}</style>")
 html = put(

@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 use rayon::prelude::*;
 
 use glint::fixed::Format;
-use glint::golden::{Contract, nearer};
+use glint::golden::{ANY_VALUE, Contract, nearer};
 
 /// Points that one thread computes at a time.
 const PIECE: usize = 1 << 12;
@@ -174,19 +174,18 @@ impl ResultColumns {
         }))
     }
 
-    /// Computes the exact results of all points with the formula.
+    /// Computes the exact results of all points with the formula, also where the contract promises nothing. NaN denotes a formula
+    /// without a value.
     pub fn exact(contract: &dyn Contract, operands: &OperandTable) -> Self {
-        let mut columns = each(contract, operands, |points, out| {
+        Self::Values(each(contract, operands, |points, out| {
             for point in points {
-                contract.exact(point, 0, out);
+                contract.formula_values(point, 0, out);
             }
-        });
-        Self::Values(
-            columns.drain(..).map(|it| it.into_iter().map(|[value, _]| value).collect()).collect(),
-        )
+        }))
     }
 
     /// Computes the distances of the golden model's results from the formula, in units of the last bit of each output.
+    /// NaN denotes an output for which the contract promises nothing.
     pub fn errors(contract: &dyn Contract, operands: &OperandTable) -> Self {
         let units = units(contract);
         Self::Values(each(contract, operands, |points, out| {
@@ -197,9 +196,10 @@ impl ResultColumns {
                 contract.results(point, 0, &mut raw);
                 contract.exact(point, 0, &mut exact);
                 let all = raw.iter().zip(&exact).zip(&units);
-                out.extend(
-                    all.map(|((&raw, exact), unit)| nearer(raw as f64, exact.map(|it| it / unit))),
-                );
+                out.extend(all.map(|((&raw, exact), unit)| match *exact {
+                    ANY_VALUE => f64::NAN,
+                    sides => nearer(raw as f64, sides.map(|it| it / unit)),
+                }));
             }
         }))
     }

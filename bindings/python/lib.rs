@@ -119,11 +119,17 @@ impl PyCore {
         self.core.contract.length()
     }
 
-    /// Returns the bound in units of the outputs' last place, whether it is proved, and its terms.
+    /// Returns the bound of each output in units of the output's last place, whether the bounds are proved, and the terms of the
+    /// bound that is nearest to its limit.
     fn bound<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let bound = self.core.contract.bound();
+        let bounds = self.core.contract.bounds();
+        let bound = bounds.governing();
         let it = PyDict::new(py);
-        it.set_item("units", bound.units)?;
+        let outputs = PyDict::new(py);
+        for bound in &bounds.outputs {
+            outputs.set_item(&bound.output, bound.units)?;
+        }
+        it.set_item("outputs", outputs)?;
         it.set_item("proved", self.core.device.proved)?;
         let terms = bound.terms.iter().map(|term| (term.key, term.what, term.units));
         it.set_item("terms", terms.collect::<Vec<_>>())?;

@@ -15,7 +15,7 @@ use glint_rtl::dsl::{Designer, OperandMux, Register, SharedProduct, Signal, Step
 /// own microinstruction.
 pub struct StepMultiplier<'d> {
     d: &'d Designer,
-    name: &'d str,
+    name: String,
     /// The mux of the first factors, and the shared product; `None` if the device has at most one product.
     shared: Option<(OperandMux<'d>, SharedProduct<'d>)>,
 }
@@ -25,7 +25,7 @@ impl<'d> StepMultiplier<'d> {
     /// and factors of products that belong to no polynomial. No two products may have the same first factor.
     pub fn new(
         d: &'d Designer,
-        [select, sums, offsets, product]: [&'d str; 4],
+        [select, sums, offsets, product]: [&str; 4],
         polynomials: &[&PolynomialDatapath<'d, '_>],
         others: &[(String, [Signal<'d>; 2])],
     ) -> Self {
@@ -46,7 +46,7 @@ impl<'d> StepMultiplier<'d> {
             let product = d.shared_mul(product, &sums, &offsets);
             (sums, product)
         });
-        Self { d, name: product, shared }
+        Self { d, name: product.to_owned(), shared }
     }
 
     /// Connects the register of one step of a polynomial, and returns the settings of the microinstruction that executes this
@@ -67,7 +67,7 @@ impl<'d> StepMultiplier<'d> {
     pub fn product(&self, [first, second]: [Signal<'d>; 2]) -> Signal<'d> {
         match &self.shared {
             Some((_, product)) => product.of(first, second),
-            None => self.d.mul(self.name, first, second),
+            None => self.d.mul(&self.name, first, second),
         }
     }
 

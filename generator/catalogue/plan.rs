@@ -86,20 +86,21 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
         }
     }
 
-    /// Builds the nodes in their order, except for nodes that a chain of mirrors replaces, for products, and for the nodes
-    /// between a product and the next register. `microprogram` builds the products, and these nodes behind them, with the
+    /// Builds the nodes in their order, except for nodes that no result reads, for nodes that a chain of mirrors replaces, for
+    /// products, and for the nodes between a product and the next register. `microprogram` builds the products, and these nodes behind them, with the
     /// multiplier.
     fn build(&mut self) {
-        for at in 0..self.plan.nodes.len() {
-            if self.is_inner[at] {
+        let is_read = read_nodes(self.plan);
+        let plan = self.plan;
+        for (at, node) in plan.nodes.iter().enumerate() {
+            if self.is_inner[at] || !is_read[at] {
                 continue;
             }
-            let node = &self.plan.nodes[at];
             if let Operation::Multiply(a, b) = node.operation {
                 self.factors[at] = Some(self.distinct_factors(&node.name, [a, b]));
             }
             let is_behind_product =
-                node.operation.inputs().iter().any(|it| self.signals[it.0].is_none());
+                read_inputs(&node.operation).iter().any(|it| self.signals[it.0].is_none());
             let value = if self.chains[at].is_some() {
                 Some(self.mirrored(NodeId(at)))
             } else if matches!(node.operation, Operation::Multiply(..)) || is_behind_product {
@@ -298,6 +299,8 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
             true => ["factors_select", "factor", "offset_of_step", "product"],
             false => ["factors_select", "first_factor", "second_factor", "product_of_factors"],
         };
+        let names = names.map(|name| self.beside_operands(name));
+        let names = names.each_ref().map(String::as_str);
         let multiplier = StepMultiplier::new(self.d, names, &polynomials, &others);
         let addresses_table = matches!(self.schedule.steps.first(), Some(PlanStep::Sum { .. }));
         let first = match addresses_table {
@@ -310,6 +313,17 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
         }
         steps.push(step(&noun(self.plan.results.len(), "result"), [valid(), end()]));
         steps
+    }
+
+    /// Returns `name`, or `name` with a number if the name or a longer one that begins with it is an operand.
+    fn beside_operands(&self, name: &str) -> String {
+        let mut free = name.to_owned();
+        let mut number = 2;
+        while self.operands.iter().any(|operand| operand.name.starts_with(&free)) {
+            free = format!("{name}{number}");
+            number += 1;
+        }
+        free
     }
 
     fn microinstruction(&self, plan_step: &PlanStep, multiplier: &StepMultiplier<'d>) -> Step {
@@ -367,6 +381,34 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
             _ => before.read_as(node.format),
         }
     }
+}
+
+/// Returns the nodes whose signals the hardware of an operation reads. The fraction of a number consists of its low bits, so that
+/// the hardware does not read its integer part.
+fn read_inputs(operation: &Operation) -> Vec<NodeId> {
+    match operation {
+        Operation::FractionPart(a, _) => vec![*a],
+        _ => operation.inputs(),
+    }
+}
+
+/// Returns for each node of a plan whether the hardware of a result reads it.
+fn read_nodes(plan: &ExpressionPlan) -> Vec<bool> {
+    let mut is_read = vec![false; plan.nodes.len()];
+    for result in &plan.results {
+        is_read[result.0] = true;
+    }
+    for at in (0..plan.nodes.len()).rev() {
+        let operation = &plan.nodes[at].operation;
+        // An operand is a port, whether it is read or not.
+        is_read[at] |= matches!(operation, Operation::Operand(_));
+        if is_read[at] {
+            for input in read_inputs(operation) {
+                is_read[input.0] = true;
+            }
+        }
+    }
+    is_read
 }
 
 /// Returns a signal with its low bits replaced by a single 1, which is the lowest bit of `format`.

@@ -8,12 +8,14 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue, Error};
 
 use super::module_name;
-use super::nearest::{listed, nearest};
+use super::nearest::nearest;
+use super::other_words;
 use super::points;
 use super::problems::{Problems, STANDARD_INPUT, Violation, out_of_range, quoted, shown};
 use super::schema::{Key, KeyKind, Schema};
 use super::text_pattern::{TextPattern, is_path_of_points};
-use super::validate::{Draft, keys_of};
+use super::unknown::{UnknownName, common_names, keys_of, suggestion};
+use super::validate::Draft;
 use super::values::{Config, TableEntries, TableEntry, Value};
 use glint_base::key_error::KeyError;
 use glint_base::program::Program;
@@ -262,7 +264,13 @@ impl TomlReader<'_> {
                 self.table(inner, &as_table, schema, draft);
             } else {
                 let message = format!("`{name}` is a table, not {}", described(value));
-                self.report(&name, span, message, keys_of(schema, &name));
+                let mut remedy = keys_of(schema, &name);
+                let meant = other_words::settings(&name);
+                if !meant.is_empty() {
+                    draft.doubtful.extend(meant.iter().map(|setting| setting.key));
+                    remedy = format!("{} {remedy}", suggestion(meant));
+                }
+                self.report(&name, span, message, remedy);
             }
         }
     }
@@ -331,6 +339,17 @@ impl TomlReader<'_> {
             let name_text = shown(name.get_ref());
             if let Some(other) = schema.key(&format!("{}.{name_text}", key.name)) {
                 // A key that every device has may be in the same table.
+                if matches!(entry.get_ref(), DeValue::Table(_)) {
+                    let message = format!(
+                        "`{}` is a key of every core, so an entry of [{}] cannot be named `{name_text}`",
+                        other.name, key.name
+                    );
+                    let remedy =
+                        format!("give the entry another name, for example `{name_text}_value`");
+                    self.report(other.name, name.span(), message, remedy);
+                    is_good = false;
+                    continue;
+                }
                 self.value(other, entry, entry.span(), schema, draft);
                 continue;
             }
@@ -427,7 +446,9 @@ impl TomlReader<'_> {
         let given = shown(field.get_ref());
         let within = format!("{}.{record}.{given}", key.name);
         let message = format!("an entry of `{}` has no field `{given}`", key.name);
-        let remedy = match nearest(&given, names.iter().copied()) {
+        let similar = nearest(&given, names.iter().copied())
+            .or_else(|| other_words::last_part(&given, names.iter().copied()));
+        let remedy = match similar {
             Some(meant) => format!("did you mean `{meant}`? fields: {}", names.join(", ")),
             None => format!("fields: {}", names.join(", ")),
         };
@@ -442,40 +463,13 @@ impl TomlReader<'_> {
         schema: &'s Schema,
         draft: &mut Draft<'s>,
     ) {
-        let keys = || schema.all_keys();
-        let tables = || keys().map(|key| key.table_and_leaf().0);
-        let names = || keys().map(|key| key.name);
         let is_table = value.get_ref().is_table();
-        let (what, meant) = if is_table {
-            ("table", nearest(name, tables()))
-        } else {
-            ("key", nearest(name, common_names().chain(names())))
-        };
-        let (table, leaf) = name.rsplit_once('.').unwrap_or(("", name));
-        let (heading, below) = name.split_once('.').unwrap_or(("", name));
-        let elsewhere: Vec<String> = names()
-            .filter(|known| known.ends_with(&format!(".{leaf}")))
-            .map(|known| format!("`{known}`"))
-            .collect();
-        let remedy = if common_names().chain(names()).chain(tables()).any(|k| k == below) {
-            format!(
-                "`{below}` does not belong to [{heading}]: move the line above the first [table] heading"
-            )
-        } else if let Some(meant) = meant {
-            // The name is misspelt, so the user's value of the intended key is unknown.
-            let within = format!("{meant}.");
-            for key in keys().filter(|key| key.name == meant || key.name.starts_with(&within)) {
-                draft.doubtful.insert(key.name);
-            }
-            format!("did you mean `{meant}`?")
-        } else if !is_table && !elsewhere.is_empty() {
-            format!("the device has {}", listed(&elsewhere))
-        } else {
-            keys_of(schema, if tables().any(|known| known == table) { table } else { "" })
-        };
+        let what = if is_table { "table" } else { "key" };
+        let unknown = UnknownName::new(schema, name, is_table);
+        draft.doubtful.extend(unknown.meant);
         let name = shown(name);
         let message = format!("device `{}` has no {what} `{name}`", schema.device);
-        self.report(&name, span, message, remedy);
+        self.report(&name, span, message, unknown.remedy);
     }
 
     /// Adds a problem, unless the first line of `span` has a syntax error.
@@ -567,10 +561,6 @@ fn described(value: &Spanned<DeValue>) -> String {
         DeValue::Array(_) => "a list".to_owned(),
         DeValue::Table(_) => "a table".to_owned(),
     }
-}
-
-fn common_names() -> impl Iterator<Item = &'static str> {
-    super::COMMON.iter().map(|(name, _)| *name)
 }
 
 fn is_common(name: &str) -> bool {

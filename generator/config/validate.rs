@@ -6,11 +6,13 @@ use std::collections::BTreeSet;
 use super::follow::follow;
 use super::module_name;
 use super::nearest::nearest;
+use super::other_words;
 use super::problems::{Problem, Problems, Violation, out_of_range, quoted, shown};
 use super::schema::{Condition, Key, KeyKind, Schema};
 use super::shared::Shared;
+use super::text_pattern::TextPattern;
+use super::unknown::UnknownName;
 use super::values::{Config, Value, is_integer};
-use super::write::tables;
 use glint_base::key_error::KeyError;
 
 impl Key {
@@ -37,6 +39,12 @@ impl Key {
                 .map(|violation| self.with_suggestion(violation, given))
                 .collect(),
             (KeyKind::Flag, Value::Flag(_)) => Vec::new(),
+            (KeyKind::Text(TextPattern::Formula), Value::Text(given)) if given.contains('\n') => {
+                let message = format!("`{name}` has a line break, and a formula is a single line");
+                let remedy =
+                    "write the formula in one line, or end each line of a text in \"\"\" with \\";
+                vec![Violation { entry: None, error: KeyError::new(name, message, remedy) }]
+            }
             (KeyKind::Text(pattern), Value::Text(given)) => self
                 .required(pattern.fits(given), || format!("`{name}` cannot be {}", quoted(given))),
             (KeyKind::Integers { min, max, len_min, len_max }, Value::Integers(given)) => {
@@ -123,10 +131,12 @@ impl Key {
         };
         // Among numbers, a similar spelling means nothing.
         let near = nearest(given, options.iter().copied()).filter(|_| !is_integer(given));
+        let near =
+            near.map(|near| format!("\"{near}\"")).or_else(|| other_words::choice(self, given));
         match near {
             None => violation,
             Some(near) => {
-                let remedy = format!("did you mean \"{near}\"? {}", violation.error.remedy);
+                let remedy = format!("did you mean {near}? {}", violation.error.remedy);
                 let error = KeyError { remedy, ..violation.error };
                 Violation { error, ..violation }
             }
@@ -288,6 +298,11 @@ fn check(schema: &Schema, draft: &Draft, problems: &mut Problems) {
         );
     }
 
+    // The formulas of a device name the entries of its tables. With an unknown entry, the check would report false mistakes.
+    let is_table = |key: &Key| matches!(key.kind, KeyKind::Table { .. });
+    if schema.all_keys().any(|key| is_table(key) && draft.doubtful.contains(key.name)) {
+        return;
+    }
     let mut certain: Option<Vec<Problem>> = None;
     for trial in trials(schema, draft) {
         let mut found = problems.cleared();
@@ -379,7 +394,9 @@ impl Config {
         for (name, value) in values {
             let Some(key) = schema.key(&name) else {
                 let message = format!("device `{}` has no key {}", schema.device, quoted(&name));
-                problems.push(&name, message, keys_of(schema, ""));
+                let unknown = UnknownName::new(schema, &name, matches!(value, Value::Table(_)));
+                draft.doubtful.extend(unknown.meant);
+                problems.push(&name, message, unknown.remedy);
                 continue;
             };
             let violations = key.violations_of(&value);
@@ -450,28 +467,5 @@ impl<'a> Draft<'a> {
         }
         check(schema, &self, &mut problems);
         if problems.is_empty() { Ok(self.config) } else { Err(problems) }
-    }
-}
-
-/// Returns a list of the keys in a table as a remedy. An empty `table` means the keys outside tables.
-pub(super) fn keys_of(schema: &Schema, table: &str) -> String {
-    let mut keys: Vec<&str> = schema
-        .all_keys()
-        .map(Key::table_and_leaf)
-        .filter(|(of, _)| *of == table)
-        .map(|(_, leaf)| leaf)
-        .collect();
-    if !table.is_empty() {
-        return format!("keys of [{table}]: {}", keys.join(", "));
-    }
-    keys.splice(0..0, super::COMMON.map(|(name, _)| name));
-    // The first entry has the keys outside tables, and no heading.
-    let tables = tables(schema).into_iter().skip(1).map(|(name, _)| format!("[{name}]"));
-    let tables = Vec::from_iter(tables).join(", ");
-    let keys = keys.join(", ");
-    if tables.is_empty() {
-        format!("keys: {keys}")
-    } else {
-        format!("keys outside tables: {keys}; tables: {tables}")
     }
 }

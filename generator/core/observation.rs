@@ -76,8 +76,6 @@ pub struct ContractFacts {
     pub conditions: Option<Vec<Option<Comparison>>>,
     /// Whether an output may differ from the formula by a multiple of its range, as [`Contract::wraps`] says.
     pub wraps: bool,
-    /// The largest error of an output, in units of its last bit.
-    pub bound: f64,
     /// The largest error of each output, in units of its last bit.
     pub bounds: Vec<f64>,
 }
@@ -102,14 +100,13 @@ impl ContractFacts {
             length: contract.length().map(str::to_owned),
             // Without a bound, results could not be compared with anything.
             f: match contract.highlight() {
-                _ if !contract.bound().is_stated() => Vec::new(),
+                _ if !contract.bounds().are_stated() => Vec::new(),
                 Some(highlight) => highlight.expressions(),
                 None => contract.expressions(),
             },
             conditions: contract.conditions(),
             wraps: contract.wraps(),
-            bound: contract.bound().units,
-            bounds: (0..contract.outputs().len()).map(|at| contract.output_bound(at)).collect(),
+            bounds: contract.bounds().outputs.iter().map(|bound| bound.units).collect(),
         }
     }
 }

@@ -31,11 +31,12 @@ pub fn exponent_operand(format: Format, domain: (i64, i64)) -> Operand {
 /// Returns a control operand, which is an operand that determines the reflectance `f`. Colour operands, which `f` multiplies,
 /// are not control operands.
 pub fn control(name: &str, format: Format, domain: (i64, i64), doc: &str) -> Operand {
-    Operand { name: name.to_owned(), format, domain, colour: false, doc: doc.to_owned() }
+    let doc = doc.to_owned();
+    Operand { name: name.to_owned(), format, domain, clamped: false, colour: false, doc }
 }
 
-/// Returns the error bound of a device that multiplies colours by a reflectance `f` with `frac` fraction bits. `shares` are the
-/// contributions to the error of `f`.
+/// Returns the error bounds of a device that multiplies colours by a reflectance `f` with `frac` fraction bits: the bound of `f`,
+/// and the bound of each output. `shares` are the contributions to the error of `f`.
 ///
 /// An output is `f` times a colour of `colour_bits` bits, rounded by `output_rounding`. The bound of an output is therefore the
 /// error of `f` times the largest colour, plus the error of that rounding. Both `f` and the formula lie in 0 … 1, so shares
@@ -46,9 +47,9 @@ pub fn bound(
     frac: u32,
     colour_bits: u32,
     output_rounding: Rounding,
-) -> Bound {
+) -> (f64, Bound) {
     if shares.is_empty() {
-        return Bound::of(Vec::new());
+        return (f64::INFINITY, Bound::of(Vec::new()));
     }
     let sum: f64 = shares.iter().map(|share| share.2).sum();
     let cap = if sum > 1.0 { 1.0 / sum } else { 1.0 };
@@ -67,7 +68,7 @@ pub fn bound(
         },
     });
     let f = if sum.is_nan() { f64::INFINITY } else { sum * cap };
-    Bound { f, ..Bound::of(terms) }
+    (f, Bound::of(terms))
 }
 
 /// Returns a Python expression that has the value of `expression`, or 0 if `expression` is negative. For example, `x - 1` becomes
@@ -154,12 +155,13 @@ mod tests {
     #[test]
     fn terms_add_up_and_are_capped() {
         let shares = [("a", "one", 0.25), ("b", "another", 0.125)];
-        let sum = bound(&shares, 8, 4, Rounding::Nearest);
+        let (f, sum) = bound(&shares, 8, 4, Rounding::Nearest);
         // 15 · 0.375 + 0.5.
-        assert_eq!((sum.f, sum.units), (0.375, 6.125));
-        let capped = bound(&[("a", "one", 3.0), ("b", "another", 1.0)], 8, 4, Rounding::Truncate);
+        assert_eq!((f, sum.units), (0.375, 6.125));
+        let (f, capped) =
+            bound(&[("a", "one", 3.0), ("b", "another", 1.0)], 8, 4, Rounding::Truncate);
         let units: Vec<f64> = capped.terms.iter().map(|term| term.units).collect();
-        assert_eq!(capped.f, 1.0);
+        assert_eq!(f, 1.0);
         assert_eq!(units, [11.25, 3.75, 255.0 / 256.0]);
     }
 }

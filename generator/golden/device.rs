@@ -19,7 +19,7 @@
 //!     }
 //!
 //!     /// Truncation to 4 fraction bits loses at most 15/16 of the last bit.
-//!     fn terms(&self) -> Vec<Term> {
+//!     fn terms(&self, _output: usize) -> Vec<Term> {
 //!         vec![Term { key: "width", what: "the square is cut", units: 1.0 - 1.0 / 16.0 }]
 //!     }
 //! }
@@ -41,10 +41,15 @@
 use super::frame::{ClockedModel, Frame, FrameStep, idle};
 use glint_formula::Comparison;
 
-use super::{ANY_VALUE, Bound, ComputedPart, Contract, Model, Operand, Output, Sweep, Term};
+use super::{
+    ANY_VALUE, Bound, Bounds, ComputedPart, Contract, Model, Operand, Output, Sweep, Term,
+};
 
 /// The largest number of clocks that a computation may take.
 const LONGEST: u32 = 1 << 20;
+
+/// A smaller bound counts as this one, in units, so that errors of outputs with different bounds can be compared.
+const LEAST_BOUND: f64 = 1e-6;
 
 /// The raw value that replaces a result that the device never shows.
 const NEVER: i64 = i64::MAX >> 1;
@@ -66,7 +71,7 @@ impl Frame {
         let mut operands = Vec::new();
         for (name, format, domain) in self.operands() {
             let (name, doc) = (name.to_owned(), String::new());
-            operands.push(Operand { name, format, domain, colour: false, doc });
+            operands.push(Operand { name, format, domain, clamped: false, colour: false, doc });
         }
         let mut outputs = Vec::new();
         for (name, format) in self.results() {
@@ -109,13 +114,26 @@ impl Device {
         self
     }
 
+    /// Marks the operand `operand` in the contract as limited to its domain before the computation ([`Operand::clamped`]).
+    ///
+    /// # Panics
+    /// Panics if the device has no operand with this name.
+    #[must_use]
+    pub fn limits(mut self, operand: &str) -> Self {
+        let found = self.operands.iter_mut().find(|it| it.name == operand);
+        found.expect("an operand of the device").clamped = true;
+        self
+    }
+
     /// Returns the accuracy contract of the device: the golden model computes the results, and `formula` states the exact values.
     pub fn contract(self, formula: impl Formula + 'static) -> Box<dyn Contract> {
         let mut shown = Vec::new();
         for output in &self.outputs {
             shown.extend(self.model.signals().iter().position(|it| *it == output.name));
         }
-        Box::new(OfModel { device: self, shown, formula })
+        let mut contract = OfModel { device: self, shown, weights: Vec::new(), formula };
+        contract.weights = contract.bounds().weights(LEAST_BOUND);
+        Box::new(contract)
     }
 }
 
@@ -148,9 +166,10 @@ pub trait Formula: Send + Sync {
         false
     }
 
-    /// Returns the contributions to the error of an output, each a proven upper limit. Returns an empty list if the bound is
-    /// not known yet.
-    fn terms(&self) -> Vec<Term> {
+    /// Returns the contributions to the error of output number `output`, each a proven upper limit. Returns an empty list if the
+    /// bound is not known yet.
+    fn terms(&self, output: usize) -> Vec<Term> {
+        let _ = output;
         Vec::new()
     }
 
@@ -160,15 +179,9 @@ pub trait Formula: Send + Sync {
         Vec::new()
     }
 
-    /// Returns the bound of output number `output`, as [`Contract::output_bound`] does, or `None` if all outputs have the bound
-    /// of the contract.
-    fn output_bound(&self, output: usize) -> Option<f64> {
+    /// Returns the bound that the contract demands for output number `output`, in units, as [`Bound::limit`] states it.
+    fn limit(&self, output: usize) -> f64 {
         let _ = output;
-        None
-    }
-
-    /// Returns the bound that the contract demands, in units, as [`Bound::limit`] states it.
-    fn limit(&self) -> f64 {
         1.0
     }
 
@@ -217,6 +230,8 @@ struct OfModel<F> {
     device: Device,
     /// The positions of the outputs among the signals of the golden model.
     shown: Vec<usize>,
+    /// The factors by which the errors of outputs are multiplied in an exhaustive check ([`Bounds::weights`]).
+    weights: Vec<f64>,
     formula: F,
 }
 
@@ -238,6 +253,12 @@ impl<F> OfModel<F> {
             model.clock(&rest);
         }
         None
+    }
+
+    /// Returns the values of the operands, from their raw values.
+    fn operand_values(&self, raw: &[i64]) -> Vec<f64> {
+        let pairs = self.device.operands.iter().zip(raw);
+        pairs.map(|(it, &raw)| it.format.to_f64(raw.into())).collect()
     }
 
     /// Returns the bit patterns of all inputs of the model in a clock without reset. `start` and the write strobes have the
@@ -307,8 +328,7 @@ impl<F: Formula> Contract for OfModel<F> {
     }
 
     fn exact(&self, operands: &[i64], _: u64, values: &mut Vec<[f64; 2]>) {
-        let pairs = self.device.operands.iter().zip(operands);
-        let operands: Vec<f64> = pairs.map(|(it, &raw)| it.format.to_f64(raw.into())).collect();
+        let operands = self.operand_values(operands);
         for (output, value) in self.formula.exact(&operands).into_iter().enumerate() {
             let is_promised = self.formula.is_promised(&operands, output);
             values.push(match is_promised {
@@ -318,12 +338,19 @@ impl<F: Formula> Contract for OfModel<F> {
         }
     }
 
-    fn bound(&self) -> Bound {
-        Bound { limit: self.formula.limit(), ..Bound::of(self.formula.terms()) }
+    fn formula_values(&self, operands: &[i64], _: u64, values: &mut Vec<f64>) {
+        values.extend(self.formula.exact(&self.operand_values(operands)));
     }
 
-    fn output_bound(&self, output: usize) -> f64 {
-        self.formula.output_bound(output).unwrap_or_else(|| self.bound().units)
+    fn bounds(&self) -> Bounds {
+        let mut outputs = Vec::new();
+        for (number, output) in self.device.outputs.iter().enumerate() {
+            let limit = self.formula.limit(number);
+            let bound = Bound::of(self.formula.terms(number));
+            outputs.push(Bound { output: output.name.clone(), limit, ..bound });
+        }
+        let f = outputs.iter().map(|bound| bound.units).fold(0.0, f64::max);
+        Bounds { f, outputs }
     }
 
     fn expressions(&self) -> Vec<String> {
@@ -347,7 +374,13 @@ impl<F: Formula> Contract for OfModel<F> {
     }
 
     fn sweep_error(&self, place: &[i64]) -> f64 {
-        self.formula.sweep_error(place).unwrap_or_else(|| self.largest_error(place))
+        self.formula.sweep_error(place).unwrap_or_else(|| {
+            let mut largest: f64 = 0.0;
+            for (error, weight) in self.errors(place).into_iter().zip(&self.weights) {
+                largest = largest.max(error * weight);
+            }
+            largest
+        })
     }
 
     fn parts(&self) -> Vec<ComputedPart> {

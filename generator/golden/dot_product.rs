@@ -133,7 +133,7 @@ impl Formula for CosineFormula {
         vec![if self.keys.two_sided { sum.abs() } else { sum }.clamp(0.0, 1.0)]
     }
 
-    fn terms(&self) -> Vec<Term> {
+    fn terms(&self, _output: usize) -> Vec<Term> {
         let [root, factors, rounding] = self.errors();
         let units = exp2(self.keys.kept as i32);
         let terms = [

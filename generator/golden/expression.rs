@@ -133,10 +133,9 @@ impl Formula for ProvedFormulas {
         true
     }
 
-    /// Returns the terms of the bound of the result with the largest bound: the rounding of the result, and everything before
-    /// it.
-    fn terms(&self) -> Vec<Term> {
-        let bound = self.found.bounds.iter().copied().fold(0.0, f64::max);
+    /// Returns the terms of the bound of a result: the rounding of the result, and everything before it.
+    fn terms(&self, output: usize) -> Vec<Term> {
+        let bound = self.found.bounds[output];
         let rounding = bound.min(0.5);
         vec![
             Term { key: "results", what: "rounding of the result", units: rounding },
@@ -173,12 +172,8 @@ impl Formula for ProvedFormulas {
         parts
     }
 
-    fn output_bound(&self, output: usize) -> Option<f64> {
-        Some(self.found.bounds[output])
-    }
-
-    fn limit(&self) -> f64 {
-        self.found.statement.results.iter().map(|result| result.error).fold(0.0, f64::max)
+    fn limit(&self, output: usize) -> f64 {
+        self.found.statement.results[output].error
     }
 
     /// Returns the formulas as Python, or an empty list if they are too long to be written out. In the text, each use of a

@@ -96,7 +96,7 @@ impl Formula for Stated {
         inside
     }
 
-    fn terms(&self) -> Vec<Term> {
+    fn terms(&self, _output: usize) -> Vec<Term> {
         let rounding = self.bound.min(0.5);
         vec![
             Term { key: "result.fraction", what: "rounding of the result", units: rounding },
@@ -108,7 +108,7 @@ impl Formula for Stated {
         ]
     }
 
-    fn limit(&self) -> f64 {
+    fn limit(&self, _output: usize) -> f64 {
         self.function.error
     }
 

@@ -135,6 +135,9 @@ pub struct Operand {
     pub format: Format,
     /// The smallest and largest raw value for which the contract is stated; both are included.
     pub domain: (i64, i64),
+    /// Whether the device limits the operand to the domain before it computes, so that the contract also holds for operands outside
+    /// the domain, with the nearer end of the domain in their place.
+    pub clamped: bool,
     /// Whether this is a colour operand of a highlight device, which multiplies the reflectance `f`. The other operands determine
     /// `f`.
     pub colour: bool,
@@ -182,9 +185,20 @@ pub trait Contract: Send + Sync {
     /// contract promises nothing.
     fn exact(&self, operands: &[i64], index: u64, values: &mut Vec<[f64; 2]>);
 
-    /// Returns a proven bound on the error, which is known before any simulation. A bound without terms is not stated; `glint
-    /// certify` may then find one.
-    fn bound(&self) -> Bound;
+    /// Appends the value of the formula of each output, also for operands for which the contract promises nothing. NaN denotes an
+    /// output whose formula has no value. For example, the formula x / y has the value 9 for x = 0.9 and y = 0.1, even if the
+    /// contract promises results only where x < y.
+    fn formula_values(&self, operands: &[i64], index: u64, values: &mut Vec<f64>) {
+        let mut exact = Vec::new();
+        self.exact(operands, index, &mut exact);
+        for sides in exact {
+            values.push(if sides == ANY_VALUE { f64::NAN } else { sides[0] });
+        }
+    }
+
+    /// Returns the proven bounds of the errors of all outputs, which are known before any simulation. A bound without terms is not
+    /// stated; `glint certify` may then find one.
+    fn bounds(&self) -> Bounds;
 
     /// Returns the formula of each output as a Python expression ([`highlight::Reflectance::expressions`] has the rules), or an
     /// empty list if nobody has written them. For a highlight the list is empty; [`Highlight::expressions`] has the expressions
@@ -234,30 +248,28 @@ pub trait Contract: Send + Sync {
     }
 
     /// Returns the error in one case of [`Contract::sweep`]. `place` has the value on each axis. By default a case is a set of
-    /// operands, and the error is the largest error of any output, in units.
+    /// operands, and the error is the largest error of any output, in units. Errors of outputs with different bounds are
+    /// multiplied by [`Bounds::weights`] first.
     fn sweep_error(&self, place: &[i64]) -> f64 {
         self.largest_error(place)
     }
 
-    /// Returns the bound on the error of output number `output`, from 0, in units of the output's last bit. This bound never
-    /// exceeds [`Contract::bound`].
-    fn output_bound(&self, output: usize) -> f64 {
-        let _ = output;
-        self.bound().units
+    /// Returns the error of each output at raw operands, in units, in the first result of the computation.
+    fn errors(&self, operands: &[i64]) -> Vec<f64> {
+        let (mut raw, mut exact) = (Vec::new(), Vec::new());
+        self.results(operands, 0, &mut raw);
+        self.exact(operands, 0, &mut exact);
+        let mut errors = Vec::with_capacity(raw.len());
+        for ((output, raw), exact) in self.outputs().iter().zip(raw).zip(exact) {
+            let unit = exp2(-output.format.frac);
+            errors.push(nearer(raw as f64, exact.map(|value| value / unit)));
+        }
+        errors
     }
 
     /// Returns the largest error of an output at raw operands, in units, in the first result of the computation.
     fn largest_error(&self, operands: &[i64]) -> f64 {
-        let (mut raw, mut exact) = (Vec::new(), Vec::new());
-        self.results(operands, 0, &mut raw);
-        self.exact(operands, 0, &mut exact);
-        let mut largest: f64 = 0.0;
-        for ((output, raw), exact) in self.outputs().iter().zip(raw).zip(exact) {
-            let unit = exp2(-output.format.frac);
-            let error = nearer(raw as f64, exact.map(|value| value / unit));
-            largest = largest.max(error);
-        }
-        largest
+        self.errors(operands).into_iter().fold(0.0, f64::max)
     }
 
     /// Returns the parts of the computation, in the order in which they are computed; an empty list if the contract does not
@@ -379,13 +391,22 @@ impl Values {
     }
 }
 
+/// The proven bounds on the errors of a contract's outputs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Bounds {
+    /// The bound on the quantity that a sweep measures: the error of `f` of a highlight, otherwise the largest bound of an output,
+    /// in units.
+    pub f: f64,
+    /// The bound of each output, in the order of the outputs. A contract has at least one output.
+    pub outputs: Vec<Bound>,
+}
+
 /// A proven bound on the error of an output for all operands of the domain, with the contributions that add up to it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bound {
-    /// The bound on the quantity that a sweep measures: the error of `f` of a highlight, otherwise the error of an output, in
-    /// units.
-    pub f: f64,
-    /// The bound on the error of an output, in units of its last bit. A highlight states it for the largest colour operand.
+    /// The name of the output.
+    pub output: String,
+    /// The bound on the error of the output, in units of its last bit. A highlight states it for the largest colour operand.
     pub units: f64,
     /// The bound that the contract demands, in units: the contract is kept if `units` is below it. The bound is 1, or the error
     /// that the configuration allows.
@@ -424,14 +445,78 @@ pub struct Term {
     pub units: f64,
 }
 
+impl Bounds {
+    /// Makes the bounds of outputs that all have the bound `bound`. `f` is [`Bounds::f`].
+    pub fn alike(f: f64, bound: &Bound, outputs: &[Output]) -> Self {
+        let named = |output: &Output| Bound { output: output.name.clone(), ..bound.clone() };
+        Self { f, outputs: outputs.iter().map(named).collect() }
+    }
+
+    /// Returns the bound that is nearest to its limit, or furthest beyond it. Among equal ones, returns the first.
+    ///
+    /// # Panics
+    /// Panics if there are no outputs.
+    pub fn governing(&self) -> &Bound {
+        let ratio = |bound: &Bound| bound.units / bound.limit;
+        let largest = self.outputs.iter().rev().max_by(|a, b| ratio(a).total_cmp(&ratio(b)));
+        largest.expect("a contract has an output")
+    }
+
+    /// Returns the largest bound of an output, in units.
+    pub fn governing_units(&self) -> f64 {
+        self.outputs.iter().map(|bound| bound.units).fold(0.0, f64::max)
+    }
+
+    /// Returns for each output the factor by which its error is multiplied before it is compared with the errors of other outputs:
+    /// the largest bound divided by the bound of the output. A bound below `least` counts as `least`, so that no factor is
+    /// infinite.
+    pub fn weights(&self, least: f64) -> Vec<f64> {
+        let largest = self.governing_units();
+        let weight = |own: f64| if own == largest { 1.0 } else { largest / own.max(least) };
+        self.outputs.iter().map(|bound| weight(bound.units)).collect()
+    }
+
+    /// Returns the bound of the output with this name; `None` without such an output.
+    pub fn of(&self, output: &str) -> Option<&Bound> {
+        self.outputs.iter().find(|bound| bound.output == output)
+    }
+
+    /// Returns whether all outputs have the same bound and the same limit.
+    pub fn are_alike(&self) -> bool {
+        let [first, rest @ ..] = &self.outputs[..] else { return true };
+        rest.iter().all(|other| (other.units, other.limit) == (first.units, first.limit))
+    }
+
+    /// Returns whether every bound is below its limit.
+    pub fn keep(&self) -> bool {
+        self.outputs.iter().all(Bound::keeps)
+    }
+
+    /// Returns whether the author of the device has stated a bound for every output.
+    pub fn are_stated(&self) -> bool {
+        self.outputs.iter().all(Bound::is_stated)
+    }
+
+    /// Returns the bounds in units as text. For example, `0.969` if all outputs have this bound, and otherwise `0.583 for p_out,
+    /// 6.381 for q_out`.
+    pub fn words(&self) -> String {
+        if self.are_alike() {
+            return self.governing().words();
+        }
+        let each = |bound: &Bound| format!("{} for {}", bound.words(), bound.output);
+        let all: Vec<String> = self.outputs.iter().map(each).collect();
+        all.join(", ")
+    }
+}
+
 impl Bound {
-    /// Returns the bound of a device that is no highlight. The bound is the sum of the terms, or infinite if there are no terms
-    /// or the sum is NaN.
+    /// Makes the bound of an output without a name, with the limit 1. The bound is the sum of the terms, or infinite if there are
+    /// no terms or the sum is NaN.
     pub fn of(terms: Vec<Term>) -> Self {
         let sum: f64 = terms.iter().map(|term| term.units).sum();
         // A sum that is NaN limits nothing.
         let units = if terms.is_empty() || sum.is_nan() { f64::INFINITY } else { sum };
-        Self { f: units, units, limit: 1.0, terms }
+        Self { output: String::new(), units, limit: 1.0, terms }
     }
 
     /// Returns the bound in units as text, or says that no bound is stated. For example, `rough` has `0.969`.
@@ -439,9 +524,10 @@ impl Bound {
         if self.is_stated() { text::rounded_up(self.units, 3) } else { "not stated".to_owned() }
     }
 
-    /// Returns whether the bound is small enough: whether `units` is below `limit`.
+    /// Returns whether the bound is small enough: whether `units` is below `limit`. A bound of half a unit also keeps a limit of
+    /// half a unit, because rounding to the nearest value has this error.
     pub fn keeps(&self) -> bool {
-        self.units < self.limit
+        self.units < self.limit || self.units == 0.5 && self.limit == 0.5
     }
 
     /// Returns whether the author of the device has stated a bound.

@@ -114,7 +114,7 @@ impl Formula for Normaliser {
     /// ≤ 1 and the other errors are far below 1.
     ///
     /// The result for the zero vector is the zero vector, as the formula defines.
-    fn terms(&self) -> Vec<Term> {
+    fn terms(&self, _output: usize) -> Vec<Term> {
         let [chord, root] = self.root.error();
         let units = exp2(self.keys.kept as i32);
         let terms = [

@@ -131,6 +131,9 @@ pub(super) fn plan_device(
     let mut device = frame.device(program);
     for operand in operands {
         device = device.domain(&operand.name, operand.domain.0, operand.domain.1);
+        if operand.outside == Outside::Clamp {
+            device = device.limits(&operand.name);
+        }
     }
     device
 }

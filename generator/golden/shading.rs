@@ -183,7 +183,7 @@ pub fn contract(config: &Config) -> Box<dyn Contract> {
 
 /// Returns the proved error bound of a part, as a value instead of in units.
 fn error(contract: &dyn Contract) -> f64 {
-    contract.bound().units * exp2(-contract.outputs()[0].format.frac)
+    contract.bounds().governing().units * exp2(-contract.outputs()[0].format.frac)
 }
 
 /// The proved error bounds of the parts.
@@ -265,7 +265,7 @@ impl Formula for Shading {
     /// - A colour is diffuse·cosine + specular·f(cosine), saturated. Its slope by the cosine of the light is at most the
     ///   largest colour. Its slope by the cosine of the highlight is at most the largest colour times the slope of f.
     /// - If f jumps, the computed and the exact cosine may be on different sides of the jump.
-    fn terms(&self) -> Vec<Term> {
+    fn terms(&self, _output: usize) -> Vec<Term> {
         let PartErrors { facing, cosine, highlight, variation } = self.errors;
         let Some(Variation { slope, jump }) = variation else { return Vec::new() };
         let colour = exp2(self.keys.colour_bits as i32) - 1.0;
@@ -327,7 +327,7 @@ impl Formula for Shading {
 
     /// Returns the bound that the contract demands: one unit for each light, plus half a unit for the rounding of the result.
     /// For example, two lights may cause an error of up to 2.5 units.
-    fn limit(&self) -> f64 {
+    fn limit(&self, _output: usize) -> f64 {
         f64::from(self.keys.lights) + 0.5
     }
 
@@ -425,7 +425,7 @@ mod tests {
         let errors = PartErrors { facing: 2e-7, cosine: 2e-7, highlight: 0.1, variation };
         let highlight = (part(&keys).contract)(&parts(&keys).highlight);
         let claimed = Shading { highlight, errors, keys };
-        let claimed = Bound::of(claimed.terms()).units;
+        let claimed = Bound::of(claimed.terms(0)).units;
         // A linear congruential generator.
         let mut at = 1u64;
         let mut unit = || {
@@ -435,6 +435,6 @@ mod tests {
         let points =
             (0..4000).map(|_| whole.largest_error(&whole.hint(&mut unit).expect("a point")));
         let worst = points.fold(0.0, f64::max);
-        assert!(worst > claimed && worst < whole.bound().units, "{claimed} {worst}");
+        assert!(worst > claimed && worst < whole.bounds().governing().units, "{claimed} {worst}");
     }
 }

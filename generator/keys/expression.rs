@@ -9,7 +9,6 @@ use std::sync::Arc;
 
 use glint_approximate::Outside;
 use glint_base::fixed::{Format, MAX_WIDTH, exp2};
-use glint_base::identifier;
 use glint_base::key_error::KeyError;
 use glint_config::{Config, Key, Problems, Schema, TableEntries, TableEntry, TextPattern, Value};
 use glint_formula::{Comparison, Expression, Fault, Kind, Operator, TextSpan, parse};
@@ -19,6 +18,7 @@ use glint_plan::{
 };
 
 use super::function::End;
+use super::port_names::{self, NameFault, NamedTable};
 
 /// The smallest and the largest error that a configuration may allow, in units of a result's last bit.
 const LEAST_ERROR: f64 = 0.5;
@@ -278,60 +278,24 @@ fn error_of_relative(
     Ok(units.min(LARGEST_ERROR))
 }
 
-/// The names of ports that a core has as a pipeline or with a microprogram. An entry may not have such a name.
-const PORTS: [&str; 12] = [
-    "clk",
-    "rst_n",
-    "start",
-    "busy",
-    "valid",
-    "done",
-    "in_valid",
-    "in_ready",
-    "out_valid",
-    "out_ready",
-    "side_in",
-    "side_out",
-];
-
-/// Checks that every name is an identifier, and neither one of [`PORTS`] nor a constant of formulas, such as `pi`. Checks also
-/// that no two entries have the same name.
+/// Checks the names of operands, parts and results.
 ///
 /// # Errors
-/// Fails at the first name that breaks one of these rules. The error names the entry.
+/// Fails at the first name that cannot be used. The error names the entry.
 fn check_names(keys: &Keys) -> Result<(), StatementError> {
-    let mut known: Vec<(&str, &str)> = Vec::new();
-    let tables = [("operands", &keys.operands), ("let", &keys.parts), ("results", &keys.results)];
+    let tables = [
+        (NamedTable::Operands, &keys.operands),
+        (NamedTable::Parts, &keys.parts),
+        (NamedTable::Results, &keys.results),
+    ];
+    let mut entries = Vec::new();
     for (table, records) in tables {
-        for TableEntry { name, .. } in &records.0 {
-            let key = format!("{table}.{name}");
-            if let Err(fault) = identifier::check(name) {
-                return Err(StatementError::new(
-                    key,
-                    fault,
-                    "give a name of lower-case letters, digits and _",
-                ));
-            }
-            if PORTS.contains(&name.as_str()) {
-                let message = format!("every core has a port `{name}`");
-                return Err(StatementError::new(key, message, "give the entry another name"));
-            }
-            if let Some((other, _)) = known.iter().find(|(_, own)| own == name) {
-                let message = format!("[{other}] has an entry `{name}` already");
-                return Err(StatementError::new(
-                    key,
-                    message,
-                    "give one of the two entries another name",
-                ));
-            }
-            if parse(name).ok().is_none_or(|it| !matches!(it.kind, Kind::Operand(_))) {
-                let message = format!("`{name}` is a constant of formulas");
-                return Err(StatementError::new(key, message, "give the entry another name"));
-            }
-            known.push((table, name));
-        }
+        entries.extend(records.0.iter().map(|record| (table, record.name.as_str())));
     }
-    Ok(())
+    port_names::check(&entries).map_err(|NameFault { entry, message, remedy }| {
+        let (table, name) = entries[entry];
+        StatementError::new(format!("{}.{name}", table.key()), message, remedy)
+    })
 }
 
 fn operand(record: &TableEntry) -> Result<StatedOperand, StatementError> {
@@ -392,8 +356,7 @@ fn operand(record: &TableEntry) -> Result<StatedOperand, StatementError> {
     let last = end(to, fraction, key("to"))?;
     let is_included = last.is_operand && record.flag("to_included");
     let (low, high) = (first.ceiling, last.ceiling - i128::from(!is_included));
-    let widest = 1i128 << (MAX_WIDTH / 2 - 1);
-    if low.abs() > widest || high.abs() > widest {
+    if Format::holding(low, high, frac).width() > MAX_WIDTH / 2 {
         let message = format!(
             "the domain from {from} to {to} has operands of more than {} bits",
             MAX_WIDTH / 2

@@ -15,6 +15,7 @@ pub mod function;
 pub mod gauss;
 pub mod lyon;
 pub mod normaliser;
+mod port_names;
 pub mod presets;
 pub mod quad_cosine;
 pub mod quadratic;

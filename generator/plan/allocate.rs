@@ -166,7 +166,7 @@ pub(super) fn largest_excess(
         let proof = ResultProof::new(statement, plan, result);
         let Some(worst) = proof.worst(stated.error, divisions) else { continue };
         let factor = worst.units / stated.error;
-        if factor < 1.0 || largest.as_ref().is_some_and(|(most, _)| *most >= factor) {
+        if stated.allows(worst.units) || largest.as_ref().is_some_and(|(most, _)| *most >= factor) {
             continue;
         }
         largest = Some((factor, ExcessiveResult { result, worst }));

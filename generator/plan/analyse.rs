@@ -337,11 +337,23 @@ impl ErrorAnalysis<'_> {
             Operation::Normalise { .. } | Operation::Places(_) => {
                 unreachable!("each_shift gives the values of these nodes")
             }
-            Operation::IntegerPart(_) => {
-                return Err(Undecided { node: id, what: "its integer part has too many values" });
+            Operation::IntegerPart(a) => {
+                let a = input(*a);
+                if a.error != NOTHING {
+                    return Err(Undecided {
+                        node: id,
+                        what: "its integer part has too many values",
+                    });
+                }
+                NodeError::exactly(Enclosure::between(a.ideal.low.floor(), a.ideal.high.floor()))
             }
             Operation::FractionPart(a, integer) => {
                 let (a, integer) = (input(*a), input(*integer));
+                if a.error == NOTHING && integer.known().is_none() {
+                    // The integer part has more values than are analysed one by one.
+                    let most = 1.0 - exp2(-node.format.frac);
+                    return Ok(NodeError::exactly(Enclosure::between(0.0, most)));
+                }
                 let value = NodeError::new(a.ideal - integer.ideal, a.error);
                 let most = 1.0 - exp2(-node.format.frac);
                 value.limited(Enclosure::between(0.0, most)).limited(a.actual - integer.ideal)

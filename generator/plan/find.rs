@@ -4,7 +4,7 @@
 //! Of the plans that it tries, it chooses the one with the fewest estimated look-up tables. If no plan keeps the allowed
 //! errors, the search fails with a [`PlanRefusal`]. The module caches plans and refusals.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::sync::{Arc, LazyLock, Mutex};
 
 use glint_approximate::{FULL_CELL, Identity, Piecewise, TargetFunction, Wish};
@@ -268,8 +268,12 @@ fn error_shares(
         if let Some(worst) = proof.worst(0.0, divisions) {
             // The rounding of the result itself has no source, and is a part of every share.
             let own = proof.share(&worst.limits, NO_SOURCE);
+            let mut counted = HashSet::new();
             for (node, share) in plan.nodes.iter().zip(&mut of_result) {
-                if let Some(source) = node.source {
+                // A table and the shift behind it can be one rounding operation, which counts at the table.
+                if let Some(source) = node.source
+                    && counted.insert(source)
+                {
                     *share = (proof.share(&worst.limits, source) - own).max(0.0);
                 }
             }
@@ -295,7 +299,7 @@ pub(super) fn enclosed_errors(
             bounds.push(0.0);
             continue;
         };
-        if worst.units >= stated.error {
+        if !stated.allows(worst.units) {
             let message = format!(
                 "the error of `{}` {} for {}",
                 stated.name,

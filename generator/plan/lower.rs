@@ -406,6 +406,10 @@ impl<'s> Lowering<'s> {
                 self.plan.multiply("square", a, a)
             }
             Operator::Power => self.part(&exponential::written_with_logarithm(a, b, &part.span)),
+            Operator::Mod if modulus_exponent(b).is_some() => {
+                let [_, fraction] = self.division(a, modulus_exponent(b).unwrap_or(0))?;
+                Ok(fraction)
+            }
             Operator::Mod => Err(PlanRefusal::new(
                 "Glint cannot compute a remainder with a divisor that varies",
                 "use a constant divisor, for example x % 1",
@@ -426,6 +430,10 @@ impl<'s> Lowering<'s> {
                 let (a, b) = (self.part(a)?, self.part(b)?);
                 self.plan.add("sum", a, b)
             }
+            Operator::Sub if let Some(exponent) = floor_of(a, b) => {
+                let [whole, _] = self.division(a, exponent)?;
+                Ok(whole)
+            }
             Operator::Sub => {
                 let (a, b) = (self.part(a)?, self.part(b)?);
                 self.plan.subtract("difference", a, b)
@@ -439,6 +447,20 @@ impl<'s> Lowering<'s> {
                 self.plan.maximum("larger", a, b)
             }
         }
+    }
+
+    /// Returns the nodes of the greatest multiple of 2^`exponent` that is not above `a`, and of the remainder. Both are exact. For
+    /// example, 5.75 with the exponent 1 gives 4 and 1.75. Fails if a part has too many bits, no finite values, or no rule.
+    fn division(&mut self, a: &Expression, exponent: i32) -> Result<[NodeId; 2], PlanRefusal> {
+        let a = self.part(a)?;
+        let scaled = self.plan.scale("scaled", a, -exponent)?;
+        if self.plan.node(scaled).format.frac <= 0 {
+            // Every value is a multiple of the divisor.
+            return Ok([a, self.plan.constant("zero", 0, 0)?]);
+        }
+        let [whole, fraction] = self.plan.split("remainder", scaled)?;
+        let whole = self.plan.scale("whole", whole, exponent)?;
+        Ok([whole, self.plan.scale("remainder", fraction, exponent)?])
     }
 
     /// Returns the node of a factor of a product, shortened if it has more bits than a multiplier takes. Fails if a part has
@@ -687,9 +709,24 @@ fn new_products(
                 (false, _) => None,
             }
         }
+        Kind::Binary(Operator::Mod, a, b) if modulus_exponent(b).is_some() => products_of(a, core),
         Kind::Binary(Operator::Power, a, b) if **b == number("2") => {
             Some(products_of(a, core)? + PRODUCT)
         }
+        _ => None,
+    }
+}
+
+/// Returns k if the divisor of a remainder is the constant 2^k, and `None` for any other divisor.
+fn modulus_exponent(divisor: &Expression) -> Option<i32> {
+    if divisor.varies() { None } else { power_of_two(divisor, Operator::Mul) }
+}
+
+/// Returns k if `b` is the remainder of `a` by the constant 2^k, so that a − b is the greatest multiple of 2^k that is not above
+/// a. For example, `floor(x)` is x − x % 1, which gives 0.
+fn floor_of(a: &Expression, b: &Expression) -> Option<i32> {
+    match &b.kind {
+        Kind::Binary(Operator::Mod, of, divisor) if **of == *a => modulus_exponent(divisor),
         _ => None,
     }
 }

@@ -126,7 +126,10 @@ impl ExpressionPlan {
         if let Some(same) = self.same_node(&operation, format) {
             return Ok(same);
         }
-        let name = self.unused_name(name);
+        let name = match operation {
+            Operation::Operand(_) => name.to_owned(),
+            _ => self.unused_name(name),
+        };
         self.nodes.push(PlanNode {
             name,
             operation,
@@ -141,7 +144,10 @@ impl ExpressionPlan {
 
     /// Adds a copy of a node of another plan, with the operation replaced by `operation`, which must read nodes of this plan.
     pub(super) fn push_copy(&mut self, node: &PlanNode, operation: Operation) -> NodeId {
-        let name = self.unused_name(&node.name);
+        let name = match operation {
+            Operation::Operand(_) => node.name.clone(),
+            _ => self.unused_name(&node.name),
+        };
         self.nodes.push(PlanNode { name, operation, ..node.clone() });
         NodeId(self.nodes.len() - 1)
     }
@@ -160,8 +166,17 @@ impl ExpressionPlan {
 
     /// Returns `name`, or `name` followed by a number if a node already has this name. For example, a second `product` is
     /// `product2`.
+    ///
+    /// The name also gives way to operands. Nets of the hardware have the name of a node with an ending, such as `sum_next`, so
+    /// that beside an operand `sum_next` a node `sum` becomes `sum2`.
     fn unused_name(&self, name: &str) -> String {
-        let is_used = |name: &str| self.nodes.iter().any(|node| node.name == name);
+        let is_used = |name: &str| {
+            let owns = |end: &str| end.is_empty() || end.starts_with('_');
+            self.nodes.iter().any(|node| match node.operation {
+                Operation::Operand(_) => node.name.strip_prefix(name).is_some_and(owns),
+                _ => node.name == name,
+            })
+        };
         let mut unused = name.to_owned();
         let mut number = 2;
         while is_used(&unused) {

@@ -66,6 +66,9 @@ pub enum StatedOverflow {
     Wrap,
 }
 
+/// The largest error of rounding to the nearest value, in units of the last bit.
+const HALF_A_UNIT: f64 = 0.5;
+
 impl ExpressionStatement {
     /// Returns the name of each operand with its exact value, from raw values in the order of the operands.
     pub fn exact_operands(&self, raw: &[i64]) -> Vec<(&str, RBig)> {
@@ -139,6 +142,12 @@ impl StatedOperand {
 }
 
 impl StatedResult {
+    /// Returns whether an error of at most `units` keeps the allowed error. The error must be below the allowed error. An error of
+    /// exactly half a unit is also allowed if half a unit is stated, because rounding to the nearest value has this error.
+    pub fn allows(&self, units: f64) -> bool {
+        units < self.error || units == HALF_A_UNIT && self.error == HALF_A_UNIT
+    }
+
     /// Returns the formula that the error is measured against: [`StatedResult::formula`], limited to the format if the result
     /// saturates.
     pub fn target(&self) -> &Expression {

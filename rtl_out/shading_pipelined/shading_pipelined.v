@@ -62,7 +62,7 @@ module shading_pipelined #(
 );
 
     // Constants
-    localparam [18:0] SPECULAR_COSINE_ONE_LOW = 19'h40000;  // 1.0 in u1.18
+    localparam [18:0] HIGHLIGHT_COS_GAMMA_MOST = 19'h40000;  // 1.0 in u1.18
     localparam [15:0] DIFFUSE_COSINE_ONE = 16'h4000;  // 1.0 in u2.14
 
     // The handshake: bit s is 1 while stage s holds a point; all points advance together
@@ -437,8 +437,8 @@ module shading_pipelined #(
         diffuse_cosine_rounded_s12 <= {1'b0, diffuse_cosine_scaled_s11[35:21]} + {15'd0,
                 diffuse_cosine_scaled_s11[20]};
         specular_cosine_rounded_nearest_s12 <= specular_cosine_rounded_nearest_s11;
-        specular_cosine_below_s12 <= specular_cosine_rounded_nearest_s11 < SPECULAR_COSINE_ONE_LOW;
-        highlight_complement_before_s12 <= SPECULAR_COSINE_ONE_LOW -
+        specular_cosine_below_s12 <= specular_cosine_rounded_nearest_s11 < HIGHLIGHT_COS_GAMMA_MOST;
+        highlight_complement_before_s12 <= HIGHLIGHT_COS_GAMMA_MOST -
                 specular_cosine_rounded_nearest_s11;
     end
 

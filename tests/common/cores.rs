@@ -151,7 +151,7 @@ pub fn assert_agrees(core: &Core, points: u64, seed: u64, what: &str) {
     assert!(outcome.mismatch.is_none(), "{what}: {:?}", outcome.mismatch);
     assert_eq!(outcome.points, points, "{what}");
     assert!(outcome.worst.is_some(), "{what}: no error was measured");
-    let failures = outcome.failures(&core.contract.bound());
+    let failures = outcome.failures(&core.contract.bounds());
     assert!(failures.is_empty(), "{what}: {failures:?}");
 }
 

@@ -80,7 +80,7 @@ fn assert_outputs_within_bound(
     rng: &mut ChaCha8Rng,
     what: &str,
 ) {
-    let (bound, highlight) = (contract.bound(), contract.highlight().expect("a highlight"));
+    let (bound, highlight) = (contract.bounds(), contract.highlight().expect("a highlight"));
     let largest = contract.operands().last().unwrap().domain.1;
     for _ in 0..points {
         let point = random_point(contract, rng);
@@ -89,7 +89,7 @@ fn assert_outputs_within_bound(
             let out = highlight.colour(f, colour) as f64;
             let error = nearer(out, exact.map(|exact| colour as f64 * exact));
             assert!(
-                error <= bound.units + F64,
+                error <= bound.governing_units() + F64,
                 "{error} at {point:?} × {colour} of {what}: {bound:#?}"
             );
         }
@@ -126,7 +126,7 @@ fn assert_places_within_bound(
     rng: &mut ChaCha8Rng,
     what: &str,
 ) {
-    let (axes, bound) = (contract.sweep().axes, contract.bound());
+    let (axes, bound) = (contract.sweep().axes, contract.bounds());
     for _ in 0..places {
         let place: Vec<i64> = axes
             .iter()
@@ -143,7 +143,7 @@ fn assert_places_within_bound(
 fn blinn_is_as_close_as_it_promises() {
     let read = |path: &str| config::read(Path::new(path), &Registry::catalogue().schemas()).sure();
     let best = blinn::contract(&read("configs/blinn.toml"));
-    assert!(best.bound().f <= 1.0e-4, "{:?}", best.bound());
+    assert!(best.bounds().f <= 1.0e-4, "{:?}", best.bounds());
     assert!(best.highlight().expect("a highlight").f_format().frac >= 14);
     let small = blinn::contract(&read("configs/blinn_small.toml"));
     let mut rng = ChaCha8Rng::seed_from_u64(3);
@@ -157,7 +157,7 @@ fn blinn_is_as_close_as_it_promises() {
 /// Bounds as their proofs add them up by hand: of the defaults, and of a setting beside them.
 #[test]
 fn bounds_by_hand() {
-    let units = |device, settings| of(device, settings).bound().units;
+    let units = |device, settings| of(device, settings).bounds().governing().units;
     let (ulp, largest) = (1.0 / 65536.0, 255.0);
     for (device, settings, expected) in [
         ("schlick", "", largest / 1024.0 + 0.5),

@@ -13,7 +13,7 @@ use glint::dsl::{Designer, end, step, valid};
 use glint::fixed::Format;
 use glint::golden::device::{self, Formula};
 use glint::golden::frame::{Frame, idle, step as execute};
-use glint::golden::{Bound, Contract, Operand, Term};
+use glint::golden::{Bound, Bounds, Contract, Operand, Term};
 use glint::registry::Device;
 use glint::verify::CheckVerdict;
 
@@ -95,7 +95,7 @@ fn lights_add_up_on_both_sides() {
         let mut part = || (random.bits() >> 11) as f64 / (1u64 << 53) as f64;
         let points = (0..20_000).filter_map(|_| contract.hint(&mut part));
         let worst = points.map(|it| errors(contract, &it, formula)).fold(0.0, f64::max);
-        let bound = contract.bound().units;
+        let bound = contract.bounds().governing().units;
         assert!(worst <= bound + 1e-9 && worst > 0.49, "{text}: {worst}, {bound}");
         assert_agrees(&core, 300, 1, &text);
     }
@@ -112,8 +112,8 @@ fn schemas_are_sound_and_defaults_are_proven() {
         assert_eq!((device.schema)().mistakes(), Vec::<String>::new());
         let core = default(device);
         assert!(core.contract.highlight().is_none());
-        let bound = core.contract.bound();
-        assert!(bound.units < 1.0, "{}: {bound:?}", device.name);
+        let bound = core.contract.bounds();
+        assert!(bound.governing_units() < 1.0, "{}: {bound:?}", device.name);
     }
 }
 
@@ -138,7 +138,7 @@ fn the_bounds_hold() {
         };
         let core = default(device);
         let contract = core.contract.as_ref();
-        let bound = contract.bound().units;
+        let bound = contract.bounds().governing().units;
         let mut worst: f64 = 0.0;
         let mut random = Random::new(1);
         for _ in 0..200_000 {
@@ -297,7 +297,7 @@ impl Formula for Missing {
         vec![if x[0] < 5.0 { x[0] } else { self.0 }]
     }
 
-    fn terms(&self) -> Vec<Term> {
+    fn terms(&self, _output: usize) -> Vec<Term> {
         vec![Term { key: "width", what: "nothing", units: 0.0 }]
     }
 }
@@ -347,7 +347,10 @@ fn a_reference_without_a_value_is_a_failure_everywhere() {
         assert_eq!(contract.largest_error(&[5]), f64::INFINITY);
 
         let outcome = core.lockstep(1).and_then(|it| it.run(500, &|_| ())).expect("a run");
-        for bound in [contract.bound(), Bound::of(Vec::new())] {
+        for bound in [
+            contract.bounds(),
+            Bounds::alike(f64::INFINITY, &Bound::of(Vec::new()), contract.outputs()),
+        ] {
             let failures = outcome.failures(&bound).concat();
             let expected =
                 "the formula has no finite value for `copy_out` at the raw operands x = ";

@@ -5,8 +5,11 @@
 //! contract states. A user gets these results from `glint eval`, and the C model computes them.
 
 use crate::common::cores::{assert_agrees, parsed};
+use crate::common::files::read;
+use glint::config::parse;
 use glint::core::Core;
 use glint::cosim::batch::{Engine, Golden, Points, RustHdl};
+use glint::registry::Registry;
 
 /// The operands x and y with four fraction bits, from 0 to 15/16.
 const UNSIGNED: &str =
@@ -118,5 +121,34 @@ fn results_are_simulated_as_stated_for_every_operand() {
                 assert_eq!(simulated[results.clone()], stated[results], "{operands:?}: {text}");
             }
         }
+    }
+}
+
+/// The table of names in `docs/expressions.md` is right: the names are refused as operands, and as results they are not, unless
+/// they are keywords.
+#[test]
+fn names_on_the_page_cannot_be_operands() {
+    let page = read("docs/expressions.md");
+    let table = page.split("| names | why |\n").nth(1).expect("a table");
+    let rows = table.lines().skip(1).take_while(|line| line.starts_with('|'));
+    let cells = rows.filter_map(|row| row.split('|').nth(1));
+    let names: Vec<&str> = cells.flat_map(|cell| cell.split('`').skip(1).step_by(2)).collect();
+    assert!(names.len() > 30, "{names:?}");
+    let schemas = Registry::shipped().schemas();
+    let refusal = |operand: &str, result: &str| {
+        let text = format!(
+            "device = \"expression\"\noperands.{operand} = {{ bits = 8, fraction = 7 }}\n\
+             results.{result} = {{ formula = \"{operand} / 2\", fraction = 7 }}\n"
+        );
+        parse("core.toml", &text, &schemas).err().map(|problems| problems.to_string())
+    };
+    for name in names {
+        let refused = refusal(name, "r").unwrap_or_else(|| panic!("`{name}` is accepted"));
+        assert!(
+            refused.contains("cannot be an operand") || refused.contains("keyword"),
+            "{refused}"
+        );
+        let is_keyword = refusal("x", name).is_some_and(|text| text.contains("keyword"));
+        assert!(is_keyword || refusal("x", name).is_none(), "{name}");
     }
 }

@@ -13,7 +13,7 @@ use crate::common::json::Json;
 use crate::common::sample::sampled;
 use glint::core::Core;
 use glint::cosim::exhaustive::{Backing, Places, Proof, Record};
-use glint::golden::{Bound, Contract, Highlight, Operand, Output, Sweep, cosine_power};
+use glint::golden::{Bounds, Contract, Highlight, Operand, Output, Sweep, cosine_power};
 use glint::registry::{Device, Registry};
 use serde_json::{Value, json};
 
@@ -40,7 +40,7 @@ fn the_default_of_every_device_is_proven_below_one_unit() {
     // Whatever is within the contract by its bound is proven as well.
     for (path, unit) in configurations() {
         assert!(
-            unit.contract.bound().units >= 1.0 || proven.contains(&path),
+            unit.contract.bounds().governing().units >= 1.0 || proven.contains(&path),
             "no proof of {path} in proofs/"
         );
     }
@@ -58,7 +58,7 @@ fn the_records_hold_today() {
         let stale = format!("the record of {path} is not of today's program");
         assert_eq!(record["configuration"], json!(unit.contract_digest()), "{stale}");
         assert_eq!(record["evaluations"], json!(places.count()), "{stale}");
-        assert!(record["together"].number() <= contract.bound().units, "{stale}");
+        assert!(record["together"].number() <= contract.bounds().governing().units, "{stale}");
         assert_eq!(record["holds"], json!(true));
 
         let largest = record["f"]["error"].number();
@@ -101,9 +101,13 @@ impl Contract for Foreign {
         self.0.exact(operands, index, values);
     }
 
-    fn bound(&self) -> Bound {
-        let bound = self.0.bound();
-        Bound { f: bound.f * self.1, units: bound.units * self.1, ..bound }
+    fn bounds(&self) -> Bounds {
+        let mut bounds = self.0.bounds();
+        bounds.f *= self.1;
+        for bound in &mut bounds.outputs {
+            bound.units *= self.1;
+        }
+        bounds
     }
 
     fn highlight(&self) -> Option<&Highlight> {

@@ -24,7 +24,7 @@ fn the_worst_known_error_of_rough_is_what_its_record_says() {
     let highlight = unit.contract.highlight().expect("a highlight");
     assert_eq!(highlight.colour(highlight.f(&control), colour), output);
     assert!((record["units"].number() - units).abs() < 1e-9, "{units}");
-    assert!(units > 0.9428 && units <= unit.contract.bound().units, "{units}");
+    assert!(units > 0.9428 && units <= unit.contract.bounds().governing().units, "{units}");
 }
 
 /// A record that `glint worst --out records/proofs/worst` would not take for another configuration's.
@@ -49,7 +49,7 @@ fn search_beats_random_points() {
     let contract = unit.contract.as_ref();
     let found = search::worst(contract, 16, 1, &|| ()).expect("starts");
     assert_eq!(search::worst(contract, 16, 1, &|| ()), Some(found.clone()));
-    assert!(found.units > 0.85 && found.units <= contract.bound().units, "{found:?}");
+    assert!(found.units > 0.85 && found.units <= contract.bounds().governing().units, "{found:?}");
     assert_eq!(contract.largest_error(&found.operands), found.units);
     assert!((found.raw as f64 - found.exact).abs() == found.units, "{found:?}");
 }

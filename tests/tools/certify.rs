@@ -117,7 +117,7 @@ fn found(design: &Design, contract: &dyn Contract) -> (f64, Vec<Statement>) {
 #[test]
 fn a_bound_is_found_where_none_is_stated() {
     let (design, contract) = of_user(smoothstep::SMOOTHSTEP);
-    assert!(!contract.bound().is_stated());
+    assert!(!contract.bounds().are_stated());
     let step = statements(&design, contract.as_ref(), Duration::MAX).expect_err("no bound");
     assert_eq!(step, "the contract states no bound");
     let (bound, asked) = found(&design, contract.as_ref());
@@ -155,7 +155,7 @@ fn bounds_that_are_found_lie_between_errors_and_bounds_by_hand() {
     });
     let largest = errors.fold(0.0, f64::max);
     assert!(largest > 0.5 && largest <= bound, "{largest} {bound}");
-    assert!(bound <= contract.bound().units, "{bound}");
+    assert!(bound <= contract.bounds().governing().units, "{bound}");
 }
 
 /// Changes a net: a constant gets a sixteenth smaller, an inverter a wire, operands and inputs change places.
@@ -211,7 +211,7 @@ fn faulty_lines_have_no_proof() {
     }
     // A word that is off by more than twice the bound, and some places.
     let (design, contract) = device("cosine-squared", TABLE);
-    let step = 1 + (contract.bound().f * 1024.0).ceil() as u64;
+    let step = 1 + (contract.bounds().f * 1024.0).ceil() as u64;
     for word in (0..design.roms[0].words.len()).step_by(3) {
         let (mut design, contract) = device("cosine-squared", TABLE);
         let words = &mut design.roms[0].words;

@@ -113,9 +113,9 @@ fn the_bound_holds_everywhere() {
     configs.extend((0..40).map(|seed| sample(&schema, seed)));
     for (at, config) in configs.iter().enumerate() {
         let contract = (FRESNEL.contract)(config);
-        let bound = contract.bound();
+        let bound = contract.bounds();
         if at == 0 {
-            assert!(bound.units < 1.0, "{}", bound.units);
+            assert!(bound.governing_units() < 1.0, "{bound:?}");
         }
         let [c, f0] = [&contract.operands()[0], &contract.operands()[1]];
         // All of a small domain, a few hundred of a large one, both ends always.

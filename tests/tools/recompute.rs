@@ -74,7 +74,7 @@ fn every_operand_is_recomputed_with_the_error_that_was_proved() {
             let printed =
                 said.split("the largest error is ").nth(1).and_then(|it| it.split(' ').next());
             let printed: f64 = printed.and_then(|it| it.parse().ok()).expect("a number");
-            let bound = core.contract.bound().units;
+            let bound = core.contract.bounds().governing().units;
             assert!((printed - bound).abs() < 2e-6, "{function:?}: {said} {bound}");
         }
     });

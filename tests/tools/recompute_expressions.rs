@@ -159,7 +159,7 @@ fn every_combination_is_recomputed_with_the_error_that_was_proved() {
             let errors = printed_errors(&output);
             assert_eq!(errors.len(), case.results.len(), "{output}");
             for (number, error) in errors.iter().enumerate() {
-                let bound = core.contract.output_bound(number);
+                let bound = core.contract.bounds().outputs[number].units;
                 assert!((error - bound).abs() < 3e-6, "{output} {bound}");
             }
         }
@@ -212,7 +212,7 @@ fn a_smaller_bound_is_noticed() {
     let core = POLAR.core("");
     let dir = compiled(&core);
     let source = dir.path().join("software/f/f_recompute.c");
-    let bound = core.contract.output_bound(1);
+    let bound = core.contract.bounds().outputs[1].units;
     let entry = |bound: f64| format!("{{\"angle_out\", -7, {bound:?}}}");
     replace(&source, &entry(bound), &entry(bound - 1e-9));
     compile(dir.path());

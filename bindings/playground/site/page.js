@@ -1,14 +1,10 @@
 // The page: controls on the left, what the core is and does on the right.
 
-import { fields, toml } from "./toml.js";
+import { $, element, prose } from "./dom.js";
+import { entriesOf, showEntries } from "./entries.js";
+import { toml } from "./toml.js";
+import { errorMap, partsView, roundedUp } from "./views.js";
 import { zip } from "./zip.js";
-
-const $ = (id) => document.getElementById(id);
-const element = (name, properties = {}, ...children) => {
-  const made = Object.assign(document.createElement(name), properties);
-  made.append(...children);
-  return made;
-};
 
 // Requests to the worker. Requests of one kind replace each other while they wait: only the last is sent.
 const waiting = new Map();
@@ -21,14 +17,22 @@ function startedWorker() {
   const own = globalThis.GLINT_WORKER;
   const started = new Worker(own ?? new URL("worker.js", import.meta.url), { type: own ? "classic" : "module" });
   started.onmessage = ({ data: { answer, failure } }) => {
-    const { then } = running;
+    const { kind, then } = running;
     running = null;
-    if (failure) showProblems([{ message: `this cannot be computed here: ${failure}` }]);
+    if (failure) failed(kind, `this cannot be computed here: ${failure}`);
     else then(answer);
     next();
   };
-  started.onerror = (event) => showProblems([{ message: `the page cannot start its worker: ${event.message ?? "no answer"}` }]);
+  started.onerror = (event) => failed("core", `the page cannot start its worker: ${event.message ?? "no answer"}`);
   return started;
+}
+
+// Shows why a request has no answer, and removes the pictures that it would replace.
+function failed(kind, message) {
+  showProblems([{ message }]);
+  if (!core) $("loading").textContent = `Glint cannot start: ${message}`;
+  if (kind === "picture") emptySphere();
+  if (kind === "charts" || kind === "errors") empty(kind);
 }
 
 // Gives up the request that the worker computes, and goes on with those that wait.
@@ -58,49 +62,12 @@ function next() {
 let core = null;
 let exponent = null;
 
-// Returns a text as nodes. A name between backquotes becomes a code element.
-function prose(text) {
-  return text.split("`").map((part, at) => (at % 2 === 1 ? element("code", { textContent: part }) : part));
-}
-
 const MORE = ["interface", "package", "operands.buffered", "operands.logic", "output.registered", "strict", "domain"];
 const SLIDER = 64;
 
-// The entries of a table, such as the operands of an expression: for each a name, and its fields as in TOML.
-function entries(key) {
-  const list = element("div", { id: `key-${key.name}`, className: "entries" });
-  const read = () => {
-    const rows = [...list.querySelectorAll(".entry")];
-    change(key, Object.fromEntries(rows.map((row) => [...row.querySelectorAll("input")].map((it) => it.value))));
-  };
-  const row = ([name, entry]) => {
-    const id = `key-${key.name}.${name}`;
-    const own = element("input", { type: "text", value: name, size: 6, spellcheck: false, ariaLabel: `name of an entry of ${key.name}`, onchange: read });
-    const given = element("input", { id, type: "text", value: fields(entry), spellcheck: false, ariaLabel: `fields of ${name}`, onchange: read });
-    const remove = element("button", { type: "button", textContent: "−", ariaLabel: `remove ${name}` });
-    remove.onclick = () => {
-      remove.closest(".entry").remove();
-      read();
-    };
-    return element("div", { className: "entry" }, own, given, remove);
-  };
-  const all = Object.entries(key.value);
-  const add = element("button", { type: "button", textContent: "+", ariaLabel: `add an entry to ${key.name}` });
-  add.onclick = () => {
-    const [, last] = all.at(-1) ?? ["", 'formula = "x"'];
-    const used = (name) => all.some(([other]) => other === name);
-    let number = all.length + 1;
-    while (used(`${key.name[0]}${number}`)) number += 1;
-    add.before(row([`${key.name[0]}${number}`, last]));
-    read();
-  };
-  list.append(...all.map(row), add);
-  return [list];
-}
-
 function control(key) {
   const { is, min, max, options } = key.kind;
-  if (is === "entries") return entries(key);
+  if (is === "entries") return [entriesOf(key, edits[key.name] ?? key.value, (value) => change(key, value))];
   const id = `key-${key.name}`;
   const value = key.value;
   const changed = (read) => (event) => change(key, read(event.target));
@@ -132,27 +99,31 @@ function control(key) {
 // Writes the form again where keys or devices have come or gone, and otherwise its values alone, so that a slider that is held stays.
 function showForm() {
   const applied = core.keys.filter((it) => it.applies);
-  const entriesOf = (key) => (key.kind.is === "entries" ? key.value : null);
-  const signature = JSON.stringify([core.device, applied.map((it) => [it.name, it.kind, entriesOf(it)])]);
+  const signature = JSON.stringify([core.device, applied.map((it) => [it.name, it.kind])]);
   const is = (key, name) => key.name === name || key.name.startsWith(`${name}.`);
   if ($("form").dataset.signature !== signature) {
     $("form").dataset.signature = signature;
     const focused = document.activeElement?.id;
     const row = (key) => {
-      const label = element("label", { htmlFor: `key-${key.name}`, textContent: key.name });
+      const isEntries = key.kind.is === "entries";
+      const label = isEntries ? element("h2", { textContent: key.name }) : element("label", { htmlFor: `key-${key.name}`, textContent: key.name });
       return element("div", { className: "key" }, label, element("div", {}, ...control(key)), element("small", { className: "quiet" }, ...prose(key.doc)));
     };
     const [more, first] = [true, false].map((wanted) => applied.filter((key) => MORE.some((it) => is(key, it)) === wanted));
     $("form").replaceChildren(...first.map(row));
     $("form-more").replaceChildren(...more.map(row));
+    $("more").hidden = false;
     if (focused && document.activeElement?.id !== focused) $(focused)?.focus();
   }
   for (const key of applied) {
     const input = $(`key-${key.name}`);
     const value = Array.isArray(key.value) ? key.value.join(", ") : key.value;
-    const isEntries = key.kind.is === "entries";
     input.closest(".key").classList.toggle("set", JSON.stringify(key.value) !== JSON.stringify(key.default));
-    if (isEntries || document.activeElement === input) continue;
+    if (key.kind.is === "entries") {
+      showEntries(input, edits[key.name] ?? key.value);
+      continue;
+    }
+    if (document.activeElement === input) continue;
     if (input.type === "checkbox") input.checked = value;
     else input.value = value;
     const shown = input.nextElementSibling;
@@ -166,7 +137,7 @@ let edits = {};
 function change({ name }, value) {
   edits[name] = value;
   const own = core.keys.filter((it) => it.applies).map((it) => [it.name, it.value]);
-  $("toml").value = toml(core.device, core.keys, { ...Object.fromEntries(own), ...edits });
+  $("toml").value = toml(core.device, core.named ? core.name : null, core.keys, { ...Object.fromEntries(own), ...edits });
   refresh();
 }
 
@@ -193,17 +164,20 @@ function showAtFields(problems) {
   for (const old of document.querySelectorAll(".key .wrong")) old.remove();
   for (const invalid of document.querySelectorAll(".key [aria-invalid]")) invalid.removeAttribute("aria-invalid");
   for (const { key, message, remedy } of problems) {
-    // A field of an entry has its problems at the entry.
+    // The problem of a field that an entry does not have is at the entry.
     const input = key && ($(`key-${key}`) ?? $(`key-${key.slice(0, key.lastIndexOf("."))}`));
     if (!input) continue;
     input.setAttribute("aria-invalid", "true");
-    input.closest(".key").append(element("p", { className: "wrong" }, ...prose(remedy ? `${message}; ${remedy}` : message)));
+    input.closest(".entry, .key").append(element("p", { className: "wrong" }, ...prose(remedy ? `${message}; ${remedy}` : message)));
     if (input.closest("details")) input.closest("details").open = true;
   }
 }
 
 // The elements that show results. Each is dimmed from a change of the configuration until its results are shown.
-const SHOWN = ["summary", "facts", "schedule", "diagram", "sphere", "charts", "waves", "source"];
+const SHOWN = ["summary", "facts", "parts", "schedule", "diagram", "sphere", "charts", "errors", "waves", "source"];
+
+// The requests for results that are asked for once a core is there.
+const OF_A_CORE = ["picture", "charts", "errors", "waves", "sources"];
 
 function dim(ids) {
   for (const id of ids) $(id).dataset.stale = "";
@@ -214,9 +188,29 @@ function brighten(id, text) {
   if (text === $("toml").value) delete $(id).dataset.stale;
 }
 
+// Removes the pictures from an element, and the element from the page.
+function empty(id) {
+  $(id).replaceChildren();
+  $(id).hidden = true;
+}
+
+function emptySphere() {
+  $("sphere").hidden = true;
+  $("sphere-image").removeAttribute("src");
+  $("sphere-caption").textContent = "";
+}
+
+// Removes the pictures and files of the last core.
+function emptyAll() {
+  for (const id of ["charts", "errors"]) empty(id);
+  for (const id of ["waves", "source", "file"]) $(id).replaceChildren();
+  emptySphere();
+}
+
 function refresh() {
   const text = $("toml").value;
   dim(SHOWN);
+  for (const kind of OF_A_CORE) waiting.delete(kind);
   cancelDownload("The download was cancelled, because the configuration changed.");
   $("results").setAttribute("aria-busy", "true");
   const hash = `#${encoded(text)}`;
@@ -225,9 +219,15 @@ function refresh() {
     const isLast = text === $("toml").value;
     if (isLast) $("results").setAttribute("aria-busy", "false");
     showProblems(answer.ok ? [] : answer.problems);
-    if (!answer.ok) return;
+    if (!answer.ok) {
+      if (!core) $("loading").textContent = "The results appear here once the configuration has no problem.";
+      return;
+    }
     if (core?.device !== answer.device) exponent = answer.exponent;
-    core = answer;
+    // Pictures of another device, or of other outputs, are no older state of these results.
+    const shows = ({ device, name, bounds }) => JSON.stringify([device, name, bounds.map((it) => it.output)]);
+    if (core && shows(core) !== shows(answer)) emptyAll();
+    core = { ...answer, text };
     if (isLast) edits = {};
     show(text);
   });
@@ -238,12 +238,15 @@ function refresh() {
 function show(text) {
   const known = [...$("device").options].some((it) => it.value === core.device);
   if (known && !$("device").value.startsWith(`${core.device} `)) $("device").value = core.device;
+  $("loading").hidden = true;
+  $("loaded").hidden = false;
   $("summary").textContent = core.summary;
   showForm();
   showFacts();
   showSchedule();
+  $("parts").replaceChildren(...partsView(core));
   $("diagram").replaceChildren(drawing(core.diagram, `Block diagram of ${core.name}`));
-  for (const id of ["summary", "facts", "schedule", "diagram"]) brighten(id, text);
+  for (const id of ["summary", "facts", "parts", "schedule", "diagram"]) brighten(id, text);
   if (!$("files").hidden) showFiles(text);
   if (!$("waves").hidden) showWaves(text);
   $("exponent-row").hidden = !core.draws || !core.exponents;
@@ -252,9 +255,19 @@ function show(text) {
     Object.assign($("exponent"), { min: least, max: Math.min(most, 1000), value: exponent });
     $("exponent-value").textContent = exponent;
   }
-  $("sphere").hidden = !core.draws;
   if (core.draws) showPicture(text);
+  else emptySphere();
   ask({ ask: "charts", toml: text }, (answer) => showCharts(answer, text));
+  if (!core.sampled) empty("errors");
+  else setTimeout(() => askForErrors(text), PAUSE);
+}
+
+// A sample of the errors takes seconds. It begins when no change has followed for a while, so that a slider that is dragged does not
+// wait for it.
+const PAUSE = 300;
+
+function askForErrors(text) {
+  if (text === $("toml").value && text === core.text) ask({ ask: "errors", toml: text }, (answer) => showErrors(answer, text));
 }
 
 // A drawing, fitted to the page until its button is pressed.
@@ -269,6 +282,7 @@ function drawing(svg, alt) {
 
 function showWaves(text) {
   ask({ ask: "waves", toml: text }, ({ ok, problems, svg, described }) => {
+    if (text !== core.text) return;
     if (!ok) return showProblems(problems);
     $("waves").replaceChildren(drawing(svg, described), element("p", { className: "quiet", textContent: described }));
     brighten("waves", text);
@@ -277,7 +291,9 @@ function showWaves(text) {
 
 function showPicture(text) {
   ask({ ask: "picture", toml: text, exponent: core.exponents ? exponent : null, side: 200 }, (answer) => {
+    if (text !== core.text) return;
     if (!answer.ok) return showProblems(answer.problems);
+    $("sphere").hidden = false;
     $("sphere-image").src = `data:image/png;base64,${answer.png}`;
     $("sphere-caption").textContent =
       `The specular term of every pixel is a result of the core, here with n = ${answer.exponent}; the largest error against its own formula is ${answer.units.toFixed(3)} of 255.`;
@@ -285,20 +301,35 @@ function showPicture(text) {
   });
 }
 
-// A bound with three places, rounded up, so that it stays one.
-function roundedUp(bound) {
-  const nearest = bound.toFixed(3);
-  return Number(nearest) < bound ? (bound + 0.001).toFixed(3) : nearest;
+// The bound of each output, and the largest error of its sample once that is known.
+function boundFacts() {
+  const kind = core.proved ? "proved bound" : "stated bound";
+  return core.bounds.map(({ output, units, limit }, at) => {
+    const largest = core.largest?.[at] ?? null;
+    const found = largest === null ? "" : `; largest of ${core.points} points ${largest.toFixed(3)}`;
+    return { output, name: `${output}, ${kind} of the error`, value: units === null ? "not stated" : `${roundedUp(units)} units`, more: `allowed: below ${limit}${found}` };
+  });
+}
+
+function estimateFact({ target, own, luts, dsps, block_rams, mhz }) {
+  const name = own ? `${target}, estimated; the pipeline is for it` : `${target}, estimated`;
+  return { target, name, value: `${luts} LUT, ${dsps} DSP, ${block_rams} RAM, ${mhz} MHz` };
 }
 
 function showFacts() {
   const facts = [
-    [core.bound.proved ? "Error, proved bound" : "Error, stated bound", `${roundedUp(core.bound.units)} units`],
-    ["Latency", core.latency === null ? "by the operands" : `${core.latency} clocks`],
-    ["A point every", core.interval === null ? "line" : core.interval === 1 ? "clock" : `${core.interval} clocks`],
-    ...core.estimates.map(({ target, luts, dsps, mhz }) => [`${target}, estimated`, `${luts} LUT, ${dsps} DSP, ${mhz.toFixed(0)} MHz`]),
+    ...boundFacts(),
+    { name: "Latency", value: core.latency === null ? "by the operands" : `${core.latency} clocks` },
+    { name: "A point every", value: core.interval === null ? "line" : core.interval === 1 ? "clock" : `${core.interval} clocks` },
+    ...core.estimates.map(estimateFact),
   ];
-  const fact = ([name, value]) => element("div", {}, element("dt", { textContent: name }), element("dd", { textContent: value }));
+  const fact = ({ output, target, name, value, more }) => {
+    const made = element("div", {}, element("dt", { textContent: name }), element("dd", { textContent: value }));
+    if (output) made.dataset.output = output;
+    if (target) made.dataset.target = target;
+    if (more) made.append(element("dd", { className: "quiet", textContent: more }));
+    return made;
+  };
   $("facts").replaceChildren(...facts.map(fact));
 }
 
@@ -330,6 +361,7 @@ function withFiles(text, whole, then) {
 
 function showFiles(text) {
   withFiles(text, false, (all) => {
+    if (text !== core.text) return;
     const before = $("file").value;
     const plain = ({ name }) => element("option", { textContent: name });
     $("file").replaceChildren(...all.map(plain));
@@ -341,22 +373,41 @@ function showFiles(text) {
   });
 }
 
-function showCharts(answer, text) {
-  if (!answer.ok) return showProblems(answer.problems);
-  const legend = (series) =>
-    element("p", { className: "legend" }, ...series.map((name, at) => {
-      const line = element("i");
-      line.style.background = `var(--s${(at % 5) + 1})`;
-      return element("span", {}, line, name);
-    }));
-  const chart = ({ title, caption, svg, series, y }) => {
-    const figure = element("figure", {}, element("h2", { textContent: title }), element("p", { className: "quiet", textContent: y }));
-    figure.insertAdjacentHTML("beforeend", svg);
-    figure.append(legend(series), element("figcaption", { textContent: caption }));
-    return figure;
+// A chart with its legend.
+function chart({ title, caption, svg, series, y }) {
+  const line = (at) => {
+    const made = element("i");
+    made.style.background = `var(--s${(at % 5) + 1})`;
+    return made;
   };
-  $("charts").replaceChildren(...answer.charts.map(chart));
-  brighten("charts", text);
+  const legend = element("p", { className: "legend" }, ...series.map((name, at) => element("span", {}, line(at), name)));
+  const figure = element("figure", {}, element("h2", { textContent: title }), element("p", { className: "quiet", textContent: y }));
+  figure.insertAdjacentHTML("beforeend", svg);
+  figure.append(legend, element("figcaption", { textContent: caption }));
+  return figure;
+}
+
+// Shows pictures, or nothing where there are none.
+function showPictures(id, pictures, text) {
+  $(id).replaceChildren(...pictures);
+  $(id).hidden = pictures.length === 0;
+  brighten(id, text);
+}
+
+function showCharts(answer, text) {
+  if (text !== core.text) return;
+  if (!answer.ok) return showProblems(answer.problems);
+  showPictures("charts", answer.charts.map(chart), text);
+}
+
+function showErrors(answer, text) {
+  if (text !== core.text) return;
+  if (!answer.ok) return showProblems(answer.problems);
+  const { largest, points, charts, maps } = answer;
+  Object.assign(core, { largest, points });
+  showFacts();
+  const map = (it, at) => errorMap(answer, it, core.bounds[at].units, largest[at]);
+  showPictures("errors", [...charts.map(chart), ...maps.map(map)], text);
 }
 
 // --- Links, files, tabs ------------------------------------------------------------------------
@@ -468,12 +519,14 @@ function fromLink() {
 }
 
 ask({ ask: "devices" }, ({ devices, functions, expressions }) => {
+  $("inputs").disabled = false;
+  $("loading").textContent = "Computing the core …";
   const option = (value, name, title) => element("option", { value, textContent: name, title });
   const own = ["function", "expression"];
   const known = devices.filter(({ name }) => !own.includes(name)).map(({ name, summary }) => option(name, name, summary));
   const group = (label, device, mine, presets) =>
     element("optgroup", { label }, option(device, mine), ...presets.map((it) => option(`${device} ${it}`, it)));
-  $("device").append(
+  $("device").replaceChildren(
     element("optgroup", { label: "Devices" }, ...known),
     group("Functions", "function", "a formula of your own", functions),
     group("Expressions of several operands", "expression", "formulas of your own", expressions),

@@ -7,30 +7,48 @@ function literal(key, value) {
     const asNumber = key.kind.is === "choice" ? key.kind.options.every((it) => bare.test(it)) : key.name === "pipeline.interval" && bare.test(value);
     return asNumber ? value : JSON.stringify(value);
   }
+  // An empty field for a number. Glint's message then names the field.
+  if (Number.isNaN(value)) return "nan";
   return Array.isArray(value) ? `[${value.join(", ")}]` : String(value);
 }
 
-// The fields of an entry as TOML without braces: of the core they are an object, in the form text.
-export function fields(entry) {
-  if (typeof entry === "string") return entry;
-  return Object.entries(entry).map(([name, value]) => `${name} = ${typeof value === "string" ? JSON.stringify(value) : value}`).join(", ");
+// The entries of a table as pairs of a name and the entry's fields. Glint's answer has them as an object, and the form as pairs, since
+// two entries may have the same name while they are edited.
+export function pairs(entries) {
+  return Array.isArray(entries) ? entries : Object.entries(entries);
 }
 
-// The keys that are not at their defaults, by table.
-export function toml(device, keys, values) {
-  const same = (a, b) => JSON.stringify(a) === JSON.stringify(b);
-  const given = keys.filter((key) => key.name in values && !same(values[key.name], key.default));
+// An entry in TOML. The value of the shorthand stands for an entry without other fields, as in `s = "x^2"`.
+function entryLiteral({ kind }, entry) {
+  const given = Object.entries(entry);
+  const text = ([name, value]) => literal(kind.fields.find((it) => it.name === name) ?? { kind: {} }, value);
+  if (given.length === 1 && given[0][0] === kind.shorthand) return text(given[0]);
+  return `{ ${given.map((it) => `${it[0]} = ${text(it)}`).join(", ")} }`;
+}
+
+function isDefault(key, value) {
+  const comparable = (it) => JSON.stringify(key.kind.is === "entries" ? pairs(it) : it);
+  return comparable(value) === comparable(key.default);
+}
+
+// The keys that are not at their defaults, by table. `name` is the name of the module, or null if the text states none.
+export function toml(device, name, keys, values) {
+  const given = keys.filter((key) => key.name in values && !isDefault(key, values[key.name]));
   const tables = new Map([["", []]]);
+  // TOML refuses a table such as [operands] after the line of an entry such as operands.x.
+  const dotted = given.filter((key) => key.kind.is === "entries").map((key) => key.name);
   for (const key of given) {
     if (key.kind.is === "entries") {
-      for (const [name, entry] of Object.entries(values[key.name])) tables.get("").push(`${key.name}.${name} = { ${fields(entry)} }`);
+      for (const [name, entry] of pairs(values[key.name])) tables.get("").push(`${key.name}.${name} = ${entryLiteral(key, entry)}`);
       continue;
     }
     const at = key.name.lastIndexOf(".");
-    const table = at < 0 ? "" : key.name.slice(0, at);
+    const own = at < 0 ? "" : key.name.slice(0, at);
+    const table = dotted.includes(own) ? "" : own;
     if (!tables.has(table)) tables.set(table, []);
-    tables.get(table).push(`${key.name.slice(at + 1)} = ${literal(key, values[key.name])}`);
+    tables.get(table).push(`${table === own ? key.name.slice(at + 1) : key.name} = ${literal(key, values[key.name])}`);
   }
-  const text = [...tables].map(([table, lines]) => (table ? `\n[${table}]\n` : `device = "${device}"\n`) + lines.map((it) => `${it}\n`).join(""));
+  const head = name === null ? `device = "${device}"\n` : `device = "${device}"\nname = "${name}"\n`;
+  const text = [...tables].map(([table, lines]) => (table ? `\n[${table}]\n` : head) + lines.map((it) => `${it}\n`).join(""));
   return text.join("");
 }

@@ -89,12 +89,17 @@ class Core:
 
     @property
     def bound(self):
-        """The proved bound of an output's error, in units of its last place."""
-        return self._core.bound()["units"]
+        """The largest of `bounds`: no output is off by more, in units of its last place."""
+        return max(self.bounds.values())
+
+    @property
+    def bounds(self):
+        """The proved bound of each output's error by the output's name, in units of its last place."""
+        return self._core.bound()["outputs"]
 
     @property
     def terms(self):
-        """The terms of the bound: key, what it is, units."""
+        """The terms of the bound that is nearest to its limit: key, what it is, units."""
         return self._core.bound()["terms"]
 
     @property
@@ -120,11 +125,13 @@ class Core:
         return self._of_points("golden", columns, operands, raw)
 
     def exact(self, *columns, raw=False, **operands):
-        """The formula in float64 at the operands after they are rounded to their formats."""
+        """The formula in float64 at the operands after they are rounded to their formats; NaN where it has no value."""
         return self._of_points("exact", columns, operands, raw)
 
     def error(self, *columns, raw=False, **operands):
-        """How far results are from the formula, in units of the outputs' last place: at most `bound` within the domain."""
+        """How far results are from the formula, in units of the outputs' last place: at most `bound` within the domain.
+
+        NaN outside the condition `where` of an expression, where any result may come out."""
         return self._of_points("error", columns, operands, raw)
 
     def simulate(self, *columns, raw=False, **operands):
@@ -295,7 +302,16 @@ def function(formula, low, high, *, fraction=None, error=None, **keys):
 
 
 def expression(
-    results, *, let=None, fraction=None, error=None, error_relative=None, where=None, keys=None, **operands
+    results,
+    *,
+    let=None,
+    fraction=None,
+    error=None,
+    error_relative=None,
+    where=None,
+    keys=None,
+    operands=None,
+    **named_operands,
 ):
     """A core for formulas of several operands: `glint.expression("x / y", x=(0, 1, 16), y=(0.5, 1, 16), fraction=15)`.
 
@@ -303,6 +319,7 @@ def expression(
     `results` is a formula, whose result is named `r`, or a dictionary of formulas by name. A core with several results gives them
     under the names of their ports, `core(x, y)["r_out"]`. In place of a formula a result can have its fields, `{"formula": "x / y", "fraction": 15, "where": "y > x"}`; `fraction`, `where` and
     `error` or `error_relative` are for the results that do not state them. `let` has named parts, and `keys` any other keys, `{"architecture": "pipelined"}`.
+    An operand whose name is a parameter of this function, such as `error`, goes into the dictionary `operands`: `operands={"error": (-1, 1, 15)}`.
     """
     if isinstance(results, str):
         results = {"r": results}
@@ -310,7 +327,10 @@ def expression(
     shared = {field: value for field, value in shared.items() if value is not None}
     lines = ['device = "expression"', 'name = "expression"']
     lines += [f"{key} = {_toml(key, value)}" for key, value in (keys or {}).items()]
-    for name, domain in operands.items():
+    both = [name for name in operands or {} if name in named_operands]
+    if both:
+        raise TypeError(f"operand {both[0]!r} is given twice")
+    for name, domain in {**(operands or {}), **named_operands}.items():
         if not isinstance(domain, dict):
             try:
                 low, high, bits = domain

@@ -10,7 +10,7 @@ __version__: str
 Column = int | float | npt.NDArray[np.int64] | npt.NDArray[np.float64]
 
 class Bound(TypedDict):
-    units: float
+    outputs: dict[str, float]
     proved: bool
     terms: list[tuple[str, str, float]]
 

@@ -92,14 +92,15 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     for one in &loaded {
         let contract = one.core.contract.as_ref();
         let design = &one.core.design;
-        let is_stated = contract.bound().is_stated();
+        let is_stated = contract.bounds().are_stated();
         if is_stated {
             one.contract()?;
         }
         let out = arguments.out.as_ref().map(|out| out.join(&one.core.config.name));
         let record = OwnFile::record(arguments.out.as_deref(), &one.core.config.name)?;
         let stated = if is_stated {
-            statements(design, contract, limit).map(|stated| (stated, contract.bound().units))
+            statements(design, contract, limit)
+                .map(|stated| (stated, contract.bounds().governing().units))
         } else {
             found(design, contract, &gappa, limit)?
         };
@@ -114,9 +115,18 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
                     write(&directory, &one.path, &[], &[])?;
                 }
                 if let Some(record) = record {
-                    record.write_json(&certificate(one, contract.bound().units, false, &[]))?;
+                    record.write_json(&certificate(
+                        one,
+                        contract.bounds().governing().units,
+                        false,
+                        &[],
+                    ))?;
                 }
-                list.add(&WithoutStatements { one, step, bound: contract.bound() })?;
+                list.add(&WithoutStatements {
+                    one,
+                    step,
+                    bound: contract.bounds().governing().clone(),
+                })?;
                 continue;
             }
         };

@@ -26,7 +26,7 @@ use glint_core::core::{TEST_POINTS, TEST_SEED};
 use glint_core::cosim::exhaustive::{AxisValues, Shard, axis};
 use glint_core::cosim::{Outcome, Worst};
 use glint_core::registry::Registry;
-use glint_golden::{Bound, Sweep, Term};
+use glint_golden::{Bound, Bounds, Sweep, Term};
 use glint_tools as tools;
 
 /// Compare the golden model with the simulated hardware, every register on every clock
@@ -154,10 +154,10 @@ fn built_in(output: OutputOptions, loaded: &[Loaded], arguments: &Arguments) -> 
     let mut holds = true;
     let mut list = output.list();
     for (one, outcome) in loaded.iter().zip(&outcomes) {
-        let bound = one.core.contract.bound();
-        let failures = outcome.failures(&bound);
+        let bounds = one.core.contract.bounds();
+        let failures = outcome.failures(&bounds);
         holds &= failures.is_empty();
-        list.add(&CheckedRun { one, outcome, bound, failures })?;
+        list.add(&CheckedRun { one, outcome, bounds, failures })?;
     }
     list.conclude(holds)
 }
@@ -166,18 +166,18 @@ fn built_in(output: OutputOptions, loaded: &[Loaded], arguments: &Arguments) -> 
 struct CheckedRun<'a> {
     one: &'a Loaded,
     outcome: &'a Outcome,
-    /// The error bound in the contract.
-    bound: Bound,
+    /// The error bounds in the contract.
+    bounds: Bounds,
     failures: Vec<String>,
 }
 
 impl CommandReport for CheckedRun<'_> {
     fn json(&self) -> Result<Value> {
-        as_json(self.one, self.outcome, &self.bound, &self.failures)
+        as_json(self.one, self.outcome, &self.bounds, &self.failures)
     }
 
     fn print(&self) -> Result<()> {
-        let Self { one, outcome, bound, failures } = self;
+        let Self { one, outcome, bounds, failures } = self;
         // A difference from the golden model ends the run. Other failures do not end it.
         let compared = if outcome.mismatch.is_none() { "equal" } else { "compared with" };
         say!(
@@ -188,13 +188,14 @@ impl CommandReport for CheckedRun<'_> {
             text::grouped(outcome.clocks),
             outcome.registers,
             outcome.outputs,
-            verdict(bound, failures),
+            verdict(bounds, failures),
         );
         if let Some(worst) = &outcome.worst {
+            let bound = bounds.of(&worst.output);
             say!(
                 "  largest error {:.3} units (bound {}) at {}",
                 worst.units,
-                bound.words(),
+                bound.map_or_else(|| bounds.words(), Bound::words),
                 worst_operands(one, worst)
             );
         }
@@ -252,7 +253,20 @@ pub(super) fn terms(bound: &Bound) -> Vec<Value> {
 ///
 /// # Errors
 /// Fails if the waveform cannot be recorded or written.
-pub fn as_json(one: &Loaded, outcome: &Outcome, bound: &Bound, failed: &[String]) -> Result<Value> {
+pub fn as_json(
+    one: &Loaded,
+    outcome: &Outcome,
+    bounds: &Bounds,
+    failed: &[String],
+) -> Result<Value> {
+    let bound = bounds.governing();
+    let mut outputs = serde_json::Map::new();
+    for bound in &bounds.outputs {
+        outputs.insert(
+            bound.output.clone(),
+            json!({ "units": bound.units, "limit": bound.limit, "terms": terms(bound) }),
+        );
+    }
     let mismatch = outcome.mismatch.as_ref().map(|mismatch| {
         let reproducer = Reproducer::of_run(one, mismatch)?;
         anyhow::Ok(reproducer.json(mismatch))
@@ -265,7 +279,7 @@ pub fn as_json(one: &Loaded, outcome: &Outcome, bound: &Bound, failed: &[String]
         "clocks": outcome.clocks,
         "registers": outcome.registers,
         "outputs": outcome.outputs,
-        "bound": { "units": bound.units, "f": bound.f, "terms": terms(bound) },
+        "bound": { "units": bound.units, "f": bounds.f, "terms": terms(bound), "outputs": outputs },
         "largest_error": outcome.worst.as_ref().map(|worst| json!({
             "units": worst.units,
             "output": worst.output,
@@ -274,7 +288,7 @@ pub fn as_json(one: &Loaded, outcome: &Outcome, bound: &Bound, failed: &[String]
         "f": one.core.contract.highlight().map(|_| spread::as_json(&outcome.histogram)),
         "rom_bits": one.core.design.rom_bits(),
         "holds": failed.is_empty(),
-        "verdict": verdict(bound, failed),
+        "verdict": verdict(bounds, failed),
         "faults": failed,
         "mismatch": mismatch.transpose()?,
     }))

@@ -18,7 +18,7 @@ use crate::{OutputOptions, say, tables, wrong_usage};
 use glint_base::fixed::Format;
 use glint_core::cosim::Driven;
 use glint_core::registry::Registry;
-use glint_golden::{self as golden, Contract, Model, Operand};
+use glint_golden::{self as golden, ANY_VALUE, Contract, Model, Operand};
 
 /// Compute one point: registers and outputs of the golden model, and the formula in f64
 #[derive(Args)]
@@ -70,13 +70,13 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     }
 }
 
-/// Returns a phrase for each operand that is outside the domain for which the contract is stated. For example, `exponent = 300
-/// is not in 1 to 255`.
+/// Returns a phrase for each operand that is outside the domain for which the contract is stated. An operand that the device
+/// limits to its domain is never outside. For example, `exponent = 300 is not in 1 to 255`.
 fn outside(operands: &[Operand], raw: &[i64]) -> Vec<String> {
     let mut outside = Vec::new();
     for (operand, &raw) in operands.iter().zip(raw) {
         let (low, high) = operand.domain;
-        if !(low..=high).contains(&raw) {
+        if !operand.clamped && !(low..=high).contains(&raw) {
             let [value, from, to] =
                 [raw, low, high].map(|raw| operand.format.to_f64(i128::from(raw)));
             outside.push(format!("{} = {value} is not between {from} and {to}", operand.name));
@@ -154,10 +154,10 @@ impl CommandReport for EvaluatedPoint<'_> {
         let mut rows = Vec::new();
         for result in &self.results {
             rows.push(vec![
-                result.name.clone(),
+                result.label(),
                 result.value.to_string(),
-                format!("{:.9}", result.exact),
-                format!("{:.3}", result.error),
+                result.exact.map_or("no value".to_owned(), |exact| format!("{exact:.9}")),
+                result.error.map_or("outside where".to_owned(), |error| format!("{error:.3}")),
             ]);
         }
         tables::print("result | value: | formula in f64: | error in last places:", rows);
@@ -200,11 +200,15 @@ fn signal_values(one: &Loaded, operands: &[Operand], raw: &[i64]) -> Result<Vec<
 /// A result of a point together with the value of the formula: `f` of a highlight, or an output.
 struct ResultComparison {
     name: String,
+    /// The number of fraction bits, which decides the unit of the error.
+    fraction: i32,
     value: f64,
-    exact: f64,
-    /// The absolute error in units of the result's last bit. At a jump of the formula, it is measured from the nearer side. For
-    /// example, an output of 200 for a formula of 200.3 has the error 0.3, in an output without fraction bits.
-    error: f64,
+    /// The value of the formula, or `None` if it has none.
+    exact: Option<f64>,
+    /// The absolute error in units of the result's last bit, or `None` if the contract promises nothing for these operands. At a
+    /// jump of the formula, the error is measured from the nearer side. For example, an output of 200 for a formula of 200.3
+    /// has the error 0.3, in an output without fraction bits.
+    error: Option<f64>,
 }
 
 /// The name of the reflectance `f` among the results.
@@ -215,27 +219,40 @@ fn results(contract: &dyn Contract, raw: &[i64]) -> Vec<ResultComparison> {
     if let Some(highlight) = contract.highlight() {
         let point = highlight.point(&raw[..highlight.control()], 0);
         let (f, exact) = (highlight.f(&point), highlight.reference(&point));
-        results.push(ResultComparison::new(F, highlight.f_format(), f, [exact; 2]));
+        results.push(ResultComparison::new(F, highlight.f_format(), f, [exact; 2], exact));
     }
-    let (mut bits, mut exact) = (Vec::new(), Vec::new());
+    let (mut bits, mut exact, mut values) = (Vec::new(), Vec::new(), Vec::new());
     contract.results(raw, 0, &mut bits);
     contract.exact(raw, 0, &mut exact);
-    for ((output, raw), exact) in contract.outputs().iter().zip(bits).zip(exact) {
-        results.push(ResultComparison::new(&output.name, output.format, raw, exact));
+    contract.formula_values(raw, 0, &mut values);
+    let outputs = contract.outputs().iter().zip(bits);
+    for ((output, raw), (exact, value)) in outputs.zip(exact.into_iter().zip(values)) {
+        results.push(ResultComparison::new(&output.name, output.format, raw, exact, value));
     }
     results
 }
 
 impl ResultComparison {
     /// Makes the comparison of a raw result with the formula's value. `exact` has the values on the two sides of a jump of the
-    /// formula; without a jump, the two values are equal.
-    fn new(name: &str, format: Format, raw: i64, exact: [f64; 2]) -> Self {
+    /// formula, or [`ANY_VALUE`] if nothing is promised; without a jump, the two values are equal. `value` is the value of the
+    /// formula, or NaN.
+    fn new(name: &str, format: Format, raw: i64, exact: [f64; 2], value: f64) -> Self {
         let unit = format.to_f64(1);
+        let error = golden::nearer(raw as f64, exact.map(|side| side / unit));
         Self {
             name: name.to_owned(),
+            fraction: format.frac,
             value: format.to_f64(i128::from(raw)),
-            exact: exact[0],
-            error: golden::nearer(raw as f64, exact.map(|side| side / unit)),
+            exact: (!value.is_nan()).then_some(value),
+            error: (exact != ANY_VALUE).then_some(error),
+        }
+    }
+
+    /// Returns the name for the table. The reflectance `f` is no output, so its name has the unit of its error.
+    fn label(&self) -> String {
+        match self.name.as_str() {
+            F => format!("f (last place 2^{})", -self.fraction),
+            name => name.to_owned(),
         }
     }
 }

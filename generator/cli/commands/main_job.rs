@@ -16,12 +16,12 @@ use glint_core::core::{TEST_POINTS, TEST_SEED};
 use glint_core::cosim::Outcome;
 use glint_core::package::HandshakeTiming;
 use glint_core::registry::Registry;
-use glint_golden::Bound;
+use glint_golden::Bounds;
 
 /// The result of the main job for one configuration.
 struct MainJobResult {
     timing: HandshakeTiming,
-    bound: Bound,
+    bounds: Bounds,
     outcome: Outcome,
     /// A sentence for each failure; empty if everything holds.
     failures: Vec<String>,
@@ -75,9 +75,9 @@ impl CommandReport for MainJobReport<'_> {
 fn finding(one: &Loaded, bar: &indicatif::ProgressBar) -> Result<MainJobResult> {
     let lockstep = one.core.lockstep(TEST_SEED)?;
     let outcome = lockstep.run(TEST_POINTS, &|points| bar.inc(points))?;
-    let bound = one.core.contract.bound();
-    let failures = outcome.failures(&bound);
-    Ok(MainJobResult { timing: one.core.timing()?, bound, outcome, failures })
+    let bounds = one.core.contract.bounds();
+    let failures = outcome.failures(&bounds);
+    Ok(MainJobResult { timing: one.core.timing()?, bounds, outcome, failures })
 }
 
 /// The columns of the table. On the screen, only the line with the counts follows the table.
@@ -127,9 +127,9 @@ fn print(loaded: &[Loaded], findings: &[MainJobResult], details: bool) -> Result
             text::grouped(finding.outcome.clocks),
             format!("{}, {}", finding.outcome.registers, finding.outcome.outputs),
             text::grouped(one.core.design.rom_bits()),
-            finding.bound.words(),
+            finding.bounds.words(),
             largest_error,
-            verdict(&finding.bound, &finding.failures).to_owned(),
+            verdict(&finding.bounds, &finding.failures).to_owned(),
         ]);
     }
     tables::print(COLUMNS, rows);
@@ -149,7 +149,7 @@ fn short(path: &str) -> &str {
 fn counts(findings: &[MainJobResult]) -> String {
     let (mut hold, mut outside, mut fail) = (0, 0, 0);
     for finding in findings {
-        match verdict(&finding.bound, &finding.failures) {
+        match verdict(&finding.bounds, &finding.failures) {
             HOLDS => hold += 1,
             OUTSIDE => outside += 1,
             FAILS => fail += 1,
@@ -167,7 +167,7 @@ fn counts(findings: &[MainJobResult]) -> String {
 }
 
 fn as_json(one: &Loaded, finding: &MainJobResult) -> Result<Value> {
-    let mut value = cosim::as_json(one, &finding.outcome, &finding.bound, &finding.failures)?;
+    let mut value = cosim::as_json(one, &finding.outcome, &finding.bounds, &finding.failures)?;
     value["clocks_per_point"] = json!(finding.timing.clocks_per_point());
     Ok(value)
 }

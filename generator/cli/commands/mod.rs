@@ -47,7 +47,7 @@ use glint_config::{self as config, Problems};
 use glint_core::core::Core;
 use glint_core::package::{OutputFiles, Vectors};
 use glint_core::registry::{CLOCK_MHZ, Registry};
-use glint_golden::Bound;
+use glint_golden::Bounds;
 use glint_show::evidence::advice;
 use glint_tools::Tool;
 
@@ -204,9 +204,9 @@ const UNSTATED: &str = "no bound is stated";
 const FAILS: &str = "FAILS";
 
 /// Returns the verdict on a configuration from its error bound and its failures.
-fn verdict(bound: &Bound, failures: &[String]) -> &'static str {
-    match (failures.is_empty(), bound.keeps()) {
-        (true, _) if !bound.is_stated() => UNSTATED,
+fn verdict(bounds: &Bounds, failures: &[String]) -> &'static str {
+    match (failures.is_empty(), bounds.keep()) {
+        (true, _) if !bounds.are_stated() => UNSTATED,
         (true, true) => HOLDS,
         (true, false) => OUTSIDE,
         (false, _) => FAILS,
@@ -246,8 +246,9 @@ impl Loaded {
     /// Warns if the configuration does not keep the accuracy contract, or if the contract states no bound. Fails instead if the
     /// configuration sets `strict = true`.
     fn bound(&self) -> Result<()> {
-        let bound = self.core.contract.bound();
-        if !bound.is_stated() {
+        let bounds = self.core.contract.bounds();
+        let bound = bounds.governing();
+        if !bounds.are_stated() {
             let message = format!(
                 "{}: the contract states no error bound; `{Program} certify` can find a bound for some \
                  configurations",
@@ -257,7 +258,7 @@ impl Loaded {
                 bail!("{message}; `strict = true` makes this an error");
             }
             failure::warn(&message);
-        } else if !bound.keeps() {
+        } else if !bounds.keep() {
             let limit = bound.limiting().map_or_else(String::new, |term| {
                 let units = text::rounded_up(term.units, 3);
                 format!(

@@ -27,7 +27,7 @@ use glint_prove::tune::architectures;
 Examples:
   glint new rsqrt > rsqrt.toml
   glint new rsqrt --pipelined --stream --clock 100 > rsqrt.toml
-  glint new cosine-power --set cosine.fraction=16 --set exponent.bits=8 > highlight.toml
+  glint new cosine-power --name highlight --set cosine.fraction=16 > highlight.toml
   glint new rough --name my_core --all > my_core.toml     every key, with its meaning and its range")]
 pub struct Arguments {
     /// A device of `glint list`; or a function: exp2, exp, log2, ln, reciprocal, rsqrt, sqrt, sin, cos, atan, sigmoid, tanh,

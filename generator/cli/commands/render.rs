@@ -328,7 +328,7 @@ impl CommandReport for RenderedPicture<'_> {
                 "psnr": psnr,
                 "shown_times": gain,
                 "largest_error_of_the_formula_in_units": comparison.units,
-                "bound_in_units": core.contract.bound().units,
+                "bound_in_units": core.contract.bounds().governing().units,
             })
         });
         Ok(json!({
@@ -384,7 +384,7 @@ impl CommandReport for RenderedPicture<'_> {
             say!(
                 "  against its own formula: largest error {:.3} units (bound {})",
                 comparison.units,
-                core.contract.bound().words()
+                core.contract.bounds().words()
             );
         }
         Ok(())

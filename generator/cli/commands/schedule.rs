@@ -218,7 +218,8 @@ fn print(one: &Loaded, pipeline: &Pipeline) {
         "stage: | microinstructions | computes | logic ns:3 | slack ns:1 | bits:2 | delayed:4",
         stages,
     );
-    if pipeline.units.is_empty() {
+    let units = multiplier_slots(one, pipeline);
+    if units.is_empty() {
         return;
     }
     say!(
@@ -229,15 +230,21 @@ fn print(one: &Loaded, pipeline: &Pipeline) {
     for slot in 0..pipeline.interval {
         headings += &format!(" | {slot}");
     }
-    let mut multipliers = Vec::new();
-    for unit in &pipeline.units {
-        let mut row = vec![unit.name.clone()];
-        for product in &unit.serves {
-            row.push(product.clone().unwrap_or_default());
-        }
-        multipliers.push(row);
+    let mut rows = Vec::new();
+    for (name, serves) in units {
+        let products = serves.into_iter().map(Option::unwrap_or_default);
+        rows.push(std::iter::once(name).chain(products).collect());
     }
-    tables::print(&headings, multipliers);
+    tables::print(&headings, rows);
+}
+
+/// Returns the multipliers with their products by slot. The list is empty if every clock takes a point, because each product then
+/// has a multiplier of its own.
+fn multiplier_slots(one: &Loaded, pipeline: &Pipeline) -> Vec<(String, Vec<Option<String>>)> {
+    match pipeline.interval {
+        1 => Vec::new(),
+        _ => pipeline.multipliers(&one.core.design),
+    }
 }
 
 /// Returns the names of the values that a stage computes. For example, a stage with only a multiplier may compute `product`.
@@ -259,8 +266,8 @@ fn as_json(one: &Loaded, pipeline: &Pipeline) -> Value {
         }));
     }
     let mut reservations = Vec::new();
-    for unit in &pipeline.units {
-        reservations.push(json!({ "multiplier": unit.name, "slots": unit.serves }));
+    for (name, serves) in multiplier_slots(one, pipeline) {
+        reservations.push(json!({ "multiplier": name, "slots": serves }));
     }
     json!({
         "config": one.path,

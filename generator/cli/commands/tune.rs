@@ -231,8 +231,8 @@ fn toml(device: &Device, best: &Candidate, arguments: &Arguments) -> String {
         arguments.unit,
         arguments.target.title(),
         origin(device),
-        text::rounded_up(best.bound.f, 6),
-        best.bound.words(),
+        text::rounded_up(best.bounds.f, 6),
+        best.bounds.words(),
         cost.luts,
         cost.dsps,
         cost.block_rams,
@@ -265,8 +265,8 @@ fn print(device: &Device, answer: &Answer, arguments: &Arguments, text: &str) {
             None => "-".to_owned(),
         };
         rows.push(vec![
-            text::rounded_up(candidate.bound.f, 6),
-            candidate.bound.words(),
+            text::rounded_up(candidate.bounds.f, 6),
+            candidate.bounds.words(),
             format!("{:.0}", cost.luts),
             cost.dsps.to_string(),
             cost.block_rams.to_string(),
@@ -298,8 +298,8 @@ fn candidate_json(answer: &Answer, target: Target, candidate: &Candidate) -> Jso
         keys.insert((*key).to_owned(), json!(candidate.config.value(key)));
     }
     json!({
-        "error_of_f": candidate.bound.f,
-        "output_units": candidate.bound.units,
+        "error_of_f": candidate.bounds.f,
+        "output_units": candidate.bounds.governing_units(),
         "cost": candidate.cost,
         "fits": candidate.cost.excess(target).is_empty(),
         "clocks_per_point": candidate.clocks,
@@ -341,8 +341,8 @@ fn print_csv(answer: &Answer) -> Result<()> {
             None => String::new(),
         };
         let mut row = vec![
-            candidate.bound.f.to_string(),
-            candidate.bound.units.to_string(),
+            candidate.bounds.f.to_string(),
+            candidate.bounds.governing_units().to_string(),
             format!("{:.0}", cost.luts),
             cost.dsps.to_string(),
             cost.block_rams.to_string(),

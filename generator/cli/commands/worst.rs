@@ -95,7 +95,7 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
         let contract = one.core.contract.as_ref();
         let found = search::worst(contract, arguments.starts, arguments.seed, &|| bar.inc(1));
         let found = found.with_context(|| format!("`{}` has no output", one.path))?;
-        let bound = contract.bound().units;
+        let bound = contract.bounds().outputs[found.output].units;
         let holds = found.units <= bound && found.units.is_finite();
         let (holds, found) = (holds, known(one, arguments, &found));
         let mut recorded = None;

@@ -46,7 +46,7 @@ impl Formula for Square {
     /// unit at most.
     ///
     /// Leave this method out if you have no proof: the command `certify` then finds a bound.
-    fn terms(&self) -> Vec<Term> {
+    fn terms(&self, _output: usize) -> Vec<Term> {
         vec![Term { key: "result.fraction", what: "rounding of the result", units: 0.5 }]
     }
 

@@ -14,7 +14,7 @@ fn core() -> Result<Core> {
 fn golden_model_and_hardware_agree() -> Result<()> {
     let core = core()?;
     let outcome = core.lockstep(1)?.run(10_000, &|_| {})?;
-    assert_eq!(outcome.failures(&core.contract.bound()), Vec::<String>::new());
+    assert_eq!(outcome.failures(&core.contract.bounds()), Vec::<String>::new());
     Ok(())
 }
 

@@ -45,12 +45,7 @@ impl<'a> Measure<'a> {
     /// # Errors
     /// Fails if an output is not among `nets`, or has another format in the design.
     pub(super) fn new(design: &Design, contract: &'a dyn Contract, nets: &[NetId]) -> Result<Self> {
-        let largest = contract.bound().units;
-        let weight = |number: usize| {
-            let own = contract.output_bound(number);
-            // A bound of 0 would make the weight infinite.
-            if own == largest { 1.0 } else { largest / own.max(ROUNDING_OF_F64) }
-        };
+        let weights = contract.bounds().weights(ROUNDING_OF_F64);
         let quantity = |(number, Output { name, format }): (usize, &Output)| {
             let at = |net| Some((nets.iter().position(|&it| it == net)?, net));
             let (at, net) = (design.find(name).and_then(at)).with_context(|| {
@@ -66,7 +61,7 @@ impl<'a> Measure<'a> {
                 format: real,
                 unit: exp2(-real.frac),
                 per_unit: exp2(real.frac),
-                weight: weight(number),
+                weight: weights[number],
             })
         };
         let outputs = contract.outputs().iter().enumerate().map(quantity).collect::<Result<_>>()?;

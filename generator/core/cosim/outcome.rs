@@ -7,7 +7,7 @@ use std::sync::Arc;
 use super::histogram::Histogram;
 use super::random::Random;
 use super::recorded::Recording;
-use glint_golden::Bound;
+use glint_golden::{Bound, Bounds};
 
 /// The rounding of the formulas' evaluation in f64, in units of the result's last bit. A measured error may exceed a proven
 /// bound by this amount.
@@ -61,9 +61,9 @@ impl Outcome {
     }
 
     /// Returns a sentence for each failure of the run: a difference between model and hardware, a formula without a finite
-    /// value, or an error above `bound` by more than 10^−6 units, the rounding of the measurement. For an output with a smaller
-    /// bound of its own, this bound counts. Returns an empty list if the run passed.
-    pub fn failures(&self, bound: &Bound) -> Vec<String> {
+    /// value, or an error above the bound of its output by more than 10^−6 units, the rounding of the measurement. Returns an
+    /// empty list if the run passed.
+    pub fn failures(&self, bounds: &Bounds) -> Vec<String> {
         let mut failures = Vec::new();
         if let Some(mismatch) = &self.mismatch {
             failures.push(format!(
@@ -79,10 +79,9 @@ impl Outcome {
                 operands.collect::<Vec<_>>().join(", ")
             ));
         } else if let Some(worst) = &self.worst
-            && worst.weighted > bound.units + ROUNDING_OF_F64
+            && let Some(Bound { units: own, .. }) = bounds.of(&worst.output)
+            && worst.units > own + ROUNDING_OF_F64
         {
-            // The bound of this output.
-            let own = bound.units * worst.units / worst.weighted;
             failures.push(format!(
                 "the error of `{}` is {:.6} units, above the stated bound of {own:.6}",
                 worst.output, worst.units

@@ -8,6 +8,7 @@
 
 use rayon::prelude::*;
 
+use super::outcome::ROUNDING_OF_F64;
 use super::points::PointSource;
 use super::random::Random;
 use glint_base::fixed::exp2;
@@ -37,6 +38,9 @@ const BATCH: u64 = 1 << 10;
 pub struct Reached {
     /// The absolute error in output units; infinite if the formula has no value at the operands.
     pub units: f64,
+    /// The error in units, multiplied by the weight of the output (`Bounds::weights`). Errors of different outputs are compared
+    /// by this number.
+    pub weighted: f64,
     /// The raw operands, in the order of `Contract::operands`.
     pub operands: Vec<i64>,
     /// The index of the output in `Contract::outputs`.
@@ -48,8 +52,8 @@ pub struct Reached {
 
 impl Reached {
     /// Returns the largest error of an output in the first result of a computation with raw operands, in the order of
-    /// `Contract::operands`. Returns `None` if the contract has no output.
-    pub fn at(contract: &dyn Contract, operands: Vec<i64>) -> Option<Self> {
+    /// `Contract::operands`. `weights` are the weights of the outputs. Returns `None` if the contract has no output.
+    fn at(contract: &dyn Contract, weights: &[f64], operands: Vec<i64>) -> Option<Self> {
         let (mut raw, mut exact) = (Vec::new(), Vec::new());
         contract.results(&operands, 0, &mut raw);
         contract.exact(&operands, 0, &mut exact);
@@ -61,7 +65,8 @@ impl Reached {
             let units = nearer(raw as f64, either);
             let [first, second] = either.map(|value| (raw as f64 - value).abs());
             let exact = if second < first { either[1] } else { either[0] };
-            let error = Self { units, operands: operands.clone(), output, raw, exact };
+            let weighted = units * weights[output];
+            let error = Self { units, weighted, operands: operands.clone(), output, raw, exact };
             largest = Some(match largest {
                 Some(known) => larger(known, error),
                 None => error,
@@ -73,7 +78,7 @@ impl Reached {
 
 /// Returns `a` or `b`, whichever has the larger error; `a` if the errors are equal.
 fn larger(a: Reached, b: Reached) -> Reached {
-    if b.units > a.units { b } else { a }
+    if b.weighted > a.weighted { b } else { a }
 }
 
 /// Returns the number of times that [`worst`] calls `progress` if it searches from `starts` points.
@@ -93,6 +98,7 @@ pub fn worst(
 ) -> Option<Reached> {
     let points = PointSource::new(contract);
     let climber = Climber::new(contract);
+    let reached = |operands: Vec<i64>| Reached::at(contract, &climber.weights, operands);
     let (mut climbed, mut highest) = (None, Vec::<ClimbResult>::new());
     let mut first = 0;
     while first < starts {
@@ -105,7 +111,7 @@ pub fn worst(
         });
         let ends: Vec<ClimbResult> = climbs.collect();
         // If errors are equal, the first start wins, whatever the order in which the threads end.
-        let outputs = ends.iter().filter_map(|end| Reached::at(contract, end.operands.clone()));
+        let outputs = ends.iter().filter_map(|end| reached(end.operands.clone()));
         climbed = climbed.into_iter().chain(outputs).reduce(larger);
         highest.extend(ends);
         highest.sort_by(|one, other| other.height.total_cmp(&one.height));
@@ -118,7 +124,7 @@ pub fn worst(
         found
     });
     let around: Vec<Vec<i64>> = looks.collect();
-    let found = around.into_iter().filter_map(|operands| Reached::at(contract, operands));
+    let found = around.into_iter().filter_map(reached);
     Some(found.fold(climbed?, larger))
 }
 
@@ -141,6 +147,8 @@ struct Climber<'a> {
     moves: Vec<Vec<(usize, i64)>>,
     /// The colours that are tried for a highlight. For other devices, the single value 1.
     colours: std::ops::RangeInclusive<i64>,
+    /// The factors by which the errors of the outputs are multiplied before they are compared (`Bounds::weights`).
+    weights: Vec<f64>,
 }
 
 impl<'a> Climber<'a> {
@@ -163,7 +171,14 @@ impl<'a> Climber<'a> {
             domains: moved.iter().map(|it| it.domain).collect(),
             moves,
             colours: low.max(high - MOST_COLOURS)..=high,
+            weights: contract.bounds().weights(ROUNDING_OF_F64),
         }
+    }
+
+    /// Returns the largest error of an output for the given operands, multiplied by the weight of the output.
+    fn largest_error(&self, operands: &[i64]) -> f64 {
+        let errors = self.contract.errors(operands);
+        errors.iter().zip(&self.weights).map(|(error, weight)| error * weight).fold(0.0, f64::max)
     }
 
     /// Climbs from the given operands, and returns the end of the climb.
@@ -172,7 +187,7 @@ impl<'a> Climber<'a> {
         let mut highest = operands;
         highest.truncate(self.domains.len());
         let Some(highlight) = self.contract.highlight() else {
-            let height = self.climb(&mut highest, |operands| self.contract.largest_error(operands));
+            let height = self.climb(&mut highest, |operands| self.largest_error(operands));
             return ClimbResult { height, operands: highest.clone(), highest };
         };
         let height = self.climb(&mut highest, |control| of_f(highlight, control));
@@ -194,7 +209,7 @@ impl<'a> Climber<'a> {
     /// error.
     fn look_around(&self, mut operands: Vec<i64>) -> Vec<i64> {
         let highlight = self.contract.highlight();
-        let terms = self.contract.bound().terms;
+        let terms = self.contract.bounds().governing().terms.clone();
         let rounding = terms.iter().find(|term| term.key == "output.rounding");
         let (rounding, colour) = (rounding.map_or(1.0, |it| it.units), *self.colours.end() as f64);
         // The error of an output is at most the error of `f` for the largest colour, plus the output's own rounding. If that is
@@ -202,7 +217,7 @@ impl<'a> Climber<'a> {
         let error = |operands: &[i64], known: f64| match highlight {
             Some(it) if of_f(it, operands) * colour + rounding <= known => 0.0,
             Some(it) => self.of_output(it, operands).0,
-            None => self.contract.largest_error(operands),
+            None => self.largest_error(operands),
         };
         let pairs = operands.len() * operands.len().saturating_sub(1) / 2;
         let all = if highlight.is_some() { AROUND } else { MOST_AROUND };

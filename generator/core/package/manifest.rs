@@ -193,17 +193,31 @@ fn accuracy(accuracy: &ContractFacts) -> Value {
     for (operand, (low, high)) in &accuracy.domain {
         domain.insert(operand.clone(), json!({ "low": low, "high": high }));
     }
+    let mut bounds = serde_json::Map::new();
+    for ((output, _), bound) in accuracy.outputs.iter().zip(&accuracy.bounds) {
+        bounds.insert(output.clone(), json!(bound));
+    }
     let highlight = accuracy.outputs.iter().all(|(_, operand)| operand.is_some());
     let value = if highlight { "operand * f" } else { "formula" };
     let mut entry = json!({
         "statement": format!(
-            "|output - {value}| <= bound in units of the output, for raw operands of the domain"
+            "|output - {value}| <= bounds[output] in units of the output, for raw operands of the domain"
         ),
         "domain": domain,
         "outputs": outputs,
         "f": accuracy.f,
-        "bound": accuracy.bound,
+        "bounds": bounds,
     });
+    let conditions = accuracy.conditions.iter().flatten();
+    let mut wheres = serde_json::Map::new();
+    for ((output, _), condition) in accuracy.outputs.iter().zip(conditions) {
+        if let Some(condition) = condition {
+            wheres.insert(output.clone(), json!(condition.python()));
+        }
+    }
+    if !wheres.is_empty() {
+        entry["where"] = json!(wheres);
+    }
     if let Some(length) = &accuracy.length {
         entry["length"] = json!(length);
     }

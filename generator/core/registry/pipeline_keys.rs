@@ -80,10 +80,11 @@ fn key_error(error: &PipelineError, keys: &Shared, name: &str) -> KeyError {
         PipelineErrorKind::Microprogram => {
             of_key("architecture", "set architecture = \"sequential\"".to_owned())
         }
-        PipelineErrorKind::Clock { nearest, needs_registered } => {
+        PipelineErrorKind::Clock { nearest, registered } => {
             let mut remedy = format!("set {CLOCK_MHZ} to {nearest} or less");
-            if needs_registered {
-                remedy += ", or pipeline.multipliers = \"registered\"";
+            if let Some(higher) = registered {
+                remedy +=
+                    &format!(", or to {higher} or less with pipeline.multipliers = \"registered\"");
             }
             of_key(CLOCK_MHZ, remedy).with_nearest(nearest)
         }

@@ -15,7 +15,7 @@ use std::ops::Deref;
 use std::sync::OnceLock;
 
 use super::contract::{self, COSINE, ErrorShare};
-use super::{Bound, Contract, Operand, Output, Sweep, nearer};
+use super::{Bounds, Contract, Operand, Output, Sweep, nearer};
 use glint_base::fixed::{Format, exp2};
 
 /// The computation of the reflectance f of one highlight device, by its control operands. f is a number from 0 to 1.
@@ -153,7 +153,7 @@ pub struct Highlight {
     products: Products,
     operands: Vec<Operand>,
     /// The error bound, stored at the first request, because a search may be needed to compute it.
-    bound: OnceLock<Bound>,
+    bounds: OnceLock<Bounds>,
 }
 
 /// A highlight gives access to the methods of its reflectance, which need only the control operands.
@@ -176,8 +176,8 @@ impl Highlight {
         let mut operands = control;
         operands.extend(products.operands.iter().cloned());
         let single = reflectance.length().is_none();
-        let bound = OnceLock::new();
-        Self { reflectance: Box::new(reflectance), single, products, operands, bound }
+        let bounds = OnceLock::new();
+        Self { reflectance: Box::new(reflectance), single, products, operands, bounds }
     }
 
     /// Returns the number of control operands, which come before the colour operands.
@@ -298,13 +298,15 @@ impl Contract for Highlight {
         })
     }
 
-    fn bound(&self) -> Bound {
-        let bound = self.bound.get_or_init(|| {
+    fn bounds(&self) -> Bounds {
+        let bounds = self.bounds.get_or_init(|| {
             let products = &self.products;
             let shares = self.reflectance.shares();
-            contract::bound(&shares, products.f.frac as u32, products.bits, products.rounding)
+            let frac = products.f.frac as u32;
+            let (f, bound) = contract::bound(&shares, frac, products.bits, products.rounding);
+            Bounds::alike(f, &bound, &products.outputs)
         });
-        bound.clone()
+        bounds.clone()
     }
 
     fn remarks(&self) -> Vec<String> {

@@ -68,7 +68,8 @@ impl Products {
         let domain = (0, format.max_raw() as i64);
         let mut colours = Vec::new();
         for (name, doc) in operands {
-            colours.push(Operand { name: name.to_owned(), format, domain, colour: true, doc });
+            let name = name.to_owned();
+            colours.push(Operand { name, format, domain, clamped: false, colour: true, doc });
         }
         Self {
             f,

@@ -16,7 +16,7 @@ fn either_side_of_the_level_is_right_and_no_other() {
     let contract = highlight(small(&[843]));
     assert_eq!(contract.references(&[14, 4]), [0.5625, 0.0]);
     // Margin: 2 ulps for the base, one for the square.
-    assert_eq!(contract.bound().f, 3.0 / 16.0);
+    assert_eq!(contract.bounds().f, 3.0 / 16.0);
     // n = 4, c = 15/16: (14/16)² is 52/256 above the level.
     assert_eq!(contract.references(&[15, 4]), [0.765625; 2]);
     assert_eq!(contract.references(&[13, 4]), [0.390625, 0.0]);

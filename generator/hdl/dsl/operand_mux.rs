@@ -113,12 +113,19 @@ impl Designer {
         let (first, second) = ordered(signed.out.bits(0, Format::unsigned(low as i32, 0)));
         let out = self.mul(name, first, second);
         // The amount has only as many bits as the largest input of the other mux that is multiplied by a negative input.
-        let opposite = signed.inputs.iter().zip(&other.inputs);
-        let most = opposite
-            .filter(|(input, _)| input.range().0 < 0)
-            .map(|(_, opposite)| opposite.range().1)
-            .max()
-            .unwrap_or(0);
+        let mut most = 0;
+        let mut is_corrected = false;
+        for (input, opposite) in signed.inputs.iter().zip(&other.inputs) {
+            if input.range().0 < 0 {
+                let products = interval::product(input.range(), opposite.range());
+                is_corrected |= Format::holding(products.0, products.1, 0).width() > low;
+                most = opposite.range().1.max(most);
+            }
+        }
+        if !is_corrected {
+            // Every product of a negative input has so few bits that the excess lies above them.
+            return (out, None);
+        }
         let format = Format::holding(0, most.max(1), 0);
         let inputs =
             vec![self.raw_constant("zeros", 0, format).id(), other.out.bits(0, format).id()];

@@ -110,6 +110,26 @@ impl Pipeline {
         self.units.iter().any(|unit| unit.nets.contains(&net))
     }
 
+    /// Returns the multipliers of the pipeline, each with its name and the product that it computes in each slot. The shared
+    /// multipliers come first. A multiplier that serves a single product has the name of this product. A product with a constant
+    /// takes no multiplier. For example, with an interval of 3, `lerp` has one multiplier, which is idle in two slots.
+    pub fn multipliers(&self, design: &Design) -> Vec<(String, Vec<Option<String>>)> {
+        let shared = self.units.iter().map(|unit| (unit.name.clone(), unit.serves.clone()));
+        let mut multipliers: Vec<_> = shared.collect();
+        let is_constant = |net: NetId| matches!(design.net(net).driver, Driver::Constant(_));
+        for (id, net) in design.iter() {
+            let Driver::Op(Op::Mul(a, b)) = net.driver else { continue };
+            if self.is_shared(id) || is_constant(a) || is_constant(b) {
+                continue;
+            }
+            let product = &self.value_of[id.index()];
+            let mut serves = vec![None; self.interval];
+            serves[self.clock_of(id) % self.interval] = Some(product.clone());
+            multipliers.push((product.clone(), serves));
+        }
+        multipliers
+    }
+
     /// Returns the named nets whose logic is in stage number `stage`, each with the name of its value, in the order of the
     /// design. The function leaves out nets of the handshake.
     pub fn computed<'a>(

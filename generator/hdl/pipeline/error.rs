@@ -21,8 +21,9 @@ pub enum PipelineErrorKind {
     Clock {
         /// The highest clock frequency that can be reached, in MHz.
         nearest: f64,
-        /// Whether the clock can be reached if products use the output registers of multipliers.
-        needs_registered: bool,
+        /// The highest clock frequency, in MHz, if products use the output registers of multipliers. `None` if this frequency is
+        /// not higher, or if the options request these registers already.
+        registered: Option<f64>,
     },
     /// The requested number of stages is larger than useful: the additional stages would not make the pipeline faster.
     TooManyStages {

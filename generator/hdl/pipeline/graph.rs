@@ -156,6 +156,18 @@ impl Graph {
         self.insert(Cell::Constant(bits), format, (raw, raw), label)
     }
 
+    /// Returns the node of a constant of the description, as [`Graph::constant`] does. The constant gets the label of the
+    /// description, even if the graph has an equal constant of the microprogram, such as the value of a select line.
+    pub fn described_constant(&mut self, bits: u64, format: Format, label: &Label) -> NodeId {
+        let id = self.constant(bits, format, label);
+        let node = &mut self.nodes[id.index()];
+        if !node.held {
+            node.label = label.clone();
+            node.held = true;
+        }
+        id
+    }
+
     /// Returns the node for the word at `address` of a ROM with the contents `words`. Adds the node to the graph unless the graph
     /// has it. If `address` is a constant, the returned node is the constant word, or 0 behind the last word.
     pub fn read(

@@ -123,19 +123,18 @@ impl<'a> Request<'a> {
             self.unrolled.graph.node(limiting).label.name,
             self.options.target.name
         );
-        let needs_registered = self.needs_registered(clock, interval);
-        let kind = PipelineErrorKind::Clock { nearest, needs_registered };
+        let registered = self.registered_clock(interval).filter(|&higher| higher > nearest);
+        let kind = PipelineErrorKind::Clock { nearest, registered };
         self.error(kind, message, Some(limiting))
     }
 
-    /// Returns whether `clock`, in MHz, which cannot be reached with the present options, can be reached if products use the
-    /// output registers of multipliers. Returns `false` if the options request these registers already.
-    fn needs_registered(&self, clock: f64, interval: usize) -> bool {
-        if self.options.registered {
-            return false;
+    /// Returns the highest clock frequency, in MHz, if products use the output registers of multipliers. Returns `None` if the
+    /// options request these registers already, or if the target states no delay for them.
+    fn registered_clock(&self, interval: usize) -> Option<f64> {
+        if self.options.registered || self.options.target.registered.is_none() {
+            return None;
         }
-        let fastest = self.problems(true, interval).fastest();
-        fastest.is_some_and(|limit| limit.period * clock <= 1000.0)
+        self.problems(true, interval).fastest().map(|limit| schedule::megahertz(limit.period))
     }
 
     /// Returns the error for a problem in which the solver finds no schedule, although a schedule always exists. `at` is the node

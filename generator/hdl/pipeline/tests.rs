@@ -65,7 +65,7 @@ fn a_clock_that_cannot_be_met_names_the_nearest_and_what_limits_it() {
     assert!(text.contains("cannot run at 1500 MHz"), "{text}");
     assert!(text.contains("`ratio_trial") && text.contains("pipeline/tests.rs"), "{text}");
     // The proposed clock can be reached.
-    let PipelineErrorKind::Clock { nearest, needs_registered: false } = error.kind else {
+    let PipelineErrorKind::Clock { nearest, registered: None } = error.kind else {
         panic!("{error:?}")
     };
     stages(&ratio(), Goal::ClockMhz(nearest));
@@ -146,9 +146,15 @@ fn a_registered_multiplier_is_named_where_it_reaches_the_clock_and_holds_every_p
     let goal = Goal::ClockMhz(165.0);
     let error = refused(&power(), goal);
     assert!(error.to_string().contains("cannot run at 165 MHz: `fourth`"), "{error}");
-    let PipelineErrorKind::Clock { needs_registered: true, .. } = error.kind else {
-        panic!("{error:?}")
-    };
+    // The registers are named also for a clock that even they do not reach.
+    for clock in [165.0, 250.0] {
+        let kind = refused(&power(), Goal::ClockMhz(clock)).kind;
+        let PipelineErrorKind::Clock { nearest, registered: Some(higher) } = kind else {
+            panic!("{kind:?}")
+        };
+        assert_eq!(higher, 173.9);
+        assert!(nearest < 165.0, "{nearest}");
+    }
     let made = pipeline(&power(), &Options { registered: true, ..options(goal) }).unwrap();
     let products = made.iter().filter(|(_, net)| matches!(net.driver, Driver::Op(Op::Mul(..))));
     let products: Vec<NetId> = products.map(|(id, _)| id).collect();
@@ -164,7 +170,7 @@ fn a_registered_multiplier_is_named_where_it_reaches_the_clock_and_holds_every_p
     let beyond = Options { registered: true, ..options(Goal::ClockMhz(250.0)) };
     let error = pipeline(&power(), &beyond).expect_err("too fast");
     assert!(error.to_string().contains("which allows at most 173.9 MHz"), "{error}");
-    let kind = PipelineErrorKind::Clock { nearest: 173.9, needs_registered: false };
+    let kind = PipelineErrorKind::Clock { nearest: 173.9, registered: None };
     assert_eq!(error.kind, kind);
 }
 

@@ -49,9 +49,9 @@ pub fn statements(
     contract: &dyn Contract,
     limit: Duration,
 ) -> Result<Vec<Statement>, String> {
-    let bound = contract.bound();
-    if bound.is_stated() {
-        within(design, contract, Some(bound.units), limit)
+    let bounds = contract.bounds();
+    if bounds.are_stated() {
+        within(design, contract, Some(bounds.governing_units()), limit)
     } else {
         Err("the contract states no bound".to_owned())
     }

@@ -71,7 +71,7 @@ pub fn statements(task: &Task, walk: &[WalkRegister]) -> Result<Vec<Statement>, 
         );
     }
     let scale = exp2(PLACES);
-    let of_f = libm::floor(task.contract.bound().f * scale) / scale;
+    let of_f = libm::floor(task.contract.bounds().f * scale) / scale;
     let [formula] = task.formulas else {
         return Err("the formula has several values".to_owned());
     };

@@ -19,7 +19,7 @@ use serde::Serialize;
 
 use glint_config::{Config, Shared, Value};
 use glint_core::registry::Device;
-use glint_golden::Bound;
+use glint_golden::Bounds;
 pub use model::{Cost, Features, area};
 use search::Search;
 pub use search::{Answer, Candidate};
@@ -40,10 +40,10 @@ pub enum ErrorUnit {
 
 impl ErrorUnit {
     /// Returns a configuration's error bound in this unit.
-    pub fn of(self, bound: &Bound) -> f64 {
+    pub fn of(self, bounds: &Bounds) -> f64 {
         match self {
-            Self::F => bound.f,
-            Self::Output => bound.units,
+            Self::F => bounds.f,
+            Self::Output => bounds.governing_units(),
         }
     }
 }

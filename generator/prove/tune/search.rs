@@ -16,7 +16,7 @@ use super::space::SearchSpace;
 use super::{ErrorUnit, Objective, TuningGoal};
 use glint_config::{Config, Value};
 use glint_core::registry::Device;
-use glint_golden::{Bound, Term};
+use glint_golden::{Bounds, Term};
 use glint_show::evidence::comparison::{EXPONENT, clocks_per_point};
 
 /// A configuration that `glint tune` has evaluated, with its error bound, its cost and its rate.
@@ -25,7 +25,7 @@ pub struct Candidate {
     /// The configuration that was evaluated.
     pub config: Config,
     /// The proved error bound of the configuration's accuracy contract.
-    pub bound: Bound,
+    pub bounds: Bounds,
     /// The estimated cost of the configuration.
     pub cost: Cost,
     /// The number of clocks from one point to the next, as `glint synth` counts them; `None` if the device never shows a result.
@@ -154,7 +154,7 @@ impl<'a> Search<'a> {
         }
         Some(Candidate {
             config: config.clone(),
-            bound: contract.bound(),
+            bounds: contract.bounds(),
             cost: Cost::new(&design, self.goal.target),
             clocks: clocks_per_point(&design, contract.as_ref(), EXPONENT).ok(),
         })
@@ -303,7 +303,7 @@ impl<'a> Search<'a> {
     fn out_of_reach(&self, nearest: &Candidate) -> Result<Candidate> {
         let unit = self.goal.unit;
         let mut largest: Option<&Term> = None;
-        for term in &nearest.bound.terms {
+        for term in &nearest.bounds.governing().terms {
             // The rounding of the outputs is no part of the error of f.
             let counts = unit == ErrorUnit::Output || term.key != "output.rounding";
             if counts && largest.is_none_or(|before| term.units.total_cmp(&before.units).is_ge()) {
@@ -335,7 +335,7 @@ impl<'a> Search<'a> {
 
 impl TuningGoal {
     fn error(&self, candidate: &Candidate) -> f64 {
-        self.unit.of(&candidate.bound)
+        self.unit.of(&candidate.bounds)
     }
 
     fn objective(&self, candidate: &Candidate) -> f64 {

@@ -14,7 +14,7 @@ use glint_base::program::Program;
 use glint_base::text::{counted, grouped};
 use glint_core::core::{TEST_POINTS, TEST_SEED};
 use glint_core::cosim::exhaustive::{Job, Proof, Record, Shard, ShardState};
-use glint_golden::{Contract, Sweep};
+use glint_golden::{Bound, Contract, Sweep};
 
 /// The number of results that lockstep compares: without full effort, and with it.
 const POINTS: [u64; 2] = [TEST_POINTS, 100 * TEST_POINTS];
@@ -40,7 +40,7 @@ pub const DESIGN: Check = Check {
     tools: &[],
     steps: |_| 1,
     run: |subject, _, _| {
-        let (design, bound) = (&subject.core.design, subject.core.contract.bound());
+        let (design, bounds) = (&subject.core.design, subject.core.contract.bounds());
         let finding = Finding::new(
             CheckVerdict::Proved,
             "all nets, registers, ROMs and microinstructions",
@@ -50,19 +50,20 @@ pub const DESIGN: Check = Check {
                 counted(design.registers.len(), "register"),
                 counted(design.roms.len(), "ROM"),
                 counted(design.control.microprogram.len(), "microinstruction"),
-                if bound.is_stated() {
-                    format!("The stated bound on an output is {} units.", bound.words())
+                if bounds.are_stated() {
+                    format!("The stated bound on an output is {} units.", bounds.words())
                 } else {
                     "No bound on an output is stated.".to_owned()
                 },
             ),
         );
-        Ok(if bound.keeps() {
+        Ok(if bounds.keep() {
             finding
         } else {
+            let bound = bounds.governing();
             finding.open(format!(
-                "The bound is not below {}: the configuration is outside the accuracy contract.",
-                bound.limit
+                "The bound of {} is not below {}: the configuration is outside the accuracy contract.",
+                bound.output, bound.limit
             ))
         })
     },
@@ -85,12 +86,13 @@ fn points(subject: &CheckSubject<'_>) -> u64 {
 
 fn lockstep(subject: &CheckSubject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Result<Finding> {
     let outcome = subject.core.lockstep(TEST_SEED)?.run(points(subject), progress)?;
-    let bound = subject.core.contract.bound();
+    let bounds = subject.core.contract.bounds();
     let worst = outcome.worst.as_ref().map_or_else(String::new, |worst| {
+        let bound = bounds.of(&worst.output).map_or_else(String::new, Bound::words);
         format!(
-            " The largest error against the formula in f64 is {:.3} units; the stated bound is {}.",
-            worst.units,
-            bound.words()
+            " The largest error against the formula in f64, as a part of the bound, is {:.3} units of {}, and the stated \
+             bound is {bound}.",
+            worst.units, worst.output
         )
     });
     let stimulus = match subject.core.design.pipeline {
@@ -110,7 +112,7 @@ fn lockstep(subject: &CheckSubject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Resu
             counted(outcome.outputs, "output"),
         ),
     )
-    .failures(outcome.failures(&bound))
+    .failures(outcome.failures(&bounds))
     .open("Operands that were not drawn."))
 }
 
@@ -155,7 +157,7 @@ fn record(subject: &CheckSubject<'_>) -> Result<Option<Record>> {
 /// record cannot be read, or if the check cannot be run.
 fn contract(subject: &CheckSubject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Result<Finding> {
     let contract = subject.core.contract.as_ref();
-    if !contract.bound().is_stated() {
+    if !contract.bounds().are_stated() {
         let why = format!(
             "The contract states no bound; `{Program} certify` can find a bound for some configurations."
         );
@@ -176,7 +178,7 @@ fn contract(subject: &CheckSubject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Resu
     Ok(Finding::new(
         of_sweep(job.f.sweep()),
         domain(&job),
-        format!("The stated bound is {} units; {}.", contract.bound().words(), proof.words("")),
+        format!("The stated bound is {} units; {}.", contract.bounds().words(), proof.words("")),
     )
     .failures(proof.failures)
     .open(job.f.sweep().omits.clone()))
@@ -198,7 +200,7 @@ fn recorded(record: &Record, contract: &dyn Contract, progress: &(dyn Fn(u64) + 
     let words = format!(
         "The stated bound is {} units; according to the record `{path}`, {}. This check repeated {} \
          evaluations of the record, spread evenly, and the evaluation with the largest error{}.",
-        contract.bound().words(),
+        contract.bounds().words(),
         record.words(contract),
         grouped(again),
         if job.colours.count() > 0 { ", and all colour products" } else { "" },

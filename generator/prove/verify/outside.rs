@@ -100,7 +100,7 @@ pub const CERTIFICATE: Check = Check {
                     0 => String::new(),
                     empty => format!(", of which {empty} have hypotheses that contradict each other"),
                 },
-                contract.bound().units
+                contract.bounds().governing().units
             ),
         )
         .open("The words of tables: the statements use them unchecked."))

@@ -52,7 +52,8 @@ struct Better {
 /// changes are enough to keep it, if at most 40 steps find such changes. Otherwise only one key changes: among the smallest
 /// steps that help any key, the key that reduces the bound most. Returns `None` if no step of one key reduces the bound.
 pub fn of(core: &Core) -> Option<Advice> {
-    let (device, bound) = (&core.device, core.contract.bound());
+    let device = &core.device;
+    let bound = core.contract.bounds().governing().clone();
     let first = better(device, &core.config, &bound)?;
     let single = advice(device, &core.config, &first);
     if bound.keeps() {
@@ -83,7 +84,7 @@ fn better(device: &Device, config: &Config, bound: &Bound) -> Option<Better> {
             if !has_same_units(device, config, &changed) {
                 continue;
             }
-            let bound = (device.contract)(&changed).bound();
+            let bound = (device.contract)(&changed).bounds().governing().clone();
             let is_best = match &best {
                 Some(best) => bound.units.total_cmp(&best.bound.units).is_lt(),
                 None => true,
@@ -118,7 +119,7 @@ fn needed(device: &Device, config: &Config, mut kept: Better) -> Better {
     let schema = (device.schema)();
     for (key, ..) in changes(device, config, &kept.config) {
         if let Some(without) = with(&schema, &kept.config, key, config.value(key)) {
-            let bound = (device.contract)(&without).bound();
+            let bound = (device.contract)(&without).bounds().governing().clone();
             if bound.keeps() {
                 kept = Better { config: without, bound };
             }

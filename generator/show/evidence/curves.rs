@@ -128,7 +128,7 @@ pub fn configuration(
     DeviceCurves {
         device: device.name.to_owned(),
         summary: device.summary.to_owned(),
-        bound_units: contract.bound().units,
+        bound_units: contract.bounds().governing().units,
         largest_colour,
         exponents,
         charts,

@@ -40,7 +40,8 @@ pub fn charts(contract: &dyn Contract) -> Vec<Chart> {
         let worst = (from..to).step_by(step as usize).map(|raw| contract.largest_error(&[raw]));
         errors.push(worst.fold(0.0, f64::max));
     }
-    let bound = contract.bound();
+    let bounds = contract.bounds();
+    let bound = bounds.governing();
     let top = errors.iter().copied().filter(|it| it.is_finite()).fold(bound.units, f64::max) * 1.1;
     let least = values.iter().copied().fold(f64::INFINITY, f64::min);
     let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);

@@ -266,3 +266,23 @@ fn a_proof_keeps_what_is_done() {
     let last = |text: &str| text.lines().last().expect("a line").to_owned();
     assert_eq!(last(&resumed), last(&whole));
 }
+
+/// Operands of 40 bits take days on any machine: 2^40 evaluations.
+#[test]
+fn a_long_proof_says_beforehand_how_long_it_takes() {
+    let config = "device = \"expression\"\noperands.x = { bits = 16, fraction = 15 }\n\
+                  operands.y = { bits = 16, fraction = 15 }\noperands.z = { bits = 8, fraction = 8 }\n\
+                  results.s = { formula = \"x*y + z\", fraction = 15 }\n";
+    let dir = Workspace::with("core.toml", config);
+    let arguments = ["cosim", "core.toml", "--exhaustive", "--resume", "state.json"];
+    let mut run = Running::start(&dir, &arguments);
+    run.until("state", |run| run.dir.at("state.json").exists());
+    let ended = run.interrupted_by(Signal::INT);
+    for part in [
+        "1 099 511 627 776 evaluations",
+        "on 1 000 cores",
+        "Ctrl-C stops the check; the same command continues it from `state.json`",
+    ] {
+        assert!(ended.out.contains(part), "{part}: {ended:?}");
+    }
+}

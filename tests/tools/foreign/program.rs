@@ -79,9 +79,9 @@ impl Formula for Root {
     }
 
     /// Returns the part's error grows by x, which is at most 2.
-    fn terms(&self) -> Vec<Term> {
+    fn terms(&self, _output: usize) -> Vec<Term> {
         let part = golden::function::contract(&part());
-        let error = part.bound().units * exp2(-part.outputs()[0].format.frac);
+        let error = part.bounds().governing().units * exp2(-part.outputs()[0].format.frac);
         let units = 2.0 * error * exp2(RESULT.frac);
         let rounding = Term { key: "root", what: "rounding of the result", units: 0.5 };
         vec![Term { key: "root", what: "the inverse root", units }, rounding]

@@ -216,6 +216,73 @@ fn registers_start_cores_and_give_their_results() {
     });
 }
 
+/// Operands whose last bit weighs 2, 4 and 2^40.
+const COARSE: &str = "device = \"expression\"
+name = \"coarse\"
+operands.a = { bits = 6, fraction = -2 }
+operands.b = { bits = 6, fraction = -40, signed = true }
+operands.c = { bits = 8, fraction = -1, signed = true }
+results.r = { formula = \"a / 4 + b / 2^40 + c / 2\", fraction = 0 }
+package.software = true
+package.systemverilog = true
+package.vhdl = true
+";
+
+/// The conversions of the C header and of the Rust module, with a call written as in both languages: a value, its fraction bits
+/// and the raw operand, by hand.
+const COARSE_CONVERSIONS: [(&str, i64, i32, i64); 16] = [
+    ("a", 100, 0, 25),
+    ("a", 2, 0, 1),
+    ("a", 1, 0, 0),
+    ("a", 100 << 20, 20, 25),
+    ("a", 1000, 0, 63),
+    ("a", -4, 0, 0),
+    ("a", 5, -2, 5),
+    ("a", 5, -3, 10),
+    ("b", 3 << 40, 0, 3),
+    ("b", -(3 << 40), 0, -3),
+    ("b", i64::MAX, 30, 0),
+    ("b", 1, -62, 31),
+    ("b", -1, -62, -32),
+    ("c", -3, 0, -1),
+    ("c", 1, -110, 127),
+    ("c", 0, -110, 0),
+];
+
+#[test]
+fn conversions_of_operands_with_coarse_units() {
+    for bus in ["axi-lite", "wishbone"] {
+        let core = parsed("core.toml", &format!("{COARSE}interface.registers = \"{bus}\"\n"));
+        let dir = Emitted::new(&core, 1, 1).tree();
+        let dir = &dir.path().join("software/coarse");
+        let mut c = String::from("#include \"coarse_registers.h\"\nint main(void)\n{\n");
+        let mut rust = String::from(
+            "#[path = \"coarse_registers.rs\"]\n#[allow(dead_code)]\nmod registers;\nfn main() {\n",
+        );
+        for (at, (operand, value, fraction, raw)) in COARSE_CONVERSIONS.iter().enumerate() {
+            let raw = *raw as i32 as u32;
+            let place = at + 1;
+            c += &format!(
+                "    if (coarse_{operand}_from_fixed(INT64_C({value}), {fraction}) != {raw}u) return {place};\n"
+            );
+            rust += &format!(
+                "    assert_eq!(registers::{operand}_from_fixed({value}, {fraction}), {raw}, \"{place}\");\n"
+            );
+        }
+        c += "    return COARSE_A_FRACTION == -2 ? 0 : 99;\n}\n";
+        rust += "}\n";
+        fs::write(dir.join("main.c"), c).expect("written");
+        fs::write(dir.join("main.rs"), rust).expect("written");
+        let strict = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror"];
+        let sanitized = ["-fsanitize=undefined", "-fno-sanitize-recover", "main.c", "-o", "main_c"];
+        ran("cc", &[&strict[..], &sanitized].concat(), dir);
+        ran("rustc", &["--edition=2021", "main.rs", "-o", "main_rs"], dir);
+        for program in ["./main_c", "./main_rs"] {
+            ran("sh", &["-c", program], dir);
+        }
+    }
+}
+
 /// Checks of the header's conversions, by hand: 1.0; a tie, upward; one below a tie; negative; too large.
 const CONVERSIONS: &str = include_str!("conversions.c");
 

@@ -76,7 +76,7 @@ fn at_rest(entry: &ComparisonEntry) -> Option<String> {
          {:.1e}, its bound",
         entry.label,
         others.join(", "),
-        contract.bound().f
+        contract.bounds().f
     ))
 }
 
@@ -107,7 +107,7 @@ fn print_errors(arguments: &Arguments, entries: &[ComparisonEntry]) {
                 }
             }
         }
-        row.push(entry.core.contract.bound().words());
+        row.push(entry.core.contract.bounds().words());
         rows.push(row);
     }
     tables::print(
@@ -304,7 +304,7 @@ fn csv_row(
         Some(accuracy) => row.extend(errors(accuracy).iter().map(f64::to_string)),
     }
     row.extend([
-        entry.core.contract.bound().units.to_string(),
+        entry.core.contract.bounds().governing().units.to_string(),
         entry.figures.clocks_per_point.to_string(),
         entry.core.design.rom_bits().to_string(),
         sizes(&entry.figures.multipliers),
@@ -362,7 +362,7 @@ fn entry_json(entry: &ComparisonEntry) -> Value {
         "name": entry.label,
         "device": core.device.name,
         "toml": core.config.to_toml(&schema),
-        "bound_units": core.contract.bound().units,
+        "bound_units": core.contract.bounds().governing().units,
         "clocks_per_point": entry.figures.clocks_per_point,
         "rom_bits": core.design.rom_bits(),
         "errors": entry.figures.accuracy,

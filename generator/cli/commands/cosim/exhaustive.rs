@@ -18,6 +18,7 @@ use crate::{OutputOptions, destination, progress, say, wrong_usage};
 use glint_base::{input, text};
 use glint_core::cosim::exhaustive::{Job, Shard, ShardState, kept};
 use glint_core::registry::Registry;
+use glint_golden::Sweep;
 use show::{announce, report};
 
 /// The time between two writes of the state.
@@ -46,6 +47,14 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
         );
     }
     let sweeps = loaded.iter().map(|one| arguments.sweep.of(one)).collect::<Result<Vec<_>>>()?;
+    for (one, sweep) in loaded.iter().zip(&sweeps) {
+        ensure!(
+            is_countable(sweep),
+            "`{}`: the operands have 2^64 combinations or more, and no check can go through them; choose values of \
+             operands with --values, or check a narrower configuration",
+            one.path
+        );
+    }
     let mut list = output.list();
     let mut holds = true;
     for (one, sweep) in loaded.iter().zip(sweeps) {
@@ -68,7 +77,7 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
         }
         if output.is_for_people() {
             announce(one, &job, &state);
-            announce_duration(&job, &state)?;
+            announce_duration(&job, &state, arguments.resume.as_deref())?;
         }
         prove(output, &job, &mut state, arguments.resume.as_deref())?;
         holds &= report(one, &job, &state, &mut list)?;
@@ -146,23 +155,39 @@ fn prove(
     }
 }
 
-/// Prints an estimate of the check's duration, from a short sample. Fails if the design cannot be simulated.
-fn announce_duration(job: &Job<'_>, state: &ShardState) -> Result<()> {
+/// Returns whether the number of combinations fits into 64 bits.
+fn is_countable(sweep: &Sweep) -> bool {
+    let mut counts = sweep.axes.iter().map(|axis| axis.values.count());
+    counts.try_fold(1, u64::checked_mul).is_some()
+}
+
+/// Prints an estimate of the check's duration, from a short sample. If the check is long, also prints how the user can stop it
+/// and continue it later. `resume` is the file with the saved state. Fails if the design cannot be simulated.
+fn announce_duration(job: &Job<'_>, state: &ShardState, resume: Option<&Path>) -> Result<()> {
     if job.remaining(state) == 0 {
         return Ok(());
     }
     let threads = rayon::current_num_threads();
     let duration = job.estimate(state, threads)?;
     let here = format!("{} on {}", roughly(duration), text::counted(threads, "thread"));
+    if duration < WORTH_SHARING {
+        say!("  {here}");
+        return Ok(());
+    }
     // This assumes cores of the same speed, which a job array has for itself alone. A check can have any number of shards.
     let elsewhere = CORES.map(|cores| {
         let duration = duration.mul_f64(threads as f64 / f64::from(cores));
         format!("{} on {}", roughly(duration), text::counted(cores as usize, "core"))
     });
-    if duration < WORTH_SHARING {
-        say!("  {here}");
-    } else {
-        say!("  {here} ({})", elsewhere.join(", "));
+    say!("  {here} ({})", elsewhere.join(", "));
+    match resume {
+        Some(file) => say!(
+            "  Ctrl-C stops the check; the same command continues it from `{}`",
+            file.display()
+        ),
+        None => say!(
+            "  Ctrl-C stops the check, and its work is lost; with --resume FILE, the same command continues it"
+        ),
     }
     Ok(())
 }

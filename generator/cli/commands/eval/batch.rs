@@ -11,7 +11,7 @@ use crate::commands::setup::REAL;
 use crate::commands::{Loaded, rows};
 use crate::report::CommandReport;
 use crate::{OutputOptions, failure, tables};
-use glint_golden::Contract;
+use glint_golden::{ANY_VALUE, Contract};
 
 /// The result of a point. The value is overwritten for each point, to avoid new allocations.
 #[derive(Default)]
@@ -22,7 +22,12 @@ struct PointResult {
     f: Option<i64>,
     outputs: Vec<i64>,
     exact_f: Option<f64>,
-    exact: Vec<[f64; 2]>,
+    /// The values of the formulas; NaN for a formula without a value.
+    exact: Vec<f64>,
+    /// Whether the contract promises an error, for each output.
+    promised: Vec<bool>,
+    /// The numbers of the outputs whose errors are promised under a condition.
+    conditional: Vec<usize>,
     inside: bool,
 }
 
@@ -41,7 +46,8 @@ pub fn batch(
     let contract = one.core.contract.as_ref();
     let (mut text, mut json) = (headings(contract), Vec::new());
     let for_people = output.is_for_people();
-    let mut row = PointResult::default();
+    let conditional = conditional_outputs(contract);
+    let mut row = PointResult { conditional, ..PointResult::default() };
     let mut missing = Vec::new();
     let mut show = |row: &PointResult| {
         if for_people {
@@ -162,7 +168,7 @@ fn points(
     row.inside = true;
     for (operand, raw) in known.iter().zip(&row.operands) {
         let (low, high) = operand.domain;
-        row.inside &= (low..=high).contains(raw);
+        row.inside &= operand.clamped || (low..=high).contains(raw);
     }
     for index in 0..=last {
         let raw = &row.operands;
@@ -175,7 +181,10 @@ fn points(
         row.outputs.clear();
         row.exact.clear();
         contract.results(raw, index, &mut row.outputs);
-        contract.exact(raw, index, &mut row.exact);
+        contract.formula_values(raw, index, &mut row.exact);
+        let mut sides = Vec::new();
+        contract.exact(raw, index, &mut sides);
+        row.promised = sides.into_iter().map(|sides| sides != ANY_VALUE).collect();
         row.point = length.map(|_| index);
         show(row);
     }
@@ -208,7 +217,16 @@ fn headings(contract: &dyn Contract) -> String {
         headings.push(format!("formula_{}", output.name));
     }
     headings.push("inside_the_domain".to_owned());
+    for number in conditional_outputs(contract) {
+        headings.push(format!("inside_where_{}", contract.outputs()[number].name));
+    }
     headings.join(",") + "\n"
+}
+
+/// Returns the numbers of the outputs whose errors are promised under a condition.
+fn conditional_outputs(contract: &dyn Contract) -> Vec<usize> {
+    let conditions = contract.conditions().unwrap_or_default();
+    (0..conditions.len()).filter(|number| conditions[*number].is_some()).collect()
 }
 
 /// Appends the result of a point as a row of CSV. Numbers need no quotes.
@@ -228,10 +246,17 @@ fn append(contract: &dyn Contract, row: &PointResult, text: &mut String) {
     if let Some(f) = row.exact_f {
         decimal(f, text);
     }
-    for &[value, _] in &row.exact {
-        decimal(value, text);
+    for &value in &row.exact {
+        match value.is_nan() {
+            true => text.push(','),
+            false => decimal(value, text),
+        }
     }
-    text.push_str(if row.inside { "true\n" } else { "false\n" });
+    text.push_str(if row.inside { "true" } else { "false" });
+    for &number in &row.conditional {
+        text.push_str(if row.promised[number] { ",true" } else { ",false" });
+    }
+    text.push('\n');
 }
 
 fn integer(value: i64, text: &mut String) {
@@ -259,13 +284,22 @@ fn as_json(contract: &dyn Contract, row: &PointResult) -> Value {
     for (output, raw) in contract.outputs().iter().zip(&row.outputs) {
         outputs.insert(output.name.clone(), json!(raw));
     }
-    let exact: Vec<f64> = row.exact.iter().map(|sides| sides[0]).collect();
+    let exact: Vec<Option<f64>> =
+        row.exact.iter().map(|value| (!value.is_nan()).then_some(*value)).collect();
     let mut point = json!({
         "operands": operands,
         "inside_the_domain": row.inside,
         "outputs": outputs,
         "formula": { "outputs": exact },
     });
+    let mut inside_where = Map::new();
+    for &number in &row.conditional {
+        let name = contract.outputs()[number].name.clone();
+        inside_where.insert(name, json!(row.promised[number]));
+    }
+    if !inside_where.is_empty() {
+        point["inside_where"] = Value::Object(inside_where);
+    }
     if let Some(index) = row.point {
         point["point"] = json!(index);
     }

@@ -17,7 +17,7 @@ pub fn plot(answer: &Answer, arguments: &Arguments) -> Result<String> {
     let (Some(first), Some(last)) = (answer.front.first(), answer.front.last()) else {
         bail!("there is no front to plot");
     };
-    let (low, high) = (arguments.unit.of(&first.bound), arguments.unit.of(&last.bound));
+    let (low, high) = (arguments.unit.of(&first.bounds), arguments.unit.of(&last.bounds));
     if answer.front.len() < 2 || low <= 0.0 || low >= high {
         bail!("one configuration is best in both error and area, so there is no line to plot");
     }
@@ -31,7 +31,7 @@ pub fn plot(answer: &Answer, arguments: &Arguments) -> Result<String> {
         front.push(&answer.best);
     }
     front.sort_by(|one, other| {
-        arguments.unit.of(&one.bound).total_cmp(&arguments.unit.of(&other.bound))
+        arguments.unit.of(&one.bounds).total_cmp(&arguments.unit.of(&other.bounds))
     });
     let on_front = |it: &Candidate| answer.front.iter().any(|other| other.config == it.config);
     let area = |shown: &dyn Fn(&Candidate) -> bool| -> Vec<f64> {
@@ -56,7 +56,7 @@ pub fn plot(answer: &Answer, arguments: &Arguments) -> Result<String> {
             0.0,
             values.iter().chain(&chosen).copied().fold(0.0, f64::max) * 1.1,
         ),
-        places: front.iter().map(|candidate| arguments.unit.of(&candidate.bound)).collect(),
+        places: front.iter().map(|candidate| arguments.unit.of(&candidate.bounds)).collect(),
         series: vec![
             Series { name: "front".to_owned(), values },
             Series { name: "the answer".to_owned(), values: chosen },

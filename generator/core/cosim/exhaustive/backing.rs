@@ -69,7 +69,7 @@ impl Backing {
         {
             return Ok(Self::Exhaustive(shown(&record.path)));
         }
-        let units = contract.bound().units;
+        let units = contract.bounds().governing().units;
         let proves = |it: &Certificate| {
             it.certified && it.contract == digest && (it.bound - units).abs() <= SAME
         };

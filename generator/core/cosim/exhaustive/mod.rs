@@ -57,7 +57,8 @@ impl Proof {
     pub fn new(contract: &dyn Contract, f: Peak, colours: Peak) -> Self {
         let colour = contract.operands().iter().find(|operand| operand.colour);
         let largest = colour.map_or(1.0, |operand| operand.domain.1 as f64);
-        let bound = contract.bound();
+        let bounds = contract.bounds();
+        let most = bounds.governing_units();
         let of_f = contract.highlight().is_some();
         let mut proof = Self { of_f, f, f_units: f.error * largest, colours, failures: Vec::new() };
         if f.error.is_infinite() {
@@ -67,18 +68,18 @@ impl Proof {
             ));
             return proof;
         }
-        if f.error > bound.f + ROUNDING_OF_F64 / largest {
+        if f.error > bounds.f + ROUNDING_OF_F64 / largest {
             let what =
                 if of_f { "the error of f is" } else { "the error of an output, in units, is" };
             proof
                 .failures
-                .push(format!("{what} {:e}, above the stated bound of {:e}", f.error, bound.f));
+                .push(format!("{what} {:e}, above the stated bound of {:e}", f.error, bounds.f));
         }
-        if proof.together() > bound.units + ROUNDING_OF_F64 {
+        if proof.together() > most + ROUNDING_OF_F64 {
             proof.failures.push(format!(
                 "the error of an output can be {:.4} units, above the stated bound of {:.4}",
                 proof.together(),
-                bound.units
+                most
             ));
         }
         proof
@@ -90,9 +91,9 @@ impl Proof {
     pub fn verdict(&self, contract: &dyn Contract, sweep: &Sweep) -> &'static str {
         if !self.failures.is_empty() {
             "FAILS"
-        } else if !contract.bound().is_stated() {
+        } else if !contract.bounds().are_stated() {
             "no bound is stated"
-        } else if !contract.bound().keeps() {
+        } else if !contract.bounds().keep() {
             "within its bound, outside the contract"
         } else if sweep.omits.is_empty() {
             "proved"

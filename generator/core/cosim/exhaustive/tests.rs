@@ -3,9 +3,15 @@
 use std::ops::ControlFlow;
 
 use super::*;
-use glint_golden::{Axis, Bound, Operand, Output, Sweep, Values};
+use std::sync::LazyLock;
 
-/// A contract without outputs. Its "error" is the number of the place, 0, 1, 2 and so on, and its largest value occurs at many
+use glint_base::fixed::Format;
+use glint_golden::{Axis, Bound, Bounds, Operand, Output, Sweep, Term, Values};
+
+static OUTPUT: LazyLock<Output> =
+    LazyLock::new(|| Output { name: "place".to_owned(), format: Format::unsigned(20, 1) });
+
+/// A contract with one output, which is never computed. Its "error" is the number of the place, 0, 1, 2 and so on, and its largest value occurs at many
 /// places.
 struct Counting;
 
@@ -14,12 +20,13 @@ impl Contract for Counting {
         &[]
     }
     fn outputs(&self) -> &[Output] {
-        &[]
+        std::slice::from_ref(&*OUTPUT)
     }
     fn results(&self, _: &[i64], _: u64, _: &mut Vec<i64>) {}
     fn exact(&self, _: &[i64], _: u64, _: &mut Vec<[f64; 2]>) {}
-    fn bound(&self) -> Bound {
-        Bound { f: 1.0, units: 1.0, limit: 1.0, terms: Vec::new() }
+    fn bounds(&self) -> Bounds {
+        let term = Term { key: "none", what: "everything", units: 1.0 };
+        Bounds::alike(1.0, &Bound::of(vec![term]), self.outputs())
     }
     fn sweep(&self) -> Sweep {
         let axis = |values| Axis { name: String::new(), values };

@@ -91,6 +91,11 @@ impl CField {
         format!("{:?}", glint_base::fixed::exp2(self.format.frac))
     }
 
+    /// Returns the number of fraction bits as a C expression.
+    fn fraction_bits(&self) -> String {
+        c_integer(self.format.frac)
+    }
+
     /// Returns the weight of the lowest bit as a C double: exactly 2^-F, with F fraction bits.
     fn unit(&self) -> String {
         format!("{:?}", glint_base::fixed::exp2(-self.format.frac))
@@ -412,4 +417,9 @@ fn tables(design: &Design, names: &[String], read: &[RomId]) -> Vec<String> {
         lines.push(String::new());
     }
     lines
+}
+
+/// Returns an integer as a C expression that keeps its value inside any other expression: a negative one is in parentheses.
+pub(super) fn c_integer(value: i32) -> String {
+    if value < 0 { format!("({value})") } else { value.to_string() }
 }

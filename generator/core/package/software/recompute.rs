@@ -111,7 +111,7 @@ pub fn file(job: &EmitJob, read: &[RomId], files: &mut OutputFiles) -> Result<()
     let memories = CheckedMemories::new(design, read, files);
     let program = match RecomputedContract::new(name, facts)? {
         RecomputedContract::Function(formula) => {
-            function_program(job, design, facts.bound, formula, memories)?
+            function_program(job, design, facts.bounds[0], formula, memories)?
         }
         RecomputedContract::Expression(conditions) => {
             expression_program(job, design, facts, conditions, memories)?

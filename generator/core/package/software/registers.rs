@@ -6,6 +6,7 @@
 use anyhow::Result;
 use glint_base::fill;
 
+use super::model::c_integer;
 use crate::package::bus::Bus;
 use crate::package::emit_job::EmitJob;
 use crate::package::file_kind::FileKind;
@@ -70,6 +71,10 @@ impl OperandConversion {
             least => least.to_string(),
         };
         (least, self.format.max_raw().min(i64::MAX.into()).to_string())
+    }
+
+    fn c_fraction(&self) -> String {
+        c_integer(self.format.frac)
     }
 
     fn rust_limits(&self) -> (String, String) {

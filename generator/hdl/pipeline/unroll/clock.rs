@@ -47,7 +47,7 @@ impl<'e, 'a> Clock<'e, 'a> {
         let net = design.net(id);
         let label = label(net);
         let value = match &net.driver {
-            Driver::Constant(bits) => self.constant(*bits, net.format, &label),
+            Driver::Constant(bits) => self.graph().described_constant(*bits, net.format, &label),
             Driver::Input => self.input(id, net, &label),
             Driver::Field(field) => match self.address {
                 Some(address) => {

@@ -14,7 +14,7 @@ use glint_config::{Config, Key, Schema, shared_keys};
 use glint_core::cosim::exhaustive::Backing;
 use glint_core::package::facts::{self, SequenceFacts};
 use glint_core::package::{HandshakeTiming, LineClocks, Linear, Surroundings, WorkedExample};
-use glint_golden::{Bound, Contract, Values};
+use glint_golden::{Bound, Bounds, Contract, Values};
 use glint_rtl::netlist::{Design, Pipeline};
 use glint_rtl::verilog::naming::Naming;
 pub use table::{Align, Column, TextTable, code};
@@ -77,16 +77,32 @@ pub fn limit(inputs: &PageInputs) -> String {
 
 /// Returns sentences about the error bound and the evidence for it. If the contract states no bound, the text says so.
 pub fn accuracy(contract: &dyn Contract, backing: &Backing) -> String {
-    let bound = contract.bound();
-    if !bound.is_stated() {
+    let bounds = contract.bounds();
+    if !bounds.are_stated() {
         return format!(
             "The contract states no bound of the error; `{Program} certify` finds one where it can."
         );
     }
-    let side = if bound.keeps() { "inside" } else { "outside" };
-    let unit = if bound.limit == 1.0 { "unit" } else { "units" };
-    let verdict = format!("which is {side} the contract (less than {} {unit})", bound.limit);
     let proven = format!("{}; this is what it is made of:", backing.sentence());
+    let sentence_of = |bound: &Bound| {
+        let side = if bound.keeps() { "inside" } else { "outside" };
+        let unit = if bound.limit == 1.0 { "unit" } else { "units" };
+        format!("which is {side} the contract (less than {} {unit})", bound.limit)
+    };
+    if !bounds.are_alike() {
+        let mut each = Vec::new();
+        for bound in &bounds.outputs {
+            let (output, units) = (code(&bound.output), bound.words());
+            each.push(format!("{output} by at most {units} units, {}", sentence_of(bound)));
+        }
+        return format!(
+            "The outputs differ from the formulas in f64, unrounded, at the quantised operands: {}. A unit is the last \
+             place of the output. {proven}",
+            each.join("; ")
+        );
+    }
+    let bound = bounds.governing();
+    let verdict = sentence_of(bound);
     if contract.highlight().is_none() {
         return format!(
             "An output differs from the formula in f64, unrounded, at the quantised operands, by at most {} units, \
@@ -98,7 +114,7 @@ pub fn accuracy(contract: &dyn Contract, backing: &Backing) -> String {
         "An output differs from K·f by at most {} units, {verdict}. K is the integer of its colour operand, f the \
          formula in f64, unrounded, at the quantised operands. The word f itself is off by at most {:.2e}. {proven}",
         bound.words(),
-        bound.f
+        bounds.f
     )
 }
 
@@ -313,11 +329,21 @@ pub fn pipeline_clocks(pipeline: &Pipeline) -> TextTable {
     table
 }
 
-/// Returns a table of the terms that add up to an error bound.
-pub fn terms(bound: &Bound) -> TextTable {
-    let mut table = TextTable::of("key | units: | what rounds or approximates");
-    for term in &bound.terms {
-        table.row([code(term.key), rounded_up(term.units, 3), term.what.to_owned()]);
+/// Returns a table of the terms that add up to the error bound of each output, or of all outputs if they have the same bound.
+pub fn terms(bounds: &Bounds) -> TextTable {
+    if bounds.are_alike() {
+        let mut table = TextTable::of("key | units: | what rounds or approximates");
+        for term in &bounds.governing().terms {
+            table.row([code(term.key), rounded_up(term.units, 3), term.what.to_owned()]);
+        }
+        return table;
+    }
+    let mut table = TextTable::of("output | key | units: | what rounds or approximates");
+    for bound in &bounds.outputs {
+        for term in &bound.terms {
+            let units = rounded_up(term.units, 3);
+            table.row([code(&bound.output), code(term.key), units, term.what.to_owned()]);
+        }
     }
     table
 }

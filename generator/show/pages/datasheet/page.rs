@@ -126,7 +126,7 @@ pub fn page(subject: &Subject, measured: &DatasheetResults) -> Result<String> {
     let about = &design.about;
     let contract = core.contract.as_ref();
     let schema = (core.device.schema)();
-    let bound = contract.bound();
+    let bound = contract.bounds();
     let inputs = PageInputs {
         path,
         config: &core.config,
@@ -225,8 +225,8 @@ fn glance(subject: &Subject, measured: &DatasheetResults) -> Vec<(&'static str, 
         0 => flip_flops.to_string(),
         _ => format!("{}, and {delayed} in delay lines", flip_flops - delayed),
     };
-    let bound = contract.bound();
-    let error = if bound.is_stated() {
+    let bound = contract.bounds();
+    let error = if bound.are_stated() {
         format!("{} units, {}", bound.words(), subject.backing)
     } else {
         "no bound is stated".to_owned()

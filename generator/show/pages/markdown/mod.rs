@@ -75,7 +75,7 @@ impl ControlTables {
 /// Fails if the template cannot be printed.
 pub fn page(design: &Design, inputs: &PageInputs) -> Result<String> {
     let about = &design.about;
-    let bound = inputs.contract.bound();
+    let bound = inputs.contract.bounds();
     let text = glint_base::template::render(&Page {
         title: prose(&about.title),
         device: &about.device,

@@ -118,7 +118,7 @@ fn print(one: &Loaded, job: &Job<'_>, proof: &Proof, state: &ShardState) {
     say!(
         "  {} (bound {}): {verdict}",
         proof.words(&format!(", at raw {}", at.join(" "))),
-        one.core.contract.bound().words(),
+        one.core.contract.bounds().words(),
     );
     for failure in &proof.failures {
         say!("  FAILS: {failure}");
@@ -162,7 +162,7 @@ fn as_json(
         },
         "colour_units": proof.colours.error,
         "together": proof.together(),
-        "bound": one.core.contract.bound().units,
+        "bound": one.core.contract.bounds().governing().units,
         "holds": proof.failures.is_empty(),
         "verdict": proof.verdict(one.core.contract.as_ref(), places.sweep()),
         "faults": proof.failures,
