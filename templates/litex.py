@@ -52,7 +52,7 @@ class ${ class }$Core(LiteXModule):
         self.operand_${ operand.name }$ = CSRStorage(${ operand.width }$, name="operand_${ operand.name }$")
 <%- endfor %>
 <%- for result in core.results %>
-        self.result_${ result.name }$ = CSRStatus(${ result.width }$, name="result_${ result.name }$")
+        self.result_${ result.name }$ = CSRStatus(${ result.status_width }$, name="result_${ result.name }$")
 <%- endfor %>
         self.control = CSRStorage(
             fields=[CSRField("start", description="Starts a computation.", pulse=True)]
@@ -72,6 +72,13 @@ class ${ class }$Core(LiteXModule):
             start.eq(self.control.fields.start),
             self.status.fields.busy.eq(start | busy),
         ]
+<%- for result in core.results %>
+<%- if result.is_extended() %>
+        # The status register has copies of the sign above the result.
+        ${ result.name }$ = Signal((${ result.width }$, True))
+        self.comb += self.result_${ result.name }$.status.eq(${ result.name }$)
+<%- endif %>
+<%- endfor %>
         self.specials += Instance(
             "${ core.top.module }$",
             i_${ core.top.clock }$=ClockSignal(),
@@ -87,7 +94,11 @@ class ${ class }$Core(LiteXModule):
             i_${ port.name }$=0,
 <%- endfor %>
 <%- for result in core.results %>
+<%- if result.is_extended() %>
+            o_${ result.name }$=${ result.name }$,
+<%- else %>
             o_${ result.name }$=self.result_${ result.name }$.status,
+<%- endif %>
 <%- endfor %>
         )
 <%- for file in core.top.verilog %>

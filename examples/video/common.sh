@@ -34,7 +34,9 @@ need() {
     GLINT=$(realpath "$(command -v "$GLINT")")
 }
 
-# Goes to the directory for a scene on a board, with the core's contents of memories in it. `sources` is the Verilog.
+# Goes to the directory for a scene on a board, with the core's contents of memories and copies of all Verilog in it. `sources` is
+# the Verilog, by file names without a blank and without a directory above this one: Yosys splits its scripts at blanks, and tools
+# that are WebAssembly do not see every directory.
 prepare() {
     local place=$1 board=$2 scene=$3 file
     mkdir -p "$place/$board-$scene"
@@ -43,7 +45,8 @@ prepare() {
         fail "glint generate failed; see $PWD/generate.txt"
     sources=(rtl_out/"${core[$scene]}"/*.v)
     for file in ${files[$board]} ${files[$scene]}; do
-        sources+=("$here/$file")
+        cp "$here/$file" .
+        sources+=("$file")
     done
     if [[ $scene == mesh ]]; then
         cp rtl_out/spans/*.mem .

@@ -94,6 +94,9 @@ pub struct TargetFunction {
     pub error: f64,
 }
 
+/// The remedy for a function whose domain has too many operands for an approximation or a proof.
+const WIDE_REMEDY: &str = "use device = \"expression\", which divides such a domain into octaves, or set a smaller operand.fraction";
+
 /// The reason why a search found no approximation, and the configuration key that the user should change.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Refusal {
@@ -454,7 +457,8 @@ impl Piecewise {
         if error >= function.error {
             let message =
                 format!("at the raw operand {raw}, the error of the result is {error:.4} units");
-            return Err(Refusal::new("result.error", message, "allow a larger error"));
+            let remedy = if function.is_wide() { WIDE_REMEDY } else { "allow a larger error" };
+            return Err(Refusal::new("result.error", message, remedy));
         }
         Ok(error)
     }

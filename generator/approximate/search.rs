@@ -1,6 +1,7 @@
 //! Searches for the cheapest piecewise polynomial that approximates a function. The search tries some combinations of degree,
 //! segments and bit widths, so a cheaper polynomial may exist. Costs are in look-up tables with four inputs.
 
+use super::WIDE_REMEDY;
 use super::reduction::KEY;
 use super::seen::AllowedResults;
 use super::table::{BITS_A_CELL, Table, Widths};
@@ -173,11 +174,7 @@ fn attempt_reduced(function: &TargetFunction, wish: Wish) -> Result<Option<Piece
             "with a reduction, Glint computes every operand, and the domain has more than 2^{MOST_BITS} \
              operands"
         );
-        return Err(Refusal::new(
-            KEY,
-            message,
-            "set approximation.reduction to \"none\", or set a smaller operand.fraction",
-        ));
+        return Err(Refusal::new(KEY, message, WIDE_REMEDY));
     }
     for &(guard, wider) in variants(wish.identity) {
         let (reduction, inner) = Reduction::of(wish.identity, function, guard, wider)?;

@@ -11,7 +11,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use rayon::prelude::*;
 
-use super::{Curve, Piecewise, Refusal, TargetFunction};
+use super::{Curve, Piecewise, Refusal, TargetFunction, WIDE_REMEDY};
 use glint_base::fixed::exp2;
 use glint_base::interval::{self, Interval};
 use glint_formula::Enclosure;
@@ -185,5 +185,5 @@ impl Piecewise {
 /// Returns the refusal of a proof that needs too many intervals.
 fn unproved() -> Refusal {
     let message = format!("the bound cannot be proved with 2^{} intervals", MOST.ilog2());
-    Refusal::new("result.error", message, "allow a larger error, or set a smaller operand.fraction")
+    Refusal::new("result.error", message, WIDE_REMEDY)
 }

@@ -10,7 +10,7 @@ use glint_plan::ProvedPlan;
 use glint_rtl::dsl::Designer;
 use glint_rtl::netlist::About;
 
-use crate::plan::describe_plan;
+use crate::plan::{PlanOutput, describe_plan};
 
 /// Describes the hardware of `expression`: a datapath and a microprogram for the plan of the configuration's formulas. Each
 /// result has an output port, whose name is the result's name followed by `_out`.
@@ -19,10 +19,14 @@ use crate::plan::describe_plan;
 /// Panics if the schema's check does not accept the configuration. The caller must check the configuration first.
 pub fn describe(d: &Designer, config: &Config) {
     let found = found(config).expect("a configuration that is checked");
-    d.about(about(&Keys::of(config), &found));
+    let keys = Keys::of(config);
+    d.about(about(&keys, &found));
     let is_pipelined = Shared::of(config).architecture == "pipelined";
-    let results = found.statement.results.iter();
-    let outputs: Vec<String> = results.map(|result| format!("{}_out", result.name)).collect();
+    let mut outputs = Vec::new();
+    for record in &keys.results.0 {
+        let doc = record.text("doc").unwrap_or_default().to_owned();
+        outputs.push(PlanOutput { name: format!("{}_out", record.name), doc });
+    }
     describe_plan(d, &found.statement.operands, &found.plan, &outputs, is_pipelined);
 }
 

@@ -12,7 +12,7 @@ use glint_plan::ExpressionPlan;
 use glint_rtl::dsl::Designer;
 use glint_rtl::netlist::About;
 
-use crate::plan::describe_plan;
+use crate::plan::{PlanOutput, describe_plan};
 
 /// Describes the hardware of `function`: a table of coefficients, and Horner's rule with one multiplier.
 ///
@@ -24,7 +24,8 @@ pub fn describe(d: &Designer, config: &Config) {
     let plan = ExpressionPlan::of_function(&function, &it).expect("a plan that was checked");
     let operand = operand(&it);
     let is_pipelined = Shared::of(config).architecture == "pipelined";
-    describe_plan(d, &[operand], &plan, &["result_out".to_owned()], is_pipelined);
+    let output = PlanOutput { name: "result_out".to_owned(), doc: String::new() };
+    describe_plan(d, &[operand], &plan, &[output], is_pipelined);
 }
 
 fn about(keys: &Keys, proof: &str, it: &Piecewise) -> About {

@@ -16,21 +16,32 @@ use glint_rtl::dsl::{Designer, Register, Signal, Step, end, step, valid};
 use crate::mirror::MirrorChain;
 use crate::piecewise::{PolynomialDatapath, StepMultiplier, Tables, number};
 
+/// An output port of a plan's hardware.
+pub(super) struct PlanOutput {
+    /// The name of the port.
+    pub(super) name: String,
+    /// The user's remark about the result; empty without one.
+    pub(super) doc: String,
+}
+
 /// Describes the hardware of a plan. Result number k of the plan is connected to the port `outputs[k]`. `is_pipelined` decides
 /// how tables store their coefficients.
 pub(super) fn describe_plan(
     d: &Designer,
     operands: &[StatedOperand],
     plan: &ExpressionPlan,
-    outputs: &[String],
+    outputs: &[PlanOutput],
     is_pipelined: bool,
 ) {
     let schedule = plan.schedule();
     let mut datapath = PlanDatapath::new(d, operands, plan, &schedule, is_pipelined);
     datapath.build();
     let steps = datapath.microprogram();
-    for (name, node) in outputs.iter().zip(&plan.results) {
-        d.output(name, datapath.signal(*node));
+    for (PlanOutput { name, doc }, node) in outputs.iter().zip(&plan.results) {
+        let output = d.output(name, datapath.signal(*node));
+        if !doc.is_empty() {
+            let _ = output.doc(doc);
+        }
     }
     d.microprogram(steps);
 }
@@ -175,7 +186,7 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
         let input = |id: &NodeId| self.signals[id.0].expect("a node that is built");
         let value = match &node.operation {
             Operation::Operand(number) => {
-                let StatedOperand { name, format, domain, outside } = &self.operands[*number];
+                let StatedOperand { name, format, domain, outside, doc } = &self.operands[*number];
                 let register = match outside {
                     Outside::Clamp => {
                         let [first, last] =
@@ -184,7 +195,11 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
                     }
                     Outside::Wrap | Outside::Anything => d.operand(name, *format),
                 };
-                let doc = if self.operands.len() == 1 { "the operand" } else { "an operand" };
+                let doc = match (doc.as_str(), self.operands.len()) {
+                    ("", 1) => "the operand",
+                    ("", _) => "an operand",
+                    (doc, _) => doc,
+                };
                 return register.doc(doc).q();
             }
             Operation::Constant { raw, .. } => d.raw_constant(name, *raw, *format),

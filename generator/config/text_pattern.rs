@@ -14,6 +14,9 @@ pub enum TextPattern {
     /// A formula or a number, of 1 to 500 characters without control characters. The formula parser decides which other
     /// characters a formula may have, because it can mark the wrong character in its message.
     Formula,
+    /// A remark in one line: 1 to 80 ASCII letters, digits, blanks and `.,:;()+-_%=/`, beginning with a letter. For example,
+    /// `distance of the lamp in mm`.
+    Remark,
     /// Samples as pairs `x,y x,y`, or an empty text. For example, `0,0 0.5,0.25 1,1`. Only the characters and the length (at most
     /// 2^20 bytes) are checked. A configuration file may state the path of a CSV file instead, which the reader replaces by its
     /// points.
@@ -25,6 +28,9 @@ const LONGEST_FORMULA: usize = 500;
 
 /// The largest number of bytes of samples.
 const LONGEST_SAMPLES: usize = 1 << 20;
+
+/// The largest number of characters of a remark.
+const LONGEST_REMARK: usize = 80;
 
 /// The largest number of bytes of a name or a licence.
 const LONGEST: usize = 60;
@@ -49,6 +55,10 @@ impl TextPattern {
                 let count = text.chars().count();
                 (1..=LONGEST_FORMULA).contains(&count) && !text.chars().any(char::is_control)
             }
+            TextPattern::Remark => {
+                let good = |c: char| c.is_ascii_alphanumeric() || " .,:;()+-_%=/".contains(c);
+                first("") && text.len() <= LONGEST_REMARK && text.chars().all(good)
+            }
             TextPattern::Samples => {
                 let good = |c: char| c.is_ascii_digit() || " .,+-eE".contains(c);
                 text.len() <= LONGEST_SAMPLES && text.chars().all(good)
@@ -67,6 +77,7 @@ impl TextPattern {
             TextPattern::Name => "^[A-Za-z][A-Za-z0-9._-]{0,59}$",
             TextPattern::Licence => "^[A-Za-z(][A-Za-z0-9 .+()-]{0,59}$",
             TextPattern::Formula => "^[^\\x00-\\x1f\\x7f-\\x9f]{1,500}$",
+            TextPattern::Remark => "^[A-Za-z][A-Za-z0-9 .,:;()+_%=/-]{0,79}$",
             TextPattern::Samples => {
                 "^([0-9 .,+eE-]*|.+[.]([cC][sS][vV]|[tT][xX][tT]|[tT][sS][vV]|[dD][aA][tT]))$"
             }
@@ -85,6 +96,9 @@ impl TextPattern {
             }
             TextPattern::Formula => {
                 "a formula of at most 500 characters, as \"1 / sqrt(x)\", or a number"
+            }
+            TextPattern::Remark => {
+                "a remark of at most 80 letters, digits, blanks and .,:;()+-_%=/, beginning with a letter"
             }
             TextPattern::Samples => {
                 "the path of a file that ends in .csv, .tsv, .txt or .dat, from the configuration's directory, or points as \"0,0 1,0.5\""
@@ -127,6 +141,11 @@ mod tests {
                 TextPattern::Formula,
                 vec!["1 / sqrt(x)", "if(x <= 2, -x, 3 · x^2 % 4)"],
                 vec!["", "x\n", "x\u{85}"],
+            ),
+            (
+                TextPattern::Remark,
+                vec!["distance of the lamp in mm", "U (0 to 3.3 V), 12 bits"],
+                vec!["", " x", "a\nb", "a \"b\"", "*/ x", "é"],
             ),
             (
                 TextPattern::Samples,

@@ -88,7 +88,7 @@ impl Core {
         config: Config,
         design: Result<Design, DesignError>,
     ) -> Result<Self> {
-        let design = match design {
+        let mut design = match design {
             Ok(design) => design,
             Err(DesignError::Key(error)) => return Err(error.into()),
             Err(DesignError::Description(mistakes)) => {
@@ -103,6 +103,14 @@ impl Core {
         device.check_golden(&config)?;
         let contract = (device.contract)(&config);
         device.check_contract(&config, &design, contract.as_ref())?;
+        if !device.proved && contract.bounds().are_stated() {
+            // The descriptions of the catalogue state their bounds themselves, or refer to their pages.
+            let note = format!(
+                "The author of the device states that the error of an output is at most {} units of its last place.",
+                contract.bounds().words()
+            );
+            design.about.notes.push(note.into());
+        }
         let asked = Surroundings::new(&config, design.pipeline.as_ref());
         if asked.software && asked.recomputation {
             package::check_recomputation(&design.name, &ContractFacts::new(contract.as_ref()))?;

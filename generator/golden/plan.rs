@@ -85,7 +85,7 @@ pub(super) fn plan_device(
     let schedule = plan.schedule();
     let mut frame = Frame::default();
     let mut slots = Vec::new();
-    for StatedOperand { name, format, domain, outside } in operands {
+    for StatedOperand { name, format, domain, outside, .. } in operands {
         slots.push(match outside {
             Outside::Clamp => frame.clamped(name, *format, domain.0, domain.1),
             Outside::Wrap | Outside::Anything => frame.operand(name, *format),

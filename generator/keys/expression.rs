@@ -56,6 +56,12 @@ fn operand_fields() -> Vec<Key> {
             "The result for operands outside the domain. anything: any result. clamp: the result of the nearer \
              end of the domain.",
         ),
+        Key::text(
+            "doc",
+            "the input",
+            TextPattern::Remark,
+            "A remark, which the emitted files contain.",
+        ),
     ]
 }
 
@@ -98,6 +104,12 @@ fn result_fields() -> Vec<Key> {
             TextPattern::Formula,
             "A comparison of two formulas. The error bound holds for the operands for which the comparison is \
              true.",
+        ),
+        Key::text(
+            "doc",
+            "the result",
+            TextPattern::Remark,
+            "A remark, which the emitted files contain.",
         ),
     ]
 }
@@ -301,6 +313,7 @@ fn check_names(keys: &Keys) -> Result<(), StatementError> {
 fn operand(record: &TableEntry) -> Result<StatedOperand, StatementError> {
     let key = |field: &str| format!("operands.{}.{field}", record.name);
     let name = record.name.clone();
+    let doc = record.text("doc").unwrap_or_default().to_owned();
     let whole = format!("operands.{name}");
     let Some(Value::Integer(fraction)) = record.field("fraction") else {
         let remedy =
@@ -332,6 +345,7 @@ fn operand(record: &TableEntry) -> Result<StatedOperand, StatementError> {
             format,
             domain: (low as i64, high as i64),
             outside: Outside::Anything,
+            doc,
         });
     }
     let (Some(from), Some(to)) = (from, to) else {
@@ -382,7 +396,7 @@ fn operand(record: &TableEntry) -> Result<StatedOperand, StatementError> {
         _ => Outside::Anything,
     };
     let format = Format::holding(low, high, frac);
-    Ok(StatedOperand { name, format, domain: (low as i64, high as i64), outside })
+    Ok(StatedOperand { name, format, domain: (low as i64, high as i64), outside, doc })
 }
 
 fn end(text: &str, fraction: u32, key: String) -> Result<End, StatementError> {

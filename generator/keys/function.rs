@@ -113,6 +113,7 @@ pub fn operand(polynomials: &Piecewise) -> StatedOperand {
         format: polynomials.operand,
         domain: polynomials.domain,
         outside: polynomials.outside,
+        doc: String::new(),
     }
 }
 

@@ -210,7 +210,11 @@ impl ExcessiveResult {
             self.worst.words(plan),
             statement.place(&self.worst.limits)
         );
-        let remedy = "allow a larger error, or exclude these operands with `where`";
+        let remedy = match self.worst.units.is_finite() {
+            true => "allow a larger error, or exclude these operands with `where`",
+            // No error that can be stated is large enough.
+            false => "exclude these operands with `where`, or with the domains of the operands",
+        };
         PlanRefusal::new(message, remedy).of_result(self.result)
     }
 }

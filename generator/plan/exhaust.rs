@@ -102,6 +102,6 @@ fn without_value(
 ) -> PlanRefusal {
     let limits: Vec<(i64, i64)> = raw.iter().map(|raw| (*raw, *raw)).collect();
     let message = format!("at {}: {}", statement.place(&limits), fault.message);
-    let remedy = "exclude these operands with `where`, for example where = \"y > 0\"";
+    let remedy = "exclude these operands with `where`";
     PlanRefusal::new(message, remedy).at(&fault.span).of_result(result)
 }

@@ -306,7 +306,11 @@ pub(super) fn enclosed_errors(
                 worst.words(plan),
                 statement.place(&worst.limits)
             );
-            return Err(PlanRefusal::new(message, "allow a larger error").of_result(result));
+            let remedy = match worst.units.is_finite() {
+                true => "allow a larger error",
+                false => "exclude these operands with `where`, or with the domains of the operands",
+            };
+            return Err(PlanRefusal::new(message, remedy).of_result(result));
         }
         bounds.push(worst.units);
     }

@@ -16,6 +16,7 @@
 //!     format: byte,
 //!     domain: (0, 255),
 //!     outside: Outside::Anything,
+//!     doc: String::new(),
 //! };
 //! let length = StatedResult {
 //!     name: "length".to_owned(),

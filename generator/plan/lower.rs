@@ -210,10 +210,12 @@ impl<'s> Lowering<'s> {
         if is_refused && !(format.holds(low) && format.holds(high)) {
             let [low, high] = [low, high].map(|raw| own.to_f64(raw));
             let message = format!(
-                "`{name}` has {} bits ({format}), but its values need {own}: they are from {low} to {high}",
+                "`{name}` has {} bits ({format}), and intervals show only that its values are from {low} to {high}, \
+                 which need {own}",
                 format.width()
             );
-            let remedy = "give the result more bits, or set overflow = \"saturate\" or \"wrap\"";
+            let remedy = "give the result more bits, or set overflow = \"saturate\" if the values always fit or may \
+                          be limited, or \"wrap\"";
             return Err(PlanRefusal::new(message, remedy));
         }
         self.plan.narrow(&format!("{name}_in_width"), node, *format, Rounding::Truncate)

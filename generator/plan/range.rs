@@ -5,7 +5,7 @@ use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 use std::sync::Arc;
 
-use glint_formula::{Enclosure, Expression, Function, Kind};
+use glint_formula::{Enclosure, Expression, Function, Kind, Operator};
 
 use super::boxes::{BoxScore, OperandBox, best_halves};
 use super::refusal::PlanRefusal;
@@ -19,7 +19,44 @@ const DIVISIONS_OF_AN_END: usize = 300;
 
 /// The remedy for a formula that has no finite value.
 pub(super) const LIMIT_THE_OPERANDS: &str =
-    "limit the operands with `where`, for example where = \"y > 0\", or with `from` and `to`";
+    "limit the operands with `where`, or with `from` and `to`";
+
+/// The largest number of parts of a condition that a remedy shows.
+const MOST_PARTS_OF_A_CONDITION: u32 = 12;
+
+/// Returns the remedy for a part of a formula that has no finite value for operands in a box, with a condition that would
+/// exclude the operands, if one is known. For example, `1 / (x - y)` gives the condition `x - y > 0`.
+fn limiting_remedy(
+    statement: &ExpressionStatement,
+    part: &Expression,
+    limits: &OperandBox,
+) -> String {
+    let operands = statement.enclosed_operands(limits);
+    match condition_for(part, &operands) {
+        Some(condition) => format!(
+            "limit the operands with `where`, for example where = \"{condition}\", or with `from` and `to`"
+        ),
+        None => LIMIT_THE_OPERANDS.to_owned(),
+    }
+}
+
+/// Returns a condition under which the innermost part without a value has one: a divisor or the operand of a logarithm is above 0,
+/// or the operand of a root is not below 0. Returns `None` if no such part is found, or if the condition would be long.
+fn condition_for(part: &Expression, operands: &[(&str, Enclosure)]) -> Option<String> {
+    for inner in part.parts() {
+        if inner.enclose(operands).map_or(true, |value| !value.is_finite()) {
+            return condition_for(inner, operands);
+        }
+    }
+    let (limited, sign) = match &part.kind {
+        Kind::Binary(Operator::Div | Operator::Mod, _, divisor) => (divisor, ">"),
+        Kind::Binary(Operator::Power, base, _) => (base, ">"),
+        Kind::Unary(Function::Ln | Function::Log2, operand) => (operand, ">"),
+        Kind::Unary(Function::Sqrt, operand) => (operand, ">="),
+        _ => return None,
+    };
+    (limited.size() <= MOST_PARTS_OF_A_CONDITION).then(|| format!("{} {sign} 0", limited.python()))
+}
 
 /// The reason why no interval for the values of a part was found.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,7 +74,8 @@ impl NoRange {
             Self::NotFinite(limits) => {
                 let place = statement.place(&limits);
                 let message = format!("this is not finite, or has no value, for {place}");
-                PlanRefusal::new(message, LIMIT_THE_OPERANDS).at(&part.span)
+                let remedy = limiting_remedy(statement, part, &limits);
+                PlanRefusal::new(message, remedy).at(&part.span)
             }
             Self::NothingPromised => PlanRefusal::new(
                 "no operands in the domains satisfy `where`",

@@ -26,6 +26,8 @@ pub struct StatedOperand {
     pub domain: (i64, i64),
     /// The treatment of operands outside the domain.
     pub outside: Outside,
+    /// The user's remark about the operand; empty without one.
+    pub doc: String,
 }
 
 /// A result: its formula, and its allowed error.

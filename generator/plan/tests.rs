@@ -19,6 +19,7 @@ fn operand(name: &str, format: Format) -> StatedOperand {
         format,
         domain: (low as i64, high as i64),
         outside: Outside::Anything,
+        doc: String::new(),
     }
 }
 
@@ -369,7 +370,7 @@ fn stated_widths_refuse_saturate_or_wrap() {
     let refusal =
         find(&statement(narrow(StatedOverflow::Refuse))).expect_err("values from -2 to 1.75");
     assert!(
-        refusal.message.contains("`r` has 4 bits (s0.3), but its values need s1.3"),
+        refusal.message.contains("`r` has 4 bits (s0.3), and intervals show only"),
         "{refusal:?}"
     );
     assert!(refusal.remedy.contains("wrap"), "{refusal:?}");

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use glint::config::{self, Config, Problems};
 use glint::core::Core;
+use glint::cosim::batch::{Engine, Golden, Points, RustHdl};
 use glint::cosim::{Outcome, trial};
 use glint::package::{Computation, FileKind, OutputFile, OutputFiles, driver};
 use glint::registry::{Device, Registry};
@@ -246,5 +247,44 @@ fn side_by_side<'a>(files: impl Iterator<Item = &'a OutputFile>) -> TempDir {
 pub fn write(directory: &Path, files: &Files) {
     for (name, contents) in files {
         fs::write(directory.join(name), contents).sure_of(name);
+    }
+}
+
+/// Returns every combination of raw operands in the formats of their ports.
+fn all_points(core: &Core) -> Points {
+    let operands = core.contract.operands();
+    let mut combinations: Vec<Vec<i64>> = vec![Vec::new()];
+    for operand in operands {
+        let (low, high) = operand.format.range();
+        let mut longer = Vec::new();
+        for combination in &combinations {
+            for raw in low..=high {
+                longer.push([&combination[..], &[raw as i64]].concat());
+            }
+        }
+        combinations = longer;
+    }
+    let mut points = Points::new(operands.len());
+    for combination in combinations {
+        points.push(combination, 1);
+    }
+    points
+}
+
+/// Checks that the simulation gives the results that the contract states, for every combination of raw operands in the formats of
+/// their ports, also outside the domains.
+///
+/// # Panics
+/// A result differs, or the core cannot be simulated.
+pub fn assert_results_as_stated(core: &Core, what: &str) {
+    let points = all_points(core);
+    let stated = Golden(&*core.contract).compute(&points).expect("results");
+    let mut simulator = RustHdl::new(&core.design, &*core.contract).expect("a simulator");
+    let simulated = simulator.compute(&points).expect("a simulation");
+    let outputs = core.contract.outputs().len();
+    for at in 0..points.len() {
+        let results = at * outputs..(at + 1) * outputs;
+        let operands = points.operands(at);
+        assert_eq!(simulated[results.clone()], stated[results], "{operands:?}: {what}");
     }
 }

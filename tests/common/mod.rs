@@ -45,7 +45,7 @@ impl<T, E: Display> Sure<T> for Result<T, E> {
 }
 
 /// Returns the number of cases of a fuzz test: `all` with `GLINT_TESTS=all`, a third of them otherwise, or what `GLINT_FUZZ_CASES`
-/// says. Each run draws other cases.
+/// says.
 ///
 /// # Panics
 /// Panics if `GLINT_FUZZ_CASES` is no number.

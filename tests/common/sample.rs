@@ -1,16 +1,18 @@
-//! Draws the sample of a long test that a default run executes. The commit decides the sample, so that over time all cases run.
+//! Draws the sample of a long test that a default run executes. The sample is the same in every run and for every commit, so that a
+//! test fails only because of a change in the tree.
 //!
-//! `GLINT_TESTS=all` runs all cases, and `GLINT_SAMPLE` replaces the commit.
+//! `GLINT_SAMPLE=TEXT` draws another sample, and `GLINT_TESTS=all` runs all cases. `bash tools/test --draw` and `--all` set these
+//! variables.
 
 use std::env;
-use std::process::Command;
 
+use proptest::test_runner::RngSeed;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
 
 /// `count` of the items, in their order; all of them with `GLINT_TESTS=all`.
 ///
-/// The commit draws, or the text in `GLINT_SAMPLE`. What was drawn is in the output of a test that fails.
+/// The text in `GLINT_SAMPLE` decides what is drawn. What was drawn is in the output of a test that fails.
 ///
 /// # Panics
 /// `GLINT_TESTS` says something else.
@@ -37,19 +39,18 @@ pub fn sampled<T>(what: &str, items: impl IntoIterator<Item = T>, count: usize) 
     items.into_iter().map(|(_, item)| item).collect()
 }
 
-/// Returns the seed: `GLINT_SAMPLE`, or the commit, or in a tree without a history the version.
+/// The text that draws the sample of a default run.
+const FIXED: &str = "fixed";
+
+/// Returns the text in `GLINT_SAMPLE`, or [`FIXED`].
 fn drawn_by() -> String {
-    env::var("GLINT_SAMPLE")
-        .ok()
-        .or_else(commit)
-        .unwrap_or_else(|| env!("CARGO_PKG_VERSION").into())
+    env::var("GLINT_SAMPLE").unwrap_or_else(|_| FIXED.to_owned())
 }
 
-fn commit() -> Option<String> {
-    let mut git = Command::new("git");
-    let output = git.args(["rev-parse", "--short=12", "HEAD"]).output().ok()?;
-    let text = String::from_utf8(output.stdout).ok()?;
-    output.status.success().then(|| text.trim().to_owned())
+/// Returns the seed of the random inputs of proptest: the same in every run, unless `GLINT_SAMPLE` has another text.
+pub fn fuzz_seed() -> RngSeed {
+    let bytes = seed(&format!("{} proptest", drawn_by()));
+    RngSeed::Fixed(u64::from_le_bytes(std::array::from_fn(|at| bytes[at])))
 }
 
 /// SHA-256 of a text.

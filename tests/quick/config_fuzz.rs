@@ -98,6 +98,7 @@ fn piece() -> impl Strategy<Value = String> {
 proptest! {
     #![proptest_config(ProptestConfig { cases: cases(2000),
         failure_persistence: None,
+        rng_seed: crate::common::sample::fuzz_seed(),
         ..ProptestConfig::default() })]
 
     #[test]
@@ -159,6 +160,7 @@ proptest! {
     #![proptest_config(ProptestConfig {
         cases: cases(2000) / 10,
         failure_persistence: None,
+        rng_seed: crate::common::sample::fuzz_seed(),
         ..ProptestConfig::default()
     })]
 

@@ -4,12 +4,15 @@
 //! For every combination of raw operands, also outside the domain and outside `where`, the simulation gives the results that the
 //! contract states. A user gets these results from `glint eval`, and the C model computes them.
 
-use crate::common::cores::{assert_agrees, parsed};
+use std::collections::BTreeSet;
+
+use crate::common::cores::{Emitted, assert_agrees, assert_results_as_stated, device, parsed};
 use crate::common::files::read;
 use glint::config::parse;
+
 use glint::core::Core;
-use glint::cosim::batch::{Engine, Golden, Points, RustHdl};
 use glint::registry::Registry;
+use regex::Regex;
 
 /// The operands x and y with four fraction bits, from 0 to 15/16.
 const UNSIGNED: &str =
@@ -80,27 +83,6 @@ results.b = { formula = \"y * log2(x)\", fraction = 6, where = \"x > 0.9\" }",
     ),
 ];
 
-/// Returns every combination of raw operands in the formats of their ports.
-fn all_points(core: &Core) -> Points {
-    let operands = core.contract.operands();
-    let mut combinations: Vec<Vec<i64>> = vec![Vec::new()];
-    for operand in operands {
-        let (low, high) = operand.format.range();
-        let mut longer = Vec::new();
-        for combination in &combinations {
-            for raw in low..=high {
-                longer.push([&combination[..], &[raw as i64]].concat());
-            }
-        }
-        combinations = longer;
-    }
-    let mut points = Points::new(operands.len());
-    for combination in combinations {
-        points.push(combination, 1);
-    }
-    points
-}
-
 #[test]
 fn results_are_simulated_as_stated_for_every_operand() {
     for (operands, results) in CASES {
@@ -110,16 +92,7 @@ fn results_are_simulated_as_stated_for_every_operand() {
             );
             let core = parsed("core.toml", &text);
             assert_agrees(&core, 2000, 1, &text);
-            let points = all_points(&core);
-            let stated = Golden(&*core.contract).compute(&points).expect("results");
-            let mut simulator = RustHdl::new(&core.design, &*core.contract).expect("a simulator");
-            let simulated = simulator.compute(&points).expect("a simulation");
-            let outputs = core.contract.outputs().len();
-            for at in 0..points.len() {
-                let results = at * outputs..(at + 1) * outputs;
-                let operands = points.operands(at);
-                assert_eq!(simulated[results.clone()], stated[results], "{operands:?}: {text}");
-            }
+            assert_results_as_stated(&core, &text);
         }
     }
 }
@@ -150,5 +123,53 @@ fn names_on_the_page_cannot_be_operands() {
         );
         let is_keyword = refusal("x", name).is_some_and(|text| text.contains("keyword"));
         assert!(is_keyword || refusal("x", name).is_none(), "{name}");
+    }
+}
+
+/// Returns the configuration of a core with two operands, the first one named `operand`.
+fn with_operand(operand: &str, architecture: &str) -> String {
+    format!(
+        "device = \"expression\"\nname = \"unit\"\n{architecture}\npackage.software = true\n\
+         operands.{operand} = {{ bits = 8, fraction = 4 }}\noperands.other = {{ bits = 6, fraction = 2 }}\n\
+         results.r = {{ formula = \"{operand} * other + other\", fraction = 4 }}\n\
+         results.s = {{ formula = \"{operand} + other\", fraction = 4 }}\n"
+    )
+}
+
+/// An operand may have any name that the files of a core contain, or the name is refused at its place with another name that is
+/// accepted.
+#[test]
+fn names_in_the_files_are_operands_or_are_refused() {
+    let schemas = Registry::shipped().schemas();
+    let word = Regex::new("[A-Za-z_][A-Za-z0-9_]*").expect("an expression");
+    let named = Regex::new("for example `([A-Za-z0-9_]+)`").expect("an expression");
+    for architecture in ["interface.registers = \"axi-lite\"", "architecture = \"pipelined\""] {
+        let core = parsed("unit.toml", &with_operand("x", architecture));
+        let mut names = BTreeSet::new();
+        for file in Emitted::new(&core, 1, 1).files.iter() {
+            let is_read =
+                [".v", ".sv", ".h", ".c", ".py"].iter().any(|end| file.path.ends_with(end));
+            if is_read {
+                names.extend(word.find_iter(&file.contents).map(|it| it.as_str().to_owned()));
+            }
+        }
+        assert!(names.len() > 300, "{names:?}");
+        for name in names.iter().filter(|name| *name != "other") {
+            let text = with_operand(name, architecture);
+            let config = match parse("unit.toml", &text, &schemas) {
+                Ok(config) => config,
+                Err(problems) => {
+                    let problems = problems.to_string();
+                    let is_at_name = problems.contains(&format!("operands.{name} ="));
+                    let Some(free) = named.captures(&problems).filter(|_| is_at_name) else {
+                        panic!("{name}: {problems}");
+                    };
+                    let free = with_operand(&free[1], architecture);
+                    parse("unit.toml", &free, &schemas).unwrap_or_else(|it| panic!("{name}: {it}"))
+                }
+            };
+            Core::new(device("expression"), config)
+                .unwrap_or_else(|error| panic!("{name}: {error:#}"));
+        }
     }
 }

@@ -56,7 +56,9 @@ fn others(key: &Key) -> Vec<String> {
             vec!["\"3 / 2 + x / 16 - x / 16\"".to_owned(), "3".to_owned()]
         }
         KeyKind::Text(TextPattern::Version) => vec!["\"9.8.7\"".to_owned()],
-        KeyKind::Text(TextPattern::Name | TextPattern::Licence) => vec!["\"Another\"".to_owned()],
+        KeyKind::Text(TextPattern::Name | TextPattern::Licence | TextPattern::Remark) => {
+            vec!["\"Another\"".to_owned()]
+        }
         KeyKind::Text(TextPattern::Samples) => vec!["\"1,0 4,1\"".to_owned()],
         KeyKind::Integers { .. } | KeyKind::Table { .. } => Vec::new(),
     };

@@ -6,7 +6,7 @@
 //! reason, because of the planner's limits.
 
 use crate::common::bench::Bench;
-use crate::common::cores::{Emitted, assert_agrees, device};
+use crate::common::cores::{Emitted, assert_agrees, assert_results_as_stated, device};
 use crate::common::netlist::POINTS;
 use crate::common::sample::sampled;
 use crate::common::tools::{EFFORT, finding};
@@ -157,15 +157,37 @@ struct Operand {
     bits: u64,
     fraction: u64,
     is_signed: bool,
+    /// The domain in raw values, both ends included, and whether other operands are limited to it. `None` for the whole format.
+    domain: Option<(i64, i64, bool)>,
 }
 
 impl Operand {
-    /// Returns all values of the operand.
-    fn values(&self) -> Vec<f64> {
+    /// Returns the smallest and the largest raw value of the format.
+    fn limits(&self) -> (i64, i64) {
         let count = 1i64 << self.bits;
         let first = if self.is_signed { -count / 2 } else { 0 };
+        (first, first + count - 1)
+    }
+
+    /// Returns all values of the operand in its domain.
+    fn values(&self) -> Vec<f64> {
+        let (first, last) =
+            self.domain.map_or_else(|| self.limits(), |(first, last, _)| (first, last));
         let scale = (self.fraction as f64).exp2();
-        (first..first + count).map(|raw| raw as f64 / scale).collect()
+        (first..=last).map(|raw| raw as f64 / scale).collect()
+    }
+
+    /// Returns the entry of the operand in a configuration.
+    fn toml(&self) -> String {
+        let Self { bits, fraction, is_signed, domain } = self;
+        let Some((first, last, is_clamped)) = domain else {
+            return format!("{{ bits = {bits}, fraction = {fraction}, signed = {is_signed} }}");
+        };
+        let [from, to] = [first, last].map(|raw| format!("{raw} / 2^{fraction}"));
+        let outside = if *is_clamped { "clamp" } else { "anything" };
+        format!(
+            "{{ from = \"{from}\", to = \"{to}\", to_included = true, fraction = {fraction}, outside = \"{outside}\" }}"
+        )
     }
 }
 
@@ -195,8 +217,14 @@ impl Configuration {
                 continue;
             }
             let bits = 3 + random.below(4);
-            let operand =
-                Operand { bits, fraction: 2 + random.below(4), is_signed: random.below(2) == 0 };
+            let (fraction, is_signed) = (2 + random.below(4), random.below(2) == 0);
+            let mut operand = Operand { bits, fraction, is_signed, domain: None };
+            if random.below(3) == 0 {
+                let (first, last) = operand.limits();
+                let low = first + random.below(1 << (bits - 1)) as i64;
+                let high = low + 1 + random.below((last - low) as u64) as i64;
+                operand.domain = Some((low, high, random.below(2) == 0));
+            }
             operands.push((number, operand));
         }
         let architecture = match random.below(3) {
@@ -221,11 +249,8 @@ impl Configuration {
 
     fn toml(&self) -> String {
         let mut text = format!("device = \"expression\"\nname = \"core\"\n{}", self.architecture);
-        for (number, Operand { bits, fraction, is_signed }) in &self.operands {
-            let name = NAMES[*number];
-            text += &format!(
-                "operands.{name} = {{ bits = {bits}, fraction = {fraction}, signed = {is_signed} }}\n"
-            );
+        for (number, operand) in &self.operands {
+            text += &format!("operands.{} = {}\n", NAMES[*number], operand.toml());
         }
         let promise = match self.is_limited {
             true => format!(", where = \"{} > 0.1\"", NAMES[self.operands[0].0]),
@@ -344,6 +369,7 @@ fn random_formulas_agree_or_are_refused_with_reason() {
             .unwrap_or_else(|error| panic!("{error:#}\n{what}"));
         agreed += 1;
         assert_agrees(&core, 1000, seed, &what);
+        assert_results_as_stated(&core, &what);
         if seed % EVERY == 0 {
             println!("{what}");
             let emitted = Emitted::new(&core, POINTS, seed);

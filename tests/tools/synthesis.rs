@@ -97,11 +97,12 @@ fn every_flow_takes_the_delay_lines_of_pipelines() {
             };
             format!("design -load core; {flow} -top {name} -run begin:{end}; {memories}{tables}")
         });
-        let multiplier = format!("{name}_multiplier.v");
-        let multiplier =
-            if directory.join(&multiplier).exists() { multiplier.as_str() } else { "" };
+        let modules = ["multiplier", "delay"].map(|module| format!("{name}_{module}.v"));
+        let others: Vec<String> =
+            modules.into_iter().filter(|file| directory.join(file).exists()).collect();
+        let others = others.join(" ");
         let commands = format!(
-            "read_verilog {name}.v {multiplier}; hierarchy -top {name}; design -save core; {}",
+            "read_verilog {name}.v {others}; hierarchy -top {name}; design -save core; {}",
             flows.collect::<String>()
         );
         tool("yosys").run_to_success(["-q", "-p", &commands], &directory, LIMIT).sure_of(name);

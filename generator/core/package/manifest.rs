@@ -21,7 +21,7 @@ use glint_rtl::netlist::{Design, Pipeline, RegId};
 
 /// The version of the manifest's structure, for programs that read it. The version is increased when a name is renamed, moved, or
 /// gets another meaning, and not when a name is added.
-const SCHEMA: u32 = 1;
+const SCHEMA: u32 = 2;
 
 #[derive(Serialize)]
 struct Manifest<'a> {

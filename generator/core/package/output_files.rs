@@ -30,7 +30,7 @@ impl OutputFiles {
     }
 
     /// Adds a file in Verilog that defines `modules`, and has the name of the first module. For example, a file that defines
-    /// `shading_pipelined` and `shading_pipelined_delay` is `shading_pipelined.v`.
+    /// `rough_axis` and `rough_axis_buffer` is `rough_axis.v`.
     pub(super) fn add_verilog(&mut self, kind: FileKind, modules: Vec<String>, contents: String) {
         self.add_modules(kind, "v", modules, contents);
     }

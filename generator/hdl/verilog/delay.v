@@ -1,7 +1,3 @@
-
-// Delays a value by WORDS + 1 enabled clocks. The memory is a circular buffer: each enabled clock
-// reads the oldest word, replaces it by the new value, and advances slot to the next word.
-/* verilator lint_off DECLFILENAME */
 module delay #(
     parameter WIDTH  = 8,
     parameter WORDS  = 2,

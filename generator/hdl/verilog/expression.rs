@@ -198,7 +198,15 @@ impl<'a> Expressions<'a> {
             Op::Xor(a, b) => self.binary(*a, "^", *b),
             Op::Add { a, b, carry: None } => self.binary(*a, "+", *b),
             Op::Add { a, b, carry: Some(carry) } => {
-                let sum = self.binary(*a, "+", *b);
+                let is_zero = |id: NetId| {
+                    let bits = self.plan.bits[id.index()].single();
+                    matches!(bits, Some(BitRun::Constant { value: 0, .. }))
+                };
+                let sum = match (is_zero(*a), is_zero(*b)) {
+                    (true, _) => self.operand(*b),
+                    (_, true) => self.operand(*a),
+                    _ => self.binary(*a, "+", *b),
+                };
                 let carry = self.extended_carry(*carry, self.plan.design.width(id));
                 format!("{sum} + {carry}")
             }

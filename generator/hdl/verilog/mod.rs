@@ -53,18 +53,18 @@ pub struct ModuleFile {
     pub text: String,
 }
 
-/// Returns the Verilog files of a design, the top module first. A pipeline has one file, with the module of its delay lines in
-/// it. Any other design has three files: the top module, the control unit and the datapath.
+/// Returns the Verilog files of a design, the top module first. A pipeline has one file for its module, and another one if it has
+/// delay lines. Any other design has three files: the top module, the control unit and the datapath.
 pub fn modules(plan: &Plan, naming: &Naming, origin: &Origin) -> Vec<ModuleFile> {
     if let Some(pipeline) = &plan.design.pipeline {
-        let mut modules = vec![plan.design.name.clone()];
+        let name = &plan.design.name;
+        let text = pipeline::module(plan, naming, pipeline, origin);
+        let mut files = vec![ModuleFile { modules: vec![name.clone()], text }];
         if !plan.delays.is_empty() {
-            modules.push(naming.delay());
+            let text = pipeline::delay_module(name, naming, origin);
+            files.push(ModuleFile { modules: vec![naming.delay()], text });
         }
-        return vec![ModuleFile {
-            modules,
-            text: pipeline::module(plan, naming, pipeline, origin),
-        }];
+        return files;
     }
     let control = Interface::new(plan, Partition::Control);
     let datapath = Interface::new(plan, Partition::Datapath);

@@ -75,7 +75,7 @@ impl<'a> Builder<'a> {
         let header = header::partition(self.plan.design, self.partition, origin, self.naming);
         let name = self.naming.module(self.partition);
         let parameters = parameters(self.naming, &self.interface.roms);
-        writer::module(header, &name, &parameters, self.ports(), body, "")
+        writer::module(header, &name, &parameters, self.ports(), body)
     }
 
     pub(super) fn ports(&self) -> Vec<String> {

@@ -14,8 +14,26 @@ use crate::netlist::{Design, Driver, NetId, Partition, Pipeline, Role, Unit};
 /// The Verilog text of the module of delay lines, in which the module has the name `delay`.
 const DELAY: &str = include_str!("delay.v");
 
-/// Returns the text of the Verilog file for a pipeline: its module, and the module of its delay lines if the Verilog has delay
-/// lines.
+/// The comment on the module of delay lines.
+const DELAY_COMMENT: &str = "Delays a value by WORDS + 1 enabled clocks. The memory is a circular buffer: each enabled clock \
+                             reads the oldest word, replaces it by the new value, and advances slot to the next word.";
+
+/// Returns the text of the Verilog file with the module of the delay lines of a pipeline, whose module is `pipeline`.
+pub fn delay_module(pipeline: &str, naming: &Naming, origin: &Origin) -> String {
+    let name = naming.delay();
+    let mut lines = comment(0, &format!("{name}: delay line of {pipeline}"));
+    lines.push("//".to_owned());
+    lines.extend(comment(0, DELAY_COMMENT));
+    lines.extend(header::regenerated(origin));
+    let module = DELAY.replace("module delay", &format!("module {name}"));
+    format!(
+        "{}\n\n`default_nettype none\n\n{}\n\n`default_nettype wire\n",
+        lines.join("\n"),
+        module.trim_end()
+    )
+}
+
+/// Returns the text of the Verilog file for a pipeline's module.
 pub fn module(plan: &Plan, naming: &Naming, pipeline: &Pipeline, origin: &Origin) -> String {
     let design = plan.design;
     let interface = Interface::new(plan, Partition::Datapath);
@@ -53,14 +71,10 @@ pub fn module(plan: &Plan, naming: &Naming, pipeline: &Pipeline, origin: &Origin
         stages.push(String::new());
         stages.extend(lines);
     }
-    let delay = match plan.delays.is_empty() {
-        true => String::new(),
-        false => DELAY.replace("module delay", &format!("module {}", naming.delay())),
-    };
     let (header, parameters) = (header::top(design, origin), parameters(naming, &interface.roms));
     let constants = writer::section("Constants", builder.constants());
     let body = [constants, stages, builder.unused()].concat();
-    writer::module(header, &design.name, &parameters, builder.ports(), body, &delay)
+    writer::module(header, &design.name, &parameters, builder.ports(), body)
 }
 
 /// Returns whether the section of stage number `stage` contains a net. A register or a synchronous ROM belongs to the stage that

@@ -38,7 +38,7 @@ pub fn module(
     }
     let roms: Vec<_> = units.iter().flat_map(|(_, interface)| interface.roms.clone()).collect();
     let (header, parameters) = (header::top(design, origin), parameters(naming, &roms));
-    writer::module(header, &design.name, &parameters, Row::ports(&ports), body, "")
+    writer::module(header, &design.name, &parameters, Row::ports(&ports), body)
 }
 
 fn instance(

@@ -1,19 +1,17 @@
 //! Writes the frames of Verilog modules, instances and blocks around lines of text.
 
-/// Returns the text of a Verilog file with the module `name`: the comment `header`, the module, and the text `other`. `other`,
-/// such as a second module, may be empty.
+/// Returns the text of a Verilog file with the module `name`, behind the comment `header`.
 pub fn module(
     header: Vec<String>,
     name: &str,
     parameters: &[String],
     ports: Vec<String>,
     body: Vec<String>,
-    other: &str,
 ) -> String {
     let start = ["", "`default_nettype none", ""].map(str::to_owned);
     let head = head(0, &format!("module {name}"), parameters, "", ports);
     let lines = [header, start.into(), head, body].concat();
-    format!("{}\nendmodule\n{other}\n`default_nettype wire\n", lines.join("\n"))
+    format!("{}\nendmodule\n\n`default_nettype wire\n", lines.join("\n"))
 }
 
 /// Returns the Verilog lines of an instance `name` of a module. Each text in `parameters` and `connections` must include its

@@ -90,8 +90,7 @@ fn lockstep(subject: &CheckSubject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Resu
     let worst = outcome.worst.as_ref().map_or_else(String::new, |worst| {
         let bound = bounds.of(&worst.output).map_or_else(String::new, Bound::words);
         format!(
-            " The largest error against the formula in f64, as a part of the bound, is {:.3} units of {}, and the stated \
-             bound is {bound}.",
+            " The largest error against the formula in f64 is {:.3} units, of `{}`, whose stated bound is {bound}.",
             worst.units, worst.output
         )
     });
@@ -307,11 +306,17 @@ pub const MUTATION: Check = Check {
         let unnoticed: Vec<&NetlistFault> = unnoticed.map(|found| &found.fault).collect();
         let unreached = mutate::unreached(subject.core, &unnoticed)?;
         let ids: Vec<String> = unreached.iter().map(|fault| fault.id.clone()).collect();
+        // A contract may be the user's own work, or follow from a configuration alone.
+        let advice = match subject.core.contract.highlight() {
+            Some(_) => {
+                "To add stimulus, widen the keys of `domain`, or state in the device's contract where the formula is \
+                 largest (`Contract::peak`); "
+            }
+            None => "",
+        };
         let words = format!(
             "{words} More than 1 % are undecided: the test is too weak, but this does not show a mistake in \
-             the core. {}To add stimulus, widen the keys of `domain`, or state in the device's contract \
-             where the formula is largest (`Contract::peak`); `{Program} mutate --only ID` shows the result \
-             of one fault.",
+             the core. {}{advice}`{Program} mutate --only ID` shows the result of one fault.",
             match ids.is_empty() {
                 true => String::new(),
                 false => format!(

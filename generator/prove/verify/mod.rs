@@ -210,24 +210,25 @@ pub struct Check {
     run: CheckFunction,
 }
 
-/// All checks of `glint verify`. The checks that need nothing but Glint come first.
+/// All checks of `glint verify`, in the order in which they run. Checks that take seconds come first; those that may compute every
+/// combination of operands, or every fault, come last.
 pub const CHECKS: [&Check; 16] = [
     &inside::DESIGN,
     &inside::LOCKSTEP,
     &inside::CLOCKS,
-    &inside::CONTRACT,
-    &inside::MUTATION,
-    &outside::CERTIFICATE,
-    &recomputation::RECOMPUTATION,
-    &outside::EQUALITY,
-    &outside::TEXT,
     &outside::LINT,
     &outside::ICARUS,
     &outside::VERILATOR,
     &outside::COCOTB,
     &outside::FORMAL,
+    &outside::TEXT,
+    &outside::EQUALITY,
+    &outside::CERTIFICATE,
     &outside::SYNTHESIS,
     &outside::GATES,
+    &inside::CONTRACT,
+    &recomputation::RECOMPUTATION,
+    &inside::MUTATION,
 ];
 
 impl Check {

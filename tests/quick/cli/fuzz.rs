@@ -73,6 +73,7 @@ proptest! {
     #![proptest_config(ProptestConfig {
         cases: crate::common::cases(400),
         failure_persistence: None,
+        rng_seed: crate::common::sample::fuzz_seed(),
         max_shrink_iters: 200,
         ..ProptestConfig::default()
     })]

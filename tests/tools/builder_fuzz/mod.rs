@@ -42,6 +42,7 @@ proptest! {
     #![proptest_config(ProptestConfig {
         cases: crate::common::cases(3000),
         failure_persistence: None,
+        rng_seed: crate::common::sample::fuzz_seed(),
         ..ProptestConfig::default()
     })]
 

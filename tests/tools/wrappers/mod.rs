@@ -275,10 +275,10 @@ fn conversions_of_operands_with_coarse_units() {
         fs::write(dir.join("main.rs"), rust).expect("written");
         let strict = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror"];
         let sanitized = ["-fsanitize=undefined", "-fno-sanitize-recover", "main.c", "-o", "main_c"];
-        ran("cc", &[&strict[..], &sanitized].concat(), dir);
-        ran("rustc", &["--edition=2021", "main.rs", "-o", "main_rs"], dir);
+        ran("cc", [&strict[..], &sanitized].concat(), dir);
+        ran("rustc", ["--edition=2021", "main.rs", "-o", "main_rs"], dir);
         for program in ["./main_c", "./main_rs"] {
-            ran("sh", &["-c", program], dir);
+            ran("sh", ["-c", program], dir);
         }
     }
 }

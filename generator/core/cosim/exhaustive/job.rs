@@ -15,7 +15,7 @@ use anyhow::{Context, Result, ensure};
 use serde::{Deserialize, Serialize};
 
 use super::clocks::{Clocks, Steps};
-use super::places::{Peak, Places};
+use super::places::{BLOCK, Peak, Places};
 use glint_base::text::grouped;
 use glint_golden::{Contract, Sweep};
 
@@ -86,6 +86,19 @@ impl FromStr for Shard {
             )),
         }
     }
+}
+
+/// Returns the number of places in the blocks of a shard after its first `done` blocks. The function visits no block, because a
+/// sweep of 2^48 combinations has 2^31 of them.
+fn places_remaining(places: &Places<'_>, shard: Shard, done: u64) -> u64 {
+    let blocks = places.blocks();
+    let count = shard.count(blocks);
+    let left = count.saturating_sub(done);
+    // The last block of all may be shorter than the others.
+    let has_last = left > 0 && shard.block(count - 1) == blocks - 1;
+    let missing = if has_last { BLOCK - 1 - (places.count() - 1) % BLOCK } else { 0 };
+    let all = u128::from(left) * u128::from(BLOCK) - u128::from(missing);
+    u64::try_from(all).unwrap_or(u64::MAX)
 }
 
 /// The progress of a shard in one of the two error measurements: the errors of `f`, or the rounding errors of the products with
@@ -179,19 +192,19 @@ impl<'a> Job<'a> {
 
     /// Returns the number of combinations that the shard has still to visit, in all parts of the check together.
     pub fn remaining(&self, state: &ShardState) -> u64 {
-        self.parts_remaining(state).iter().sum()
+        self.parts_remaining(state).into_iter().fold(0, u64::saturating_add)
     }
 
     /// Returns the number of combinations that the shard has still to visit in each part: for `f`, for the colours, and clock
     /// by clock.
     fn parts_remaining(&self, state: &ShardState) -> [u64; 3] {
-        // The blocks of a part that are left after the first `done` blocks of the shard.
+        let f = places_remaining(&self.f, state.shard, state.f.done);
+        let colours = places_remaining(&self.colours, state.shard, state.colours.done);
+        // The blocks that are left after the first `done` blocks of the shard.
         let left = |done: u64, blocks: u64| {
             let count = state.shard.count(blocks);
             (done.min(count)..count).map(|at| state.shard.block(at))
         };
-        let f = self.f.visits(left(state.f.done, self.f.blocks()));
-        let colours = self.colours.visits(left(state.colours.done, self.colours.blocks()));
         let clocks = match &self.clocks {
             Some(clocks) => clocks.visits(left(state.clocks.done, clocks.blocks())),
             None => 0,

@@ -104,9 +104,11 @@ impl<'a> Places<'a> {
         &self.sweep
     }
 
-    /// Returns the number of operand combinations that the check visits.
+    /// Returns the number of operand combinations that the check visits, or the largest number of 64 bits if there are more. For
+    /// example, four operands of 16 bits have 2^64 combinations; a count that wraps to 0 would prove a bound without a single
+    /// evaluation.
     pub fn count(&self) -> u64 {
-        self.sweep.axes.iter().map(|axis| axis.values.count()).product()
+        self.sweep.axes.iter().map(|axis| axis.values.count()).fold(1, u64::saturating_mul)
     }
 
     /// Returns the number of blocks into which the combinations are divided. The last block may be smaller.

@@ -55,6 +55,20 @@ fn places_are_numbered_last_axis_fastest() {
     assert_eq!(places.error(451_234), 451_234.0);
 }
 
+/// Three operands of 16 bits have 2^48 combinations. Four have 2^64, which no number of 64 bits counts, and which is not 0.
+#[test]
+fn many_combinations_are_counted_at_once() {
+    for (operands, count) in [(3, 1 << 48), (4, u64::MAX), (5, u64::MAX)] {
+        let axis = Axis { name: String::new(), values: Values::Range(-32_768, 32_767) };
+        let sweep = Sweep { axes: vec![axis; operands], omits: String::new() };
+        let job = Job::of_sweep(&Counting, sweep);
+        assert_eq!(job.f.count(), count);
+        assert_eq!(job.remaining(&ShardState::new("digest", Shard::WHOLE)), count);
+        let half = ShardState::new("digest", Shard { number: 1, of: 2 });
+        assert_eq!(job.remaining(&half), 1 << [47, 63][usize::from(operands > 3)]);
+    }
+}
+
 #[test]
 fn the_peak_is_the_first_of_the_largest_however_the_work_is_divided() {
     let places = Places::of_f(&Counting);

@@ -23,15 +23,30 @@ use glint_rtl::verilog::text::ascii;
 struct LitexCore<'a> {
     top: &'a Top,
     operands: Vec<LitexOperand>,
-    results: Vec<&'a TopPort>,
+    results: Vec<LitexResult>,
     /// Other inputs, which stay low.
     idle: Vec<&'a TopPort>,
+}
+
+/// A result of a core, as status registers show it.
+struct LitexResult {
+    name: String,
+    width: u32,
+    /// The number of bits of the status register: the result, with copies of its sign up to 32 or 64 bits if it has one.
+    status_width: u32,
 }
 
 struct LitexOperand {
     name: String,
     strobe: String,
     width: u32,
+}
+
+impl LitexResult {
+    /// Returns whether the status register has more bits than the result.
+    fn is_extended(&self) -> bool {
+        self.status_width > self.width
+    }
 }
 
 /// A core between two streams, with the widths of the streams in bits.
@@ -87,7 +102,7 @@ pub fn file(job: &EmitJob, tops: &[Top], files: &mut OutputFiles) -> Result<()> 
 
 fn driven<'a>(design: &Design, top: &'a Top) -> LitexCore<'a> {
     let name = |port: &glint_rtl::netlist::Port| design.net(port.net).name.clone();
-    let (mut operands, mut result_names, mut start_names) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut operands, mut result_ports, mut start_names) = (Vec::new(), Vec::new(), Vec::new());
     for port in &design.ports {
         match port.role {
             Role::Operand { strobe } => operands.push(LitexOperand {
@@ -95,19 +110,26 @@ fn driven<'a>(design: &Design, top: &'a Top) -> LitexCore<'a> {
                 strobe: design.net(strobe).name.clone(),
                 width: design.width(port.net),
             }),
-            Role::Result => result_names.push(name(port)),
+            Role::Result => result_ports.push(port),
             Role::Start => start_names.push(name(port)),
             _ => {}
         }
     }
-    let (mut results, mut idle) = (Vec::new(), Vec::new());
+    let mut results = Vec::new();
+    for port in result_ports {
+        let width = design.width(port.net);
+        let status_width = match design.net(port.net).format.signed {
+            true if width <= 32 => 32,
+            true => 64,
+            false => width,
+        };
+        results.push(LitexResult { name: name(port), width, status_width });
+    }
+    let mut idle = Vec::new();
     for port in top.signals() {
         let driven = operands.iter().any(|it| it.name == port.name || it.strobe == port.name);
         if port.input && !driven && !start_names.contains(&port.name) {
             idle.push(port);
-        }
-        if result_names.contains(&port.name) {
-            results.push(port);
         }
     }
     LitexCore { top, operands, results, idle }

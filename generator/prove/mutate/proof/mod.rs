@@ -5,12 +5,14 @@
 //! for example one behind a multiplier, may differ: the induction passes its possible pairs on to the next microinstructions.
 //! If no output and no predicted register differs in any microinstruction, the mutant is equivalent. A pipeline has slots in
 //! place of microinstructions, and its checkpoints are compared too. The induction proves no fault that changes a reset. The
-//! second proof tries every combination of values on the nets around the fault ([`window`]).
+//! second proof tries every combination of values on the nets around the fault ([`window`]). A register that loads once more
+//! without a change of its data keeps its value ([`reload`]).
 
 mod cut;
 mod flat;
 mod interval;
 mod pairs;
+mod reload;
 mod step;
 mod window;
 
@@ -33,6 +35,8 @@ pub(super) struct Prover<'a> {
     following: Vec<Vec<usize>>,
     /// For each microinstruction, the bits of each net that are compared in it, as a mask.
     compared: Vec<Vec<u64>>,
+    /// For each microinstruction and each register, whether the register would load the value that it has already.
+    reloads: Vec<Vec<bool>>,
     windows: Windows<'a>,
 }
 
@@ -48,7 +52,8 @@ impl<'a> Prover<'a> {
         for (at, state) in reached_states(&order, &following).iter().enumerate() {
             nets.push(order.settle(at, state.as_ref().unwrap_or(&anything), None));
         }
-        Some(Self { nets, order, following, compared, windows: Windows::of(design)? })
+        let reloads = reload::reloads(design, &nets, &following);
+        Some(Self { nets, order, following, compared, reloads, windows: Windows::of(design)? })
     }
 
     /// Tries to prove that the fault at `site` is equivalent: it changes no compared output or register. Returns the method that
@@ -81,7 +86,7 @@ impl<'a> Prover<'a> {
                     return false;
                 }
             }
-            let next = self.order.next(&nets, fault);
+            let next = self.order.next(&nets, fault, &self.reloads[at]);
             for (register, value) in registers.iter().zip(&next) {
                 if register.kind != RegisterKind::Internal && value.differ() != 0 {
                     return false;
@@ -160,7 +165,7 @@ fn reached_states(order: &Order, following: &[Vec<usize>]) -> Vec<Option<PairSta
     let mut todo = vec![0];
     while let Some(at) = todo.pop() {
         let Some(state) = &reached[at] else { continue };
-        let after = order.next(&order.settle(at, state, None), None);
+        let after = order.next(&order.settle(at, state, None), None, &[]);
         for &to in &following[at] {
             let joined = match &reached[to] {
                 Some(before) => join(before, &after),

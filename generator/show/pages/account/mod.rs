@@ -44,6 +44,12 @@ pub struct PageInputs<'a> {
     pub line: Option<&'a LineClocks>,
 }
 
+/// The largest number of combinations for which an exhaustive check of a highlight takes minutes: some 30 ns for each.
+const MOST_OF_F: u64 = 1 << 34;
+
+/// The largest number of combinations for which an exhaustive check of any other device takes minutes: some µs for each.
+const MOST_OF_OUTPUTS: u64 = 1 << 28;
+
 /// A sentence that explains the notation of formats.
 pub const FORMATS: &str = "Formats: `uI.F` is unsigned, `sI.F` two's complement, with I integer bits (a sign bit apart) \
                            and F fraction bits; the value of a signal is its integer times 2⁻ᶠ.";
@@ -136,7 +142,16 @@ pub fn proof(inputs: &PageInputs) -> String {
         omits => format!(" Not covered: {omits}."),
     };
     let checked = format!("`{Program} cosim {} --exhaustive`", inputs.path);
-    if inputs.contract.highlight().is_none() {
+    let combinations = sweep.axes.iter().map(|axis| axis.values.count());
+    let combinations = combinations.fold(1, u64::saturating_mul);
+    let is_highlight = inputs.contract.highlight().is_some();
+    if combinations > if is_highlight { MOST_OF_F } else { MOST_OF_OUTPUTS } {
+        return format!(
+            "A check of every {axes} (integers) would take hours or longer. {checked} estimates the time before it starts, \
+             visits fewer values with `--values`, and divides the work with `--shard`.{omits}"
+        );
+    }
+    if !is_highlight {
         return format!("{checked} checks it: the outputs at every {axes} (integers).{omits}");
     }
     format!(

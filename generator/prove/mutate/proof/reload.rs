@@ -1,0 +1,132 @@
+//! Finds the microinstructions in which a register would load the value that it has already.
+//!
+//! For example, a register loads a product in one microinstruction, and nothing that the product depends on changes in the next
+//! two. In these two, it makes no difference whether the register loads again. A fault that makes it load is therefore equivalent.
+//! The analysis covers sequential designs; a pipeline has no such microinstructions.
+
+use std::collections::BTreeSet;
+
+use super::pairs::Pairs;
+use glint_rtl::netlist::{Design, Driver, FieldId, NetId};
+
+/// Whether a register or a synchronous ROM takes a new value in a microinstruction.
+#[derive(Clone, Copy, PartialEq)]
+enum Load {
+    Never,
+    Always,
+    Possible,
+}
+
+/// A register or a synchronous ROM, with everything from which its next value is computed.
+struct Holder {
+    /// The enable; `None` for a holder that takes a value in every clock.
+    enable: Option<NetId>,
+    /// The indices of the registers and synchronous ROMs from which the next value is computed.
+    holders: BTreeSet<usize>,
+    /// The fields of the control word from which the next value is computed.
+    fields: BTreeSet<FieldId>,
+    /// Whether the next value depends on an input of the design, which may change in any clock.
+    reads_input: bool,
+}
+
+/// Returns for each microinstruction and each register whether the register's next value certainly equals its present value.
+/// `nets` has the possible values of all nets in each microinstruction, and `following` the microinstructions that may follow each.
+pub(super) fn reloads(
+    design: &Design,
+    nets: &[Vec<Pairs>],
+    following: &[Vec<usize>],
+) -> Vec<Vec<bool>> {
+    let count = nets.len();
+    let holders = holders(design);
+    if design.pipeline.is_some() {
+        return vec![vec![false; design.registers.len()]; count];
+    }
+    // Every fact is assumed at first, except in the idle microinstruction, and dropped where it does not follow.
+    let mut facts = vec![vec![true; holders.len()]; count];
+    facts[0] = vec![false; holders.len()];
+    let mut is_changed = true;
+    while is_changed {
+        is_changed = false;
+        for at in 0..count {
+            for &to in &following[at] {
+                for (number, holder) in holders.iter().enumerate() {
+                    let holds = follows(design, &holders, holder, &nets[at], &facts[at], (at, to))
+                        && (load(holder, &nets[at]) == Load::Always || facts[at][number]);
+                    if facts[to][number] && !holds {
+                        facts[to][number] = false;
+                        is_changed = true;
+                    }
+                }
+            }
+        }
+    }
+    for of_registers in &mut facts {
+        of_registers.truncate(design.registers.len());
+    }
+    facts
+}
+
+/// Returns whether everything from which the next value of `holder` is computed is the same in microinstruction `to` as in `at`,
+/// which comes directly before it. `facts` says which holders would load the values that they have in `at`.
+fn follows(
+    design: &Design,
+    holders: &[Holder],
+    holder: &Holder,
+    nets: &[Pairs],
+    facts: &[bool],
+    (at, to): (usize, usize),
+) -> bool {
+    let keeps = |other: &usize| load(&holders[*other], nets) == Load::Never || facts[*other];
+    let microprogram = &design.control.microprogram;
+    let is_same = |field: &FieldId| {
+        microprogram[at].values[field.index()] == microprogram[to].values[field.index()]
+    };
+    !holder.reads_input && holder.holders.iter().all(keeps) && holder.fields.iter().all(is_same)
+}
+
+fn load(holder: &Holder, nets: &[Pairs]) -> Load {
+    let Some(enable) = holder.enable else { return Load::Always };
+    let bit = nets[enable.index()];
+    match (bit.may_be(0), bit.may_be(1)) {
+        (true, false) => Load::Never,
+        (false, true) => Load::Always,
+        _ => Load::Possible,
+    }
+}
+
+/// Returns the registers and then the ROMs of a design. A ROM that is no memory of its own, because it is read in the same clock,
+/// is among them too, and never changes by itself.
+fn holders(design: &Design) -> Vec<Holder> {
+    let mut holders = Vec::new();
+    for register in &design.registers {
+        holders.push(holder(design, register.data, register.enable));
+    }
+    for rom in &design.roms {
+        holders.push(holder(design, Some(rom.address), rom.enable));
+    }
+    holders
+}
+
+fn holder(design: &Design, data: Option<NetId>, enable: Option<NetId>) -> Holder {
+    let mut holder =
+        Holder { enable, holders: BTreeSet::new(), fields: BTreeSet::new(), reads_input: false };
+    let mut seen = BTreeSet::new();
+    let mut todo: Vec<NetId> = data.into_iter().collect();
+    while let Some(net) = todo.pop() {
+        if !seen.insert(net.index()) {
+            continue;
+        }
+        match &design.net(net).driver {
+            Driver::Op(op) => todo.extend(op.operands()),
+            Driver::Register(id) => drop(holder.holders.insert(id.index())),
+            Driver::Rom(id) if design.rom(*id).synchronous => {
+                holder.holders.insert(design.registers.len() + id.index());
+            }
+            Driver::Rom(id) => todo.push(design.rom(*id).address),
+            Driver::Field(field) => drop(holder.fields.insert(*field)),
+            Driver::Input | Driver::Undriven => holder.reads_input = true,
+            Driver::Constant(_) => {}
+        }
+    }
+    holder
+}
