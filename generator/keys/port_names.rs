@@ -105,9 +105,11 @@ pub(super) struct NameFault {
 /// Fails at the first entry whose name cannot be used. The remedy names another name, if the name has only legal characters.
 pub(super) fn check(entries: &[(NamedTable, &str)]) -> Result<(), NameFault> {
     for (entry, (table, name)) in entries.iter().enumerate() {
-        let Some(message) = obstacle(*table, name, &entries[..entry]) else { continue };
         let others: Vec<(NamedTable, &str)> =
             entries.iter().enumerate().filter(|(at, _)| *at != entry).map(|(_, it)| *it).collect();
+        // Of two entries with the same name, the second one is refused.
+        let found = obstacle(*table, name, &entries[..entry]);
+        let Some(message) = found.or_else(|| owned_name(name, &others)) else { continue };
         let remedy = match free_name(*table, name, &others) {
             Some(free) => format!("give the entry another name, for example `{free}`"),
             None => "give a name of lower-case letters, digits and _".to_owned(),
@@ -118,7 +120,7 @@ pub(super) fn check(entries: &[(NamedTable, &str)]) -> Result<(), NameFault> {
 }
 
 /// Returns the reason why an entry of `table` cannot have the name `name` beside the entries `others`, as a message. Returns
-/// `None` if it can.
+/// `None` if it can, apart from names that other entries own ([`owned_name`]).
 fn obstacle(table: NamedTable, name: &str, others: &[(NamedTable, &str)]) -> Option<String> {
     if let Err(fault) = identifier::check(name) {
         return Some(fault.to_owned());
@@ -142,14 +144,23 @@ fn obstacle(table: NamedTable, name: &str, others: &[(NamedTable, &str)]) -> Opt
                 "`{name}` and `{other}` differ only in upper and lower case, which VHDL and C macros do not distinguish"
             ));
         }
-        for (owner, owned) in [((*other_table, *other), name), ((table, name), *other)] {
-            if let Some(what) = owned_as(owner, owned) {
-                return Some(format!("`{owned}` is the name of the {what} `{}`", owner.1));
-            }
-        }
     }
     None
 }
+
+/// Returns the message that one of the entries `others` gives the name `name` to something of its own, or `None` if none does.
+fn owned_name(name: &str, others: &[(NamedTable, &str)]) -> Option<String> {
+    let mut owners = others.iter();
+    owners.find_map(|owner| {
+        let what = owned_as(*owner, name)?;
+        Some(format!("`{name}` is the name of the {what} `{}`", owner.1))
+    })
+}
+
+/// The endings of further signals of an operand: the enable and the data of its register, its buffer, and the comparisons that
+/// limit it to its domain.
+const ENDINGS: [&str; 7] =
+    ["_load", "_next", "_buffer", "_under", "_over", "_at_least", "_at_most"];
 
 /// Returns the role of the name `name` if the entry `owner` gives this name to something of its own. For example, the operand
 /// `x` has a register `x_reg`.
@@ -158,6 +169,7 @@ fn owned_as((table, owner): (NamedTable, &str), name: &str) -> Option<&'static s
     match (table, end) {
         (NamedTable::Operands, "_reg") => Some("register of the operand"),
         (NamedTable::Operands, "_write") => Some("write strobe of the operand"),
+        (NamedTable::Operands, end) if ENDINGS.contains(&end) => Some("signal of the operand"),
         (NamedTable::Results, "_out") => Some("port of the result"),
         _ => None,
     }
@@ -167,7 +179,9 @@ fn owned_as((table, owner): (NamedTable, &str), name: &str) -> Option<&'static s
 fn free_name(table: NamedTable, name: &str, others: &[(NamedTable, &str)]) -> Option<String> {
     let mut candidates = vec![format!("{name}_value")];
     candidates.extend((1..10).map(|number| format!("{name}{number}")));
-    candidates.into_iter().find(|candidate| obstacle(table, candidate, others).is_none())
+    candidates.into_iter().find(|candidate| {
+        obstacle(table, candidate, others).or_else(|| owned_name(candidate, others)).is_none()
+    })
 }
 
 #[cfg(test)]

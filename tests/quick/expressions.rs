@@ -154,7 +154,7 @@ fn names_in_the_files_are_operands_or_are_refused() {
             }
         }
         assert!(names.len() > 300, "{names:?}");
-        for name in names.iter().filter(|name| *name != "other") {
+        for name in names.iter().filter(|name| !["other", "r", "s"].contains(&name.as_str())) {
             let text = with_operand(name, architecture);
             let config = match parse("unit.toml", &text, &schemas) {
                 Ok(config) => config,
