@@ -25,7 +25,7 @@ pub const FUNCTIONS: [(&str, Function); 13] = [
 
 /// Functions of one number u that are combinations of other functions. For example, `cosh(2 * x)` is parsed as the formula for
 /// `cosh`, with `2 * x` in the place of u.
-const DEFINED: [(&str, &str); 14] = [
+const DEFINED: [(&str, &str); 21] = [
     ("reciprocal", "1 / u"),
     ("rsqrt", "1 / sqrt(u)"),
     ("sigmoid", "1 / (1 + exp(-u))"),
@@ -41,6 +41,14 @@ const DEFINED: [(&str, &str); 14] = [
     ("floor", "u - u % 1"),
     // As in Python, `int` rounds toward 0.
     ("int", "if(u < 0, u + -u % 1, u - u % 1)"),
+    ("trunc", "if(u < 0, u + -u % 1, u - u % 1)"),
+    ("ceil", "-(-u - -u % 1)"),
+    // Halves are rounded up.
+    ("round", "u + 1/2 - (u + 1/2) % 1"),
+    ("fract", "u % 1"),
+    ("frac", "u % 1"),
+    ("sign", "if(u < 0, -1, if(u > 0, 1, 0))"),
+    ("saturate", "min(max(u, 0), 1)"),
 ];
 
 /// The functions of two numbers that a formula may call, with their names.
@@ -52,19 +60,51 @@ const FUNCTIONS_OF_TWO: [(&str, Operator); 4] = [
 ];
 
 /// Functions of two numbers u and v that are combinations of other functions.
-const DEFINED_OF_TWO: [(&str, &str); 1] = [("hypot", "sqrt(u^2 + v^2)")];
+const DEFINED_OF_TWO: [(&str, &str); 3] =
+    [("hypot", "sqrt(u^2 + v^2)"), ("mod", "u % v"), ("step", "if(v < u, 0, 1)")];
+
+/// Functions of three numbers u, v and w that are combinations of other functions, as in shading languages. The value of
+/// `smoothstep` is 0 for w ≤ u, 1 for w ≥ v, and rises smoothly between the two.
+const DEFINED_OF_THREE: [(&str, &str); 4] = [
+    ("clamp", "min(max(u, v), w)"),
+    ("mix", "u + (v - u) * w"),
+    ("lerp", "u + (v - u) * w"),
+    (
+        "smoothstep",
+        "min(max((w - u) / (v - u), 0), 1)^2 * (3 - 2 * min(max((w - u) / (v - u), 0), 1))",
+    ),
+];
+
+/// The functions of two numbers that also take more.
+const FUNCTIONS_OF_MANY: [&str; 3] = ["min", "max", "hypot"];
 
 /// Some functions that a formula cannot call, each with a formula to write instead.
-const INSTEAD: [(&str, &str); 5] = [
-    ("ceil", "-floor(-x)"),
-    ("round", "floor(x + 0.5)"),
-    ("trunc", "int(x)"),
+const INSTEAD: [(&str, &str); 18] = [
     ("expm1", "exp(x) - 1"),
     ("log1p", "ln(1 + x)"),
+    ("exp10", "10^x"),
+    ("square", "x^2"),
+    ("sqr", "x^2"),
+    ("inversesqrt", "rsqrt(x)"),
+    ("arcsin", "asin(x)"),
+    ("arccos", "acos(x)"),
+    ("arctan", "atan(x)"),
+    ("arctan2", "atan2(y, x)"),
+    ("fabs", "abs(x)"),
+    ("fmod", "mod(x, y), or x % y"),
+    ("remainder", "mod(x, y), or x % y"),
+    ("fmin", "min(x, y)"),
+    ("fmax", "max(x, y)"),
+    ("sgn", "sign(x)"),
+    ("logistic", "sigmoid(x)"),
+    ("radians", "x * pi / 180"),
 ];
 
 /// The named constants, each with the largest `f64` that is not above it.
 const CONSTANTS: [(&str, f64); 2] = [("pi", std::f64::consts::PI), ("e", std::f64::consts::E)];
+
+/// The signs of comparisons.
+const SIGNS_OF_COMPARISONS: [&str; 6] = ["<", ">", "<=", ">=", "==", "!="];
 
 /// Another way to write the constant `pi`.
 const PI: &str = "π";
@@ -77,7 +117,8 @@ const DEEPEST: usize = 200;
 const MOST_PARTS: usize = 4096;
 
 /// Parses a formula. The formula may have sums, products, powers (`^` or `**`), parentheses, numbers, `pi`, `e`, names of
-/// operands, functions, `if(a < b, x, y)`, and the same in Python's notation, `x if a < b else y`.
+/// operands, functions, `if(a < b, x, y)`, and the same in the notations of Python and C, `x if a < b else y` and `a < b ? x :
+/// y`.
 ///
 /// # Errors
 /// Fails at the first mistake. The error has the location of the mistake.
@@ -107,8 +148,9 @@ fn tokens(text: &str) -> Result<Vec<Range<usize>>, Fault> {
         let length = match first {
             'a'..='z' | 'A'..='Z' | '_' => run(&|c| c.is_ascii_alphanumeric() || c == '_'),
             '0'..='9' | '.' => number(rest),
-            _ if ["**", "<=", ">="].iter().any(|two| rest.starts_with(two)) => 2,
-            '+' | '-' | '*' | '/' | '%' | '^' | '(' | ')' | '[' | ']' | ',' | '<' | '>' => 1,
+            _ if ["**", "<=", ">=", "==", "!="].iter().any(|two| rest.starts_with(two)) => 2,
+            '+' | '-' | '*' | '/' | '%' | '^' | '(' | ')' | '[' | ']' | ',' | '<' | '>' | '?'
+            | ':' => 1,
             '−' | '·' | '×' | 'π' => first.len_utf8(),
             _ if first.is_ascii_whitespace() => {
                 at += first.len_utf8();
@@ -130,7 +172,8 @@ fn tokens(text: &str) -> Result<Vec<Range<usize>>, Fault> {
 /// Returns an advice about the notation that replaces a sign. Returns `None` for a sign without a known replacement.
 fn instead_of_sign(sign: char) -> Option<&'static str> {
     Some(match sign {
-        '=' | '!' => "compare with `<`, `>`, `<=` or `>=`",
+        '=' | '!' => "compare with `<`, `>`, `<=`, `>=`, `==` or `!=`",
+        '&' => "for two conditions, write `if(a < b, if(c < d, x, y), y)`",
         '²' => "a square is written `x^2`",
         '³' => "a cube is written `x^3`",
         '⁰' | '¹' | '⁴'..='⁹' | '⁻' | 'ⁿ' => "a power is written `x^4`",
@@ -138,7 +181,9 @@ fn instead_of_sign(sign: char) -> Option<&'static str> {
         '∛' => "a cube root is written `cbrt(x)`",
         '÷' | '∕' | '⁄' => "a quotient is written `a / b`",
         '∗' | '⋅' | '∙' => "a product is written `a * b`",
-        '|' => "an absolute value is written `abs(x)`",
+        '|' => {
+            "an absolute value is written `abs(x)`; for one of two conditions, write `if(a < b, x, if(c < d, x, y))`"
+        }
         '≤' => "write `<=`",
         '≥' => "write `>=`",
         '–' | '—' | '‐' | '‑' => "a minus sign is written `-`",
@@ -212,7 +257,15 @@ impl Parser<'_> {
         self.depth += 1;
         let from = self.at;
         let mut choice = self.sum()?;
-        if self.taken(&["if"]) {
+        if SIGNS_OF_COMPARISONS.contains(&self.peek()) {
+            // `a < b ? x : y`, as in C.
+            let comparison = self.comparison_of(choice)?;
+            self.expect("?")?;
+            let yes = self.choice()?;
+            self.expect(":")?;
+            let kind = Kind::If(comparison, Arc::new(yes), Arc::new(self.choice()?));
+            choice = self.made(from, kind);
+        } else if self.taken(&["if"]) {
             let comparison = self.comparison()?;
             self.expect("else")?;
             let other = self.choice()?;
@@ -224,14 +277,47 @@ impl Parser<'_> {
     }
 
     fn comparison(&mut self) -> Result<Comparison, Fault> {
-        let first = Arc::new(self.sum()?);
+        let first = self.sum()?;
+        self.comparison_of(first)
+    }
+
+    /// Parses the sign and the right side of a comparison whose left side is `first`. Fails at the first mistake.
+    fn comparison_of(&mut self, first: Expression) -> Result<Comparison, Fault> {
+        let first = Arc::new(first);
         let sign = self.peek().to_owned();
-        if !self.taken(&["<", ">", "<=", ">="]) {
-            return self.fault("`<`, `>`, `<=` or `>=` is missing");
+        if !self.taken(&SIGNS_OF_COMPARISONS) {
+            return self.fault("a comparison sign is missing: `<`, `>`, `<=`, `>=`, `==` or `!=`");
         }
         let second = Arc::new(self.sum()?);
+        if sign == "==" || sign == "!=" {
+            return Ok(self.equality(first, second, sign == "=="));
+        }
         let (left, right) = if sign.starts_with('>') { (first, second) } else { (second, first) };
         Ok(Comparison { left, right, or_equal: sign.len() == 2 })
+    }
+
+    /// Returns the comparison that holds if two numbers are equal, or if they differ: whether the distance of the numbers is 0, or
+    /// is above 0.
+    fn equality(
+        &self,
+        first: Arc<Expression>,
+        second: Arc<Expression>,
+        is_equal: bool,
+    ) -> Comparison {
+        let span =
+            TextSpan { bytes: first.span.bytes.start..second.span.bytes.end, ..first.span.clone() };
+        let part = |kind: Kind| Arc::new(Expression::new(kind, span.clone()));
+        let is_zero = |number: &Expression| matches!(&number.kind, Kind::Number(literal) if literal.is_exact() && literal.nearest() == 0.0);
+        let difference = match is_zero(&second) {
+            true => first,
+            false => part(Kind::Binary(Operator::Sub, first, second)),
+        };
+        let distance = part(Kind::Unary(Function::Abs, difference));
+        let zero = part(Kind::Number(Literal::zero()));
+        match is_equal {
+            true => Comparison { left: zero, right: distance, or_equal: true },
+            false => Comparison { left: distance, right: zero, or_equal: false },
+        }
     }
 
     /// Parses operators of the same precedence, which are applied from left to right. `part` parses an operand. Fails at the
@@ -350,28 +436,38 @@ impl Parser<'_> {
         let function = named(&FUNCTIONS, name);
         let defined = named(&DEFINED, name);
         let defined_of_two = named(&DEFINED_OF_TWO, name);
-        let takes_two = operator.is_some() || defined_of_two.is_some();
-        if !takes_two && function.is_none() && defined.is_none() {
-            return Err(Fault::new(self.tokens[from].clone(), unknown_function(name)));
-        }
+        let defined_of_three = named(&DEFINED_OF_THREE, name);
+        let count = match (operator, function.is_some() || defined.is_some()) {
+            (Some(_), _) => 2,
+            (None, true) => 1,
+            _ if defined_of_two.is_some() => 2,
+            _ if defined_of_three.is_some() => 3,
+            _ => return Err(Fault::new(self.tokens[from].clone(), unknown_function(name))),
+        };
         let mut arguments = vec![self.choice()?];
-        if takes_two {
+        while arguments.len() < count || FUNCTIONS_OF_MANY.contains(&name) && self.peek() == "," {
             self.expect(",")?;
             arguments.push(self.choice()?);
         }
         self.expect(")")?;
         let span = self.tokens[from].start..self.tokens[self.at - 1].end;
-        if let Some(body) = defined.or(defined_of_two) {
+        if name == "hypot" && arguments.len() > 2 {
+            return length_of_many(&arguments, span);
+        }
+        if let Some(body) = defined.or(defined_of_two).or(defined_of_three) {
             return written_out(name, body, &arguments, span);
         }
-        let mut boxed = arguments.into_iter().map(Arc::new);
-        let first = boxed.next().expect("a call has an argument");
-        let kind = match (operator, boxed.next(), function) {
-            (Some(operator), Some(second), _) => Kind::Binary(operator, first, second),
-            (_, _, Some(function)) => Kind::Unary(function, first),
-            _ => unreachable!("`{name}` is a function of one number or of two"),
-        };
-        Ok(Expression::new(kind, span))
+        let mut arguments = arguments.into_iter().map(Arc::new);
+        let first = arguments.next().expect("a call has an argument");
+        if let Some(function) = function {
+            return Ok(Expression::new(Kind::Unary(function, first), span));
+        }
+        let operator = operator.expect("a function of one number or of two");
+        let mut all = first;
+        for argument in arguments {
+            all = Arc::new(Expression::new(Kind::Binary(operator, all, argument), span.clone()));
+        }
+        Ok(Arc::unwrap_or_clone(all))
     }
 }
 
@@ -390,11 +486,23 @@ fn unknown_function(name: &str) -> String {
     all.extend(DEFINED.map(|(own, _)| own));
     all.extend(FUNCTIONS_OF_TWO.map(|(own, _)| own));
     all.extend(DEFINED_OF_TWO.map(|(own, _)| own));
+    all.extend(DEFINED_OF_THREE.map(|(own, _)| own));
     all.push("if");
     format!("there is no function `{name}`; there are {}", all.join(", "))
 }
 
-/// Returns the formula `body` of the function `name`, in which the arguments of a call replace u and v. For example, `hypot(a,
+/// Returns the length of a vector, the root of the sum of the squares of its coordinates. `span` is the location of the call.
+fn length_of_many(arguments: &[Expression], span: Range<usize>) -> Result<Expression, Fault> {
+    let mut sum = written_out("hypot", "u^2", &arguments[..1], span.clone())?;
+    for argument in &arguments[1..] {
+        let square = written_out("hypot", "u^2", std::slice::from_ref(argument), span.clone())?;
+        let kind = Kind::Binary(Operator::Add, Arc::new(sum), Arc::new(square));
+        sum = Expression::new(kind, span.clone());
+    }
+    Ok(Expression::new(Kind::Unary(Function::Sqrt, Arc::new(sum)), span))
+}
+
+/// Returns the formula `body` of the function `name`, in which the arguments of a call replace u, v and w. For example, `hypot(a,
 /// 2)` becomes `sqrt(a^2 + 2^2)`. `span` is the location of the call. Fails if the result has more than [`MOST_PARTS`] parts.
 fn written_out(
     name: &str,
@@ -405,7 +513,7 @@ fn written_out(
     let mut formula = parse(body)?;
     let span = TextSpan::from(span);
     let mut parts = formula.size() as usize;
-    let parameters = [Expression::operand("u"), Expression::operand("v")];
+    let parameters = ["u", "v", "w"].map(Expression::operand);
     let mut most_uses = 0;
     for (parameter, argument) in parameters.iter().zip(arguments) {
         let uses = formula.count(&|part| part == parameter);
@@ -419,9 +527,9 @@ fn written_out(
         );
         return Err(Fault::new(span, message));
     }
-    // An argument may itself contain an operand u or v. Temporary names that no text can contain keep these apart from the
+    // An argument may itself contain an operand u, v or w. Temporary names that no text can contain keep these apart from the
     // parameters.
-    let marks = [Expression::operand("(u)"), Expression::operand("(v)")];
+    let marks = ["(u)", "(v)", "(w)"].map(Expression::operand);
     for (parameter, mark) in parameters.iter().zip(&marks) {
         formula = formula.substitute(parameter, mark, &span);
     }

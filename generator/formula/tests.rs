@@ -133,13 +133,15 @@ fn mistakes_are_shown_under_their_places() {
         ("x # 2", "  ^ `#` cannot be a part of a formula"),
         ("(x + 1", "      ^ `)` is missing"),
         ("1.2.3", "^^^^^ this is not a number"),
-        ("if(x, 1, 2)", "    ^ `<`, `>`, `<=` or `>=` is missing"),
+        ("if(x, 1, 2)", "    ^ a comparison sign is missing: `<`, `>`, `<=`, `>=`, `==` or `!=`"),
         ("2x", " ^ this does not belong here: write the sign of a product, as in `2*x`"),
         (
-            "if(x == 2, 1, 2)",
-            "     ^ `=` cannot be a part of a formula: compare with `<`, `>`, `<=` or `>=`",
+            "if(x = 2, 1, 2)",
+            "     ^ `=` cannot be a part of a formula: compare with `<`, `>`, `<=`, `>=`, `==` or `!=`",
         ),
-        ("1 + ceil(x)", "    ^^^^ there is no function `ceil`: write -floor(-x)"),
+        ("1 + expm1(x)", "    ^^^^^ there is no function `expm1`: write exp(x) - 1"),
+        ("clamp(x, 1)", "          ^ `,` is missing"),
+        ("x < 1 ? 2", "         ^ `:` is missing"),
         ("2 * y", "    ^ there is no `y`: the operand is `x`"),
         ("3 + 1 / x", "    ^^^^^ a pole: the divisor is from -1 to 2"),
         ("2 · sqrt(x)", "    ^^^^^^^ the root of a negative number, from -1 to 2"),
@@ -326,7 +328,11 @@ fn signs_of_other_alphabets_are_named() {
         ("x²", " ^ `²` cannot be a part of a formula: a square is written `x^2`"),
         ("√x", "^ `√` cannot be a part of a formula: a root is written `sqrt(x)`"),
         ("x ÷ 2", "  ^ `÷` cannot be a part of a formula: a quotient is written `a / b`"),
-        ("|x|", "^ `|` cannot be a part of a formula: an absolute value is written `abs(x)`"),
+        (
+            "|x|",
+            "^ `|` cannot be a part of a formula: an absolute value is written `abs(x)`; for one of two conditions, write \
+             `if(a < b, x, if(c < d, x, y))`",
+        ),
         ("x – 1", "  ^ `–` cannot be a part of a formula: a minus sign is written `-`"),
     ] {
         let under = parse(text).unwrap_err().under(text);
@@ -359,5 +365,51 @@ fn c_calls_the_functions_of_an_arithmetic() {
         let formula = parse(text).unwrap();
         assert_eq!(formula.c(CArithmetic::Limits), limits);
         assert_eq!(formula.c(CArithmetic::Near), near);
+    }
+}
+
+/// Functions of shading languages and of C, with values computed by hand.
+#[test]
+fn functions_of_other_languages_have_their_values() {
+    for (text, x, expected) in [
+        ("clamp(x, -1, 2)", 5.0, 2.0),
+        ("clamp(x, -1, 2)", -5.0, -1.0),
+        ("mix(3, 7, x)", 0.25, 4.0),
+        ("lerp(3, 7, x)", 1.0, 7.0),
+        ("step(0.5, x)", 0.5, 1.0),
+        ("step(0.5, x)", 0.25, 0.0),
+        // t = 1/2: 1/4 · (3 − 1).
+        ("smoothstep(1, 3, x)", 2.0, 0.5),
+        // t = 1/4: 1/16 · (3 − 1/2).
+        ("smoothstep(0, 1, x)", 0.25, 0.15625),
+        ("smoothstep(1, 3, x)", 9.0, 1.0),
+        ("fract(x)", -1.25, 0.75),
+        ("mod(x, 3)", -1.0, 2.0),
+        ("sign(x)", -4.0, -1.0),
+        ("sign(x)", 0.0, 0.0),
+        ("ceil(x)", 1.25, 2.0),
+        ("ceil(x)", -1.25, -1.0),
+        ("round(x)", 2.5, 3.0),
+        ("round(x)", -2.5, -2.0),
+        ("trunc(x)", -2.5, -2.0),
+        ("saturate(x)", 1.5, 1.0),
+        ("min(4, x, 2, 3)", 2.5, 2.0),
+        ("max(1, 2, x)", 2.5, 2.5),
+        ("hypot(2, x, 6)", 3.0, 7.0),
+        ("x > 1 ? 10 : x < -1 ? 20 : 30", -2.0, 20.0),
+        ("clamp(u, v, w) + x", 0.0, 0.0),
+        ("if(x == 2, 5, 6)", 2.0, 5.0),
+        ("if(x == 2, 5, 6)", 2.5, 6.0),
+        ("x != 0 ? 1 / x : 9", 0.0, 9.0),
+        ("x != 0 ? 1 / x : 9", -0.5, -2.0),
+    ] {
+        let formula = parse(text).unwrap_or_else(|fault| panic!("{}", fault.under(text)));
+        let operands = ["x", "u", "v", "w"].map(|name| {
+            let value = if name == "x" { x } else { 0.0 };
+            (name, Enclosure::exactly(value))
+        });
+        let value = formula.enclose(&operands).expect(text);
+        assert!(value.low <= expected && expected <= value.high, "{text} at {x}: {value:?}");
+        assert!(value.high - value.low < 1e-9, "{text} at {x}: {value:?}");
     }
 }

@@ -496,7 +496,10 @@ fn formula(
     resolved(&formula, key, keys, parts)
 }
 
-/// Returns a formula in which the names of parts are replaced by the formulas in `parts`.
+/// The name of 2 π in formulas, unless an operand or a part has this name, such as a time constant.
+const TAU: &str = "tau";
+
+/// Returns a formula in which the names of parts are replaced by the formulas in `parts`, and [`TAU`] by its value.
 ///
 /// # Errors
 /// Fails if the formula has a name that is neither an operand nor one of `parts`.
@@ -510,7 +513,7 @@ fn resolved(
     formula.walk(&mut |part| {
         let (Kind::Operand(name) | Kind::Word(name, _)) = &part.kind else { return };
         let is_operand = keys.operands.0.iter().any(|operand| operand.name == *name);
-        let is_part = parts.iter().any(|(own, _)| own == name);
+        let is_part = parts.iter().any(|(own, _)| own == name) || name == TAU;
         if !is_operand && !is_part || matches!(part.kind, Kind::Word(..)) {
             unknown.get_or_insert((part.span.bytes.clone(), name.clone()));
         }
@@ -524,8 +527,12 @@ fn resolved(
         let error = StatementError::new(key.to_owned(), message, remedy);
         return Err(StatementError { place: Some(span), ..error });
     }
-    let of_part =
-        |name: &str| parts.iter().find(|(own, _)| own == name).map(|(_, formula)| formula.clone());
+    let is_operand = |name: &str| keys.operands.0.iter().any(|operand| operand.name == name);
+    let of_part = |name: &str| {
+        let part = parts.iter().find(|(own, _)| own == name).map(|(_, formula)| formula.clone());
+        let is_whole_turn = name == TAU && part.is_none() && !is_operand(name);
+        if is_whole_turn { parse("2 * pi").ok().map(Arc::new) } else { part }
+    };
     Ok(formula.with_operands(&of_part))
 }
 

@@ -51,6 +51,7 @@ mod range;
 mod refusal;
 mod schedule;
 mod statement;
+mod uses;
 
 pub use find::{ProofKind, ProvedPlan, find};
 pub use node::{Approximation, NodeId, Operation, PlanNode};

@@ -26,6 +26,7 @@ use super::plan::ExpressionPlan;
 use super::range::{LIMIT_THE_OPERANDS, range_of};
 use super::refusal::PlanRefusal;
 use super::statement::{ExpressionStatement, StatedOverflow, StatedResult, StatedWidth};
+use super::uses::PartUses;
 
 /// The widest operand of a table of polynomials, in bits. A wider one is shortened first.
 const WIDEST_OPERAND: u32 = 20;
@@ -107,8 +108,8 @@ impl FoundPolynomials {
 struct KnownPart {
     part: Expression,
     node: NodeId,
-    /// For each result, whether the node has the right value for all operands for which this result is promised.
-    readers: Vec<bool>,
+    /// The uses for which the node has the right value.
+    uses: PartUses,
 }
 
 /// The state of the rewriting of formulas as a plan.
@@ -120,8 +121,8 @@ pub(super) struct Lowering<'s> {
     plan: ExpressionPlan,
     /// The parts of formulas that already have a node.
     known: Vec<KnownPart>,
-    /// For each result, whether it reads the part that is being rewritten.
-    readers: Vec<bool>,
+    /// The uses of the part that is being rewritten.
+    uses: PartUses,
     /// The tables that sines and cosines of the same angle share.
     octants: Vec<wave::OctantWaves>,
     /// The number of rounding operations so far.
@@ -149,20 +150,22 @@ pub(super) fn lowered(
         found,
         plan: ExpressionPlan::default(),
         known: Vec::new(),
-        readers: Vec::new(),
+        uses: PartUses::default(),
         octants: Vec::new(),
         sources: 0,
         finest: finest.unwrap_or(0),
     };
     for (number, operand) in statement.operands.iter().enumerate() {
         let node = lowering.plan.operand(number, &operand.name, operand.format, operand.domain)?;
-        let readers = vec![true; statement.results.len()];
-        lowering.known.push(KnownPart { part: Expression::operand(&operand.name), node, readers });
+        let uses =
+            PartUses { readers: vec![true; statement.results.len()], conditions: Vec::new() };
+        lowering.known.push(KnownPart { part: Expression::operand(&operand.name), node, uses });
     }
     for number in 0..statement.results.len() {
         let of_result = |refusal: PlanRefusal| refusal.of_result(number);
-        lowering.readers = vec![false; statement.results.len()];
-        lowering.readers[number] = true;
+        let mut readers = vec![false; statement.results.len()];
+        readers[number] = true;
+        lowering.uses = PartUses { readers, conditions: Vec::new() };
         let rounded = lowering.result(number).map_err(of_result)?;
         let proved = lowering.saturated(number, rounded).map_err(of_result)?;
         let node = lowering.in_stated_width(number, proved).map_err(of_result)?;
@@ -242,22 +245,36 @@ impl<'s> Lowering<'s> {
         Ok(limited)
     }
 
-    /// Returns an interval that contains the values of a part, for all operands for which a result that reads this part is
-    /// promised. Fails if the values have no finite limits.
+    /// Returns an interval that contains the values of a part, for all operands for which its value matters. Fails if the values
+    /// have no finite limits.
     fn range(&self, part: &Expression) -> Result<Enclosure, PlanRefusal> {
-        let readers = self.readers_of(part);
-        range_of(self.statement, &readers, part)
-            .map_err(|error| error.refusal(self.statement, part))
+        let uses = self.uses_of(part);
+        range_of(self.statement, &uses, part).map_err(|error| error.refusal(self.statement, part))
     }
 
-    /// Returns for each result whether it reads `part`: the results that read the part that is being rewritten, and those whose
-    /// formulas contain `part`.
-    fn readers_of(&self, part: &Expression) -> Vec<bool> {
-        let mut readers = self.readers.clone();
-        for (reads, result) in readers.iter_mut().zip(&self.statement.results) {
-            *reads |= result.formula.count(&|own| own == part) > 0;
+    /// Returns the uses of `part` as a part of the one that is being rewritten. Without a condition, other results whose formulas
+    /// contain `part` count too, so that they can share its node.
+    fn uses_of(&self, part: &Expression) -> PartUses {
+        let mut uses = self.uses.clone();
+        if uses.conditions.is_empty() {
+            for (reads, result) in uses.readers.iter_mut().zip(&self.statement.results) {
+                *reads |= result.formula.count(&|own| own == part) > 0;
+            }
         }
-        readers
+        uses
+    }
+
+    /// Returns what `make` returns, for parts whose value matters only where the comparison has the outcome `outcome`.
+    fn under<T>(
+        &mut self,
+        comparison: &Comparison,
+        outcome: bool,
+        make: impl FnOnce(&mut Self) -> T,
+    ) -> T {
+        self.uses.conditions.push((comparison.clone(), outcome));
+        let made = make(self);
+        self.uses.conditions.pop();
+        made
     }
 
     /// Chooses a number of fraction bits, and returns the node that `make` adds with this number. The number is `frac` plus the
@@ -282,19 +299,16 @@ impl<'s> Lowering<'s> {
     /// Returns the node of a part of a formula. Adds the node and all nodes that it reads if the part has no node. Fails if a
     /// part has too many bits, no finite values, or no rule. The refusal has the location of the part.
     fn part(&mut self, part: &Expression) -> Result<NodeId, PlanRefusal> {
-        let is_for_all = |known: &&KnownPart| {
-            let mut readers = self.readers.iter().zip(&known.readers);
-            known.part == *part && readers.all(|(reads, is_right)| !reads || *is_right)
-        };
+        let is_for_all = |known: &&KnownPart| known.part == *part && known.uses.contain(&self.uses);
         if let Some(known) = self.known.iter().find(is_for_all) {
             return Ok(known.node);
         }
-        let readers = self.readers_of(part);
-        let outer = mem::replace(&mut self.readers, readers);
+        let uses = self.uses_of(part);
+        let outer = mem::replace(&mut self.uses, uses);
         let node = self.new_part(part).map_err(|refusal| refusal.at(&part.span));
-        let readers = mem::replace(&mut self.readers, outer);
+        let uses = mem::replace(&mut self.uses, outer);
         let node = node?;
-        self.known.push(KnownPart { part: part.clone(), node, readers });
+        self.known.push(KnownPart { part: part.clone(), node, uses });
         Ok(node)
     }
 
@@ -317,6 +331,13 @@ impl<'s> Lowering<'s> {
         let node = self.part(&core)?;
         let range = self.range(&core)?;
         let format = self.plan.node(node).format;
+        let is_guarded = part.count(&|own| matches!(own.kind, Kind::If { .. })) > 0;
+        if is_guarded
+            && function_range(&function, format, self.raw_domain(node, range, 0.0)).is_none()
+        {
+            // A case of a choice has no value outside its condition. The cases then get nodes of their own.
+            return self.operation(part);
+        }
         let node = self.rounding(format.frac.min(self.finest), |own, frac| {
             if format.width() <= WIDEST_OPERAND {
                 return Ok(node);
@@ -407,7 +428,17 @@ impl<'s> Lowering<'s> {
                 let a = self.part(a)?;
                 self.plan.multiply("square", a, a)
             }
-            Operator::Power => self.part(&exponential::written_with_logarithm(a, b, &part.span)),
+            Operator::Power => {
+                let power = exponential::written_with_logarithm(a, b, &part.span);
+                if self.range(a)?.low != 0.0 {
+                    return self.part(&power);
+                }
+                // The logarithm of 0 has no value. For an exponent above 0, the power of 0 is 0.
+                let zero = Arc::new(number("0"));
+                let (left, right) = (Arc::new(a.clone()), zero.clone());
+                let is_some = Comparison { left, right, or_equal: false };
+                self.choice(&is_some, &power, &zero)
+            }
             Operator::Mod if modulus_exponent(b).is_some() => {
                 let [_, fraction] = self.division(a, modulus_exponent(b).unwrap_or(0))?;
                 Ok(fraction)
@@ -484,6 +515,11 @@ impl<'s> Lowering<'s> {
         yes: &Expression,
         no: &Expression,
     ) -> Result<NodeId, PlanRefusal> {
+        let operands = self.statement.enclosed_operands(&self.statement.domain());
+        if let Ok(Some(outcome)) = comparison.holds(&operands) {
+            // No operand takes the other case.
+            return self.part(if outcome { yes } else { no });
+        }
         let (first, second) = (&*comparison.left, &*comparison.right);
         let (left, right) = (self.part(first)?, self.part(second)?);
         if (yes, no) == (second, first) {
@@ -493,7 +529,14 @@ impl<'s> Lowering<'s> {
         if (yes, no) == (first, second) {
             return self.plan.maximum("larger", left, right);
         }
-        let (yes, no) = (self.part(yes)?, self.part(no)?);
+        let [yes, no] = if self.is_exact(left) && self.is_exact(right) {
+            let yes = self.under(comparison, true, |own| own.part(yes))?;
+            let no = self.under(comparison, false, |own| own.part(no))?;
+            [yes, no]
+        } else {
+            // Rounding can make the hardware take the other case, so that the value of each case matters for all operands.
+            [self.part(yes)?, self.part(no)?]
+        };
         if comparison.or_equal {
             // Equivalent to `left >= right`, because the cases are swapped.
             let is_less = self.plan.less("is_less", left, right)?;
@@ -515,19 +558,13 @@ impl<'s> Lowering<'s> {
         range: Enclosure,
     ) -> Result<NodeId, PlanRefusal> {
         let operand = self.plan.node(node).format;
-        let unit = exp2(operand.frac);
-        let (low, high) = self.plan.node(node).range;
         // The node may differ from its exact value by the roundings before it.
         let error = if self.is_exact(node) { 0.0 } else { self.largest_error(node) };
-        let domain_with = |slack: f64| {
-            let first = ((range.low * unit - slack).ceil() as i128).max(low);
-            let last = ((range.high * unit + slack).floor() as i128).min(high);
-            (first as i64, last as i64)
-        };
-        let mut domain = domain_with((error * unit).ceil());
+        let slack = (error * exp2(operand.frac)).ceil();
+        let mut domain = self.raw_domain(node, range, slack);
         if function_range(function, operand, domain).is_none() {
             // For example, a root below 0. The proof decides whether the node can have such values.
-            domain = domain_with(0.0);
+            domain = self.raw_domain(node, range, 0.0);
         }
         let (first, last) = domain;
         if last <= first {
@@ -538,6 +575,17 @@ impl<'s> Lowering<'s> {
         }
         let finest = self.finest;
         self.rounding(finest + 2, |own, frac| own.approximation(name, node, function, domain, frac))
+    }
+
+    /// Returns the first and the last raw value that `node` can have if its exact value lies within `range`, and differs from the
+    /// node by at most `slack` units.
+    fn raw_domain(&self, node: NodeId, range: Enclosure, slack: f64) -> (i64, i64) {
+        let node = self.plan.node(node);
+        let unit = exp2(node.format.frac);
+        let (low, high) = node.range;
+        let first = ((range.low * unit - slack).ceil() as i128).max(low);
+        let last = ((range.high * unit + slack).floor() as i128).min(high);
+        (first as i64, last as i64)
     }
 
     /// Adds a function of `node` with `frac` fraction bits, for the raw values of `node` in `domain`, and returns the new node.

@@ -5,11 +5,12 @@ use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 use std::sync::Arc;
 
-use glint_formula::{Enclosure, Expression, Function, Kind, Operator};
+use glint_formula::{Comparison, Enclosure, Expression, Function, Kind, Operator};
 
 use super::boxes::{BoxScore, OperandBox, best_halves};
 use super::refusal::PlanRefusal;
 use super::statement::{ExpressionStatement, StatedResult};
+use super::uses::PartUses;
 
 /// The largest number of divisions of the domain in the search for boxes with finite values.
 const DIVISIONS_TO_LIMITS: usize = 1 << 12;
@@ -130,8 +131,7 @@ impl Ord for BoxEnd {
     }
 }
 
-/// Returns an interval that contains the values of `formula`, for all operands for which a result that reads this part is
-/// promised. `readers` says for each result whether it reads the part.
+/// Returns an interval that contains the values of `formula`, for all operands for which its value matters.
 ///
 /// The domain is divided where the part has no finite limits, and then where its largest and its smallest values are.
 ///
@@ -140,7 +140,7 @@ impl Ord for BoxEnd {
 /// In the first case, the error has a box of operands without finite limits.
 pub(super) fn range_of(
     statement: &ExpressionStatement,
-    readers: &[bool],
+    uses: &PartUses,
     formula: &Expression,
 ) -> Result<Enclosure, NoRange> {
     let values_in = |limits: &OperandBox| {
@@ -148,7 +148,13 @@ pub(super) fn range_of(
         let may_be_promised = |(result, reads): (&StatedResult, &bool)| {
             *reads && result.is_promised(&operands) != Some(false)
         };
-        if !statement.results.iter().zip(readers).any(may_be_promised) {
+        if !statement.results.iter().zip(&uses.readers).any(may_be_promised) {
+            return None;
+        }
+        let is_excluded = |(comparison, outcome): &(Comparison, bool)| {
+            comparison.holds(&operands).is_ok_and(|holds| holds == Some(!outcome))
+        };
+        if uses.conditions.iter().any(is_excluded) {
             return None;
         }
         let values = formula
@@ -197,7 +203,8 @@ pub fn least_size(statement: &ExpressionStatement, result: usize) -> Result<f64,
         operands: statement.operands.clone(),
         results: vec![StatedResult { formula: size.clone(), width: None, ..stated.clone() }],
     };
-    let values = range_of(&alone, &[true], &size).map_err(|error| error.refusal(statement, target));
+    let uses = PartUses { readers: vec![true], conditions: Vec::new() };
+    let values = range_of(&alone, &uses, &size).map_err(|error| error.refusal(statement, target));
     values.map(|values| values.low.max(0.0)).map_err(|refusal| refusal.of_result(result))
 }
 

@@ -491,3 +491,33 @@ fn an_odd_function_has_a_table_for_one_side() {
     let [approximation] = found.plan.approximations()[..] else { panic!("{:?}", found.plan) };
     assert_eq!(approximation.function.domain.0, 0, "{approximation:?}");
 }
+
+/// The condition of a choice excludes operands for which the chosen case would have no value.
+#[test]
+fn choices_guard_their_cases() {
+    let byte = Format::signed(3, 4);
+    for formula in [
+        "if(x > 0, ln(x), -8) + y",
+        "if(y > 0, x / y, 0)",
+        "if(y >= 1/16, x / y, x)",
+        "if(y < 0, x / y, x)",
+        "if(x > 0, if(y > 0, sqrt(x * y) / y, 1), 0)",
+        "if(x > 0, 1 / x, 0) + if(x > 0, 1 / x, 0) * y",
+        "x <= 0 ? y : y * log2(x)",
+        "if(y > 100, 1 / (y - y), x + y)",
+        "if(y == 0, 0, x / y)",
+        "max(x, 0) ^ (abs(y) / 8 + 1/8)",
+    ] {
+        let mut operands = Vec::new();
+        for name in ["x", "y"] {
+            if formula.contains(name) {
+                operands.push(operand(name, byte));
+            }
+        }
+        let statement = ExpressionStatement { operands, results: vec![result("r", formula, 4)] };
+        let found = find(&statement).unwrap_or_else(|refusal| panic!("{formula}: {refusal:?}"));
+        assert!(found.bounds[0] < 1.0, "{formula}");
+        let largest = largest_errors(&statement, &found.plan).expect("values");
+        assert!(largest[0] < 1.0, "{formula}: {largest:?}");
+    }
+}

@@ -28,7 +28,22 @@ const TINY: &str =
 operands.c = { bits = 3, fraction = 40 }\noperands.d = { bits = 3, fraction = 40 }";
 
 /// Operands, and results that other results read or that need no operation.
-const CASES: [(&str, &str); 14] = [
+const CASES: [(&str, &str); 17] = [
+    (
+        SIGNED,
+        "results.l = { formula = \"if(x > 0, ln(x), -8) + y\", fraction = 5 }
+results.q = { formula = \"if(y == 0, 0, x / y)\", fraction = 3 }",
+    ),
+    (
+        UNSIGNED,
+        "results.s = { formula = \"if(max(x, y) > 0, (max(x, y) - min(x, y)) / max(x, y), 0)\", fraction = 6 }
+results.h = { formula = \"x + y > 0 ? 2 * x * y / (x + y) : 0\", fraction = 6 }",
+    ),
+    (
+        UNSIGNED,
+        "results.m = { formula = \"mix(x, y, saturate(2 * x)) + clamp(y, 0.25, 0.5)\", fraction = 6 }
+results.t = { formula = \"smoothstep(0.25, 0.75, x) * sign(y)\", fraction = 6 }",
+    ),
     (
         SIGNED,
         "results.p = { formula = \"x^2 + y^2\", fraction = 6 }

@@ -59,9 +59,9 @@ fn is_multiple(formula: &Expression) -> bool {
 /// The sine and the cosine of an angle that is reduced to the first octant, with the nodes that restore the results for the
 /// whole angle.
 pub(super) struct OctantWaves {
-    /// The part of the formula from which the angle is computed.
-    core: Expression,
-    /// The exponent: the part times 2 to this power is the angle in quarter turns.
+    /// The node from which the angle is computed.
+    angle: NodeId,
+    /// The exponent: the node times 2 to this power is the angle in quarter turns.
     power: i32,
     /// The sine and the cosine of the reduced angle.
     waves: [NodeId; 2],
@@ -87,7 +87,7 @@ impl Lowering<'_> {
             return Ok(None);
         }
         if self.has_sine_and_cosine(core, power) {
-            return self.wave_by_octants(kind, core, power).map(Some);
+            return self.wave_by_octants(kind, node, power).map(Some);
         }
         self.wave_by_quadrants(kind, node, power).map(Some)
     }
@@ -116,7 +116,7 @@ impl Lowering<'_> {
         self.with_sign("wave", size, is_negative)
     }
 
-    /// Returns the node of a sine or a cosine (`kind`), computed by tables of the sine and the cosine in an octant. `core`
+    /// Returns the node of a sine or a cosine (`kind`), computed by tables of the sine and the cosine in an octant. `node`
     /// times 2^`power` is the angle in quarter turns. A sine and a cosine of the same angle share the tables. Fails if a part
     /// has too many bits, no finite values, or no rule.
     ///
@@ -126,14 +126,14 @@ impl Lowering<'_> {
     fn wave_by_octants(
         &mut self,
         kind: Function,
-        core: &Expression,
+        node: NodeId,
         power: i32,
     ) -> Result<NodeId, PlanRefusal> {
-        let is_known = |it: &OctantWaves| it.core == *core && it.power == power;
+        let is_known = |it: &OctantWaves| it.angle == node && it.power == power;
         let known = match self.octants.iter().position(is_known) {
             Some(known) => known,
             None => {
-                let waves = self.octant_waves(core, power)?;
+                let waves = self.octant_waves(node, power)?;
                 self.octants.push(waves);
                 self.octants.len() - 1
             }
@@ -152,10 +152,9 @@ impl Lowering<'_> {
     }
 
     /// Adds the tables of the sine and the cosine in an octant, and the nodes that restore the results for the whole angle.
-    /// Returns these nodes. `core` times 2^`power` is the angle in quarter turns. Fails if a part has too many bits, no finite
+    /// Returns these nodes. `node` times 2^`power` is the angle in quarter turns. Fails if a part has too many bits, no finite
     /// values, or no rule.
-    fn octant_waves(&mut self, core: &Expression, power: i32) -> Result<OctantWaves, PlanRefusal> {
-        let node = self.part(core)?;
+    fn octant_waves(&mut self, node: NodeId, power: i32) -> Result<OctantWaves, PlanRefusal> {
         let eighths = self.plan.scale("eighths", node, power + 1)?;
         let [octant, way] = self.plan.split("angle", eighths)?;
         let is_odd = self.plan.bit("is_odd_octant", octant, 0)?;
@@ -170,7 +169,7 @@ impl Lowering<'_> {
         let is_sine_negative = self.plan.bit("is_sine_negative", octant, 2)?;
         let is_cosine_negative = self.plan.bit("is_cosine_negative", after_next, 2)?;
         Ok(OctantWaves {
-            core: core.clone(),
+            angle: node,
             power,
             waves: [sine, cosine],
             is_swapped,
