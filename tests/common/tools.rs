@@ -60,7 +60,13 @@ pub fn example(script: &str, arguments: &[&OsStr]) -> String {
     let glint = format!("GLINT={}", env!("CARGO_BIN_EXE_glint"));
     let script = root().join("examples").join(script);
     let all = [glint.as_ref(), script.as_os_str()].into_iter().chain(arguments.iter().copied());
-    ran("env", all, root())
+    ran("env", all, checkout())
+}
+
+/// Returns the directory of this checkout for a tool that runs in it. The path is relative, so that the tool keeps its temporary
+/// files elsewhere.
+pub fn checkout() -> &'static Path {
+    Path::new(".")
 }
 
 /// Returns an example as a program that Cargo runs, to be given its arguments.

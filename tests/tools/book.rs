@@ -6,7 +6,7 @@ use std::path::{Component, Path, PathBuf};
 use regex::Regex;
 
 use crate::common::files::{read, root};
-use crate::common::tools::ran;
+use crate::common::tools::{checkout, ran};
 use glint::tools::transient::files_below;
 
 /// Resolves `.` and `..` without asking the file system.
@@ -35,7 +35,7 @@ fn every_link_of_the_book_leads_somewhere() {
     let dir = tempfile::tempdir().expect("a directory");
     let book = dir.path().join("book");
     let docs = root().join("docs");
-    ran("mdbook", ["build", "docs", "-d", book.to_str().expect("a path")], root());
+    ran("mdbook", ["build", "docs", "-d", book.to_str().expect("a path")], checkout());
     let files = files_below(&book).expect("a book");
     let is_page = |path: &&PathBuf| path.extension().is_some_and(|ending| ending == "html");
     // The page to print has all others in one, and the one for wrong addresses knows no place.

@@ -110,7 +110,7 @@ fn a_job_array_with_tasks_put_back_and_killed_gives_the_record_of_one_process() 
     let (killed, glint) = (dir.path().join("killed"), env!("CARGO_BIN_EXE_glint"));
     let once = format!("[ -e {0} ] || {{ : > {0}; kill -KILL $$; }}", killed.display());
     let path = dir.path().join("program");
-    program(&path, &format!("case \"$*\" in *part-2*) {once};; esac\nexec {glint} \"$@\"\n"));
+    program(&path, &format!("case \"$*\" in *part-2*) {once};; esac\nexec '{glint}' \"$@\"\n"));
     let path = path.to_str().expect("a plain name");
     let array = slurm.submit(&mut submit_with(&results, path));
     // The first task has begun: its state is there, and not complete.

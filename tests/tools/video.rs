@@ -4,7 +4,7 @@
 use crate::common::Sure;
 use crate::common::files::root;
 use crate::common::sample::sampled;
-use crate::common::tools::{LIMIT, example, tool};
+use crate::common::tools::{LIMIT, checkout, example, tool};
 
 #[test]
 fn cores_shade_under_the_beam() {
@@ -27,7 +27,7 @@ fn cores_shade_under_the_beam() {
             let compare = root().join("examples/soc/compare.py");
             let seen = dir.path().join(signal).join("frame1.ppm");
             tool("python3")
-                .run_to_success([compare, shown, seen], root(), LIMIT)
+                .run_to_success([compare, shown, seen], checkout(), LIMIT)
                 .sure_of("docs/images/video.png is of another time");
         }
     }
@@ -62,7 +62,11 @@ fn boards_keep_the_clocks() {
 fn what_a_board_has_no_room_for_is_refused() {
     let script = root().join("examples/video/bitstream");
     let error = tool("bash")
-        .run_to_success([script.as_os_str(), "icebreaker".as_ref(), "mesh".as_ref()], root(), LIMIT)
+        .run_to_success(
+            [script.as_os_str(), "icebreaker".as_ref(), "mesh".as_ref()],
+            checkout(),
+            LIMIT,
+        )
         .expect_err("it does not fit");
     assert!(format!("{error:#}").contains("take ulx3s"), "{error:#}");
 }

@@ -4,14 +4,14 @@ use std::path::Path;
 use std::process::Command;
 
 use crate::common::files::{self, put, root};
-use crate::common::tools::{ran, succeeded, tool};
+use crate::common::tools::{checkout, ran, succeeded, tool};
 
 #[test]
 fn a_wheel_has_the_module_and_the_program() {
     let dir = tempfile::TempDir::new().expect("a directory");
     let [out, place] = ["wheels", "place"].map(|name| dir.path().join(name));
     let paths = [&out, &place].map(|path| path.to_str().expect("a path"));
-    ran("maturin", ["build", "--release", "--out", paths[0]], root());
+    ran("maturin", ["build", "--release", "--out", paths[0]], checkout());
     let wheel = files::paths(&out, ".whl").swap_remove(0);
     let install = ["-m", "pip", "install", "-q", "--no-deps", "--no-index", "--target", paths[1]];
     ran("python", install.into_iter().chain([wheel.as_str()]), dir.path());
