@@ -430,7 +430,7 @@ impl<'s> Lowering<'s> {
             }
             Operator::Power => {
                 let power = exponential::written_with_logarithm(a, b, &part.span);
-                if self.range(a)?.low != 0.0 {
+                if self.range(a)?.low != 0.0 || self.range(b)?.low <= 0.0 {
                     return self.part(&power);
                 }
                 // The logarithm of 0 has no value. For an exponent above 0, the power of 0 is 0.
@@ -486,6 +486,13 @@ impl<'s> Lowering<'s> {
     /// example, 5.75 with the exponent 1 gives 4 and 1.75. Fails if a part has too many bits, no finite values, or no rule.
     fn division(&mut self, a: &Expression, exponent: i32) -> Result<[NodeId; 2], PlanRefusal> {
         let a = self.part(a)?;
+        if !self.is_exact(a) {
+            // A value just below an integer can be rounded to the integer, and the result would be wrong by a whole unit.
+            return Err(PlanRefusal::new(
+                "Glint computes an integer part or a remainder only of a value that is not rounded",
+                "use sums, differences and products of operands inside it, with constants such as 0.75",
+            ));
+        }
         let scaled = self.plan.scale("scaled", a, -exponent)?;
         if self.plan.node(scaled).format.frac <= 0 {
             // Every value is a multiple of the divisor.
@@ -759,12 +766,19 @@ fn new_products(
                 (false, _) => None,
             }
         }
-        Kind::Binary(Operator::Mod, a, b) if modulus_exponent(b).is_some() => products_of(a, core),
+        Kind::Binary(Operator::Mod, a, b) if modulus_exponent(b).is_some() && !rounds(a) => {
+            products_of(a, core)
+        }
         Kind::Binary(Operator::Power, a, b) if **b == number("2") => {
             Some(products_of(a, core)? + PRODUCT)
         }
         _ => None,
     }
+}
+
+/// Returns whether a formula has a constant that is rounded. For example, `0.3 * x` has one, and `0.75 * x` has none.
+fn rounds(formula: &Expression) -> bool {
+    formula.count(&|part| !part.varies() && dyadic(part).is_none()) > 0
 }
 
 /// Returns k if the divisor of a remainder is the constant 2^k, and `None` for any other divisor.

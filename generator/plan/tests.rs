@@ -261,7 +261,7 @@ impl Draws {
         let a = self.formula(depth - 1);
         let other_depth = self.below(u64::from(depth)) as u32;
         let b = self.formula(other_depth);
-        match self.below(23) {
+        match self.below(29) {
             0 => format!("({a}) + ({b})"),
             1 => format!("({a}) - ({b})"),
             2 => format!("({a}) * ({b})"),
@@ -284,8 +284,48 @@ impl Draws {
             19 => format!("exp2(6 * ({a}))"),
             20 => format!("ln(1 / 128 + abs({a}))"),
             21 => format!("(0.1 + abs({a})) ^ ({b})"),
+            22 => format!("floor(({a}) * 4)"),
+            23 => format!("({a}) % 0.25"),
+            24 => format!("round(3 * ({a})) / 4"),
+            25 => format!("abs({a}) ^ abs({b})"),
+            26 => format!("if({b} > 0, ({a}) / ({b}), {a})"),
+            27 => format!("sign({a}) + clamp({b}, -0.5, {a})"),
             _ => format!("log2(1 + abs({a}))"),
         }
+    }
+}
+
+/// A rounded value just below an integer can become the integer, and 0 to the power of 0 is 1. Such formulas are refused, or their
+/// bound holds.
+#[test]
+fn integer_parts_and_powers_of_0_keep_their_bounds() {
+    for formula in [
+        "floor(x * 0.3)",
+        "floor(sqrt(x))",
+        "(x * 0.3) % 1",
+        "floor(x / 3)",
+        "floor(y / (x + 1))",
+        "round(exp(-x) * 8)",
+        "ceil(sqrt(x + y))",
+        "(x / y) % 2",
+        "x ^ y",
+        "(x / 16) ^ (y - 2)",
+        "sqrt(x) ^ y",
+        "sqrt(x) ^ (y + 1/16)",
+    ] {
+        let format = Format::unsigned(4, 2);
+        let mut operands = vec![operand("x", format)];
+        if formula.contains('y') {
+            operands.push(operand("y", format));
+        }
+        let statement = ExpressionStatement { operands, results: vec![result("r", formula, 2)] };
+        let Ok(found) = find(&statement) else { continue };
+        let enclosed = enclosed_errors(&statement, &found.whole_functions, DIVISIONS);
+        let largest = largest_errors(&statement, &found.plan).expect("values");
+        if let Ok(enclosed) = enclosed {
+            assert!(largest[0] <= enclosed[0] + ROUNDING, "{formula}: {largest:?} {enclosed:?}");
+        }
+        assert!(largest[0] < 1.0, "{formula}: {largest:?}");
     }
 }
 
