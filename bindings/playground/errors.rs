@@ -19,7 +19,7 @@ const SIDE: i64 = 48;
 /// The number of points over the domain of an only operand.
 const LINE: i64 = 1024;
 
-/// The number of neighbouring points of which a curve shows the largest error.
+/// Each place of a curve shows the largest error of so many neighbouring points.
 const NEIGHBOURS: usize = 8;
 
 /// The errors of the outputs at points that are spread evenly over the first operand, or over the first two operands.

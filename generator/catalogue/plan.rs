@@ -98,8 +98,8 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
     }
 
     /// Builds the nodes in their order, except for nodes that no result reads, for nodes that a chain of mirrors replaces, for
-    /// products, and for the nodes between a product and the next register. `microprogram` builds the products, and these nodes behind them, with the
-    /// multiplier.
+    /// products, and for the nodes between a product and the next register. `microprogram` builds the products, and these nodes behind
+    /// them, with the multiplier.
     fn build(&mut self) {
         let is_read = read_nodes(self.plan);
         let plan = self.plan;

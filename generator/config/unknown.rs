@@ -1,4 +1,4 @@
-//! Finds the key that a user means by a name that no key has, for the remedy of the message. A name can be misspelt, stand in the
+//! Finds the key that a user means by a name that no key has, for the remedy of the message. A name can be misspelt, be in the
 //! wrong table, or be another word for a key. For example, `cosine.fracton` means `cosine.fraction`.
 
 use super::nearest::{listed, nearest};

@@ -26,7 +26,7 @@ use super::plan::ExpressionPlan;
 use super::range::{LIMIT_THE_OPERANDS, range_of};
 use super::refusal::PlanRefusal;
 use super::statement::{ExpressionStatement, StatedOverflow, StatedResult, StatedWidth};
-use super::uses::PartUses;
+use super::uses::{PartUses, reads_always};
 
 /// The widest operand of a table of polynomials, in bits. A wider one is shortened first.
 const WIDEST_OPERAND: u32 = 20;
@@ -253,12 +253,12 @@ impl<'s> Lowering<'s> {
     }
 
     /// Returns the uses of `part` as a part of the one that is being rewritten. Without a condition, other results whose formulas
-    /// contain `part` count too, so that they can share its node.
+    /// read `part` for all operands count too, so that they can share its node.
     fn uses_of(&self, part: &Expression) -> PartUses {
         let mut uses = self.uses.clone();
         if uses.conditions.is_empty() {
             for (reads, result) in uses.readers.iter_mut().zip(&self.statement.results) {
-                *reads |= result.formula.count(&|own| own == part) > 0;
+                *reads |= reads_always(&result.formula, part);
             }
         }
         uses
@@ -322,22 +322,50 @@ impl<'s> Lowering<'s> {
             return self.operation(part);
         }
         let core = core.clone();
-        let operand = Expression::operand("x");
-        let function = part.substitute(&core, &operand, &part.span);
-        let is_kept = self.guards.style.keeps_functions && is_short_operand(self.statement, &core);
-        if !is_kept && let Some(node) = self.rewritten(part, &core, &function)? {
+        if self.can_be_one_table(part, &core)? {
+            return self.function_of(part, &core);
+        }
+        match &part.kind {
+            Kind::Unary(Function::Negate | Function::Abs, _) => self.operation(part),
+            Kind::Unary(_, argument) => self.function_of(part, argument),
+            _ => self.operation(part),
+        }
+    }
+
+    /// Returns whether a table over the values of `core` can compute `part`. It cannot if a case of a choice has no value outside
+    /// its condition, as in `if(x > 0, ln(x), -8)`, or if a remainder jumps and the core is too wide for a table. Fails if the
+    /// core has too many bits, no finite values, or no rule.
+    fn can_be_one_table(
+        &mut self,
+        part: &Expression,
+        core: &Expression,
+    ) -> Result<bool, PlanRefusal> {
+        let has_choice = part.has(&|kind| matches!(kind, Kind::If(..)));
+        let has_remainder = part.has(&|kind| matches!(kind, Kind::Binary(Operator::Mod, ..)));
+        if !has_choice && !has_remainder {
+            return Ok(true);
+        }
+        let node = self.part(core)?;
+        let format = self.plan.node(node).format;
+        if has_remainder && format.width() > WIDEST_OPERAND {
+            return Ok(false);
+        }
+        let function = part.substitute(core, &Expression::operand("x"), &part.span);
+        let domain = self.raw_domain(node, self.range(core)?, 0.0);
+        Ok(function_range(&function, format, domain).is_some())
+    }
+
+    /// Returns the node of `part`, which is a function of the value of `core` alone, by a rewriting or by a table. Fails if a part
+    /// has too many bits, no finite values, or no rule.
+    fn function_of(&mut self, part: &Expression, core: &Expression) -> Result<NodeId, PlanRefusal> {
+        let function = part.substitute(core, &Expression::operand("x"), &part.span);
+        let is_kept = self.guards.style.keeps_functions && is_short_operand(self.statement, core);
+        if !is_kept && let Some(node) = self.rewritten(part, core, &function)? {
             return Ok(node);
         }
-        let node = self.part(&core)?;
-        let range = self.range(&core)?;
+        let node = self.part(core)?;
+        let range = self.range(core)?;
         let format = self.plan.node(node).format;
-        let is_guarded = part.count(&|own| matches!(own.kind, Kind::If { .. })) > 0;
-        if is_guarded
-            && function_range(&function, format, self.raw_domain(node, range, 0.0)).is_none()
-        {
-            // A case of a choice has no value outside its condition. The cases then get nodes of their own.
-            return self.operation(part);
-        }
         let node = self.rounding(format.frac.min(self.finest), |own, frac| {
             if format.width() <= WIDEST_OPERAND {
                 return Ok(node);

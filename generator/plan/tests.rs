@@ -547,6 +547,9 @@ fn choices_guard_their_cases() {
         "if(y > 100, 1 / (y - y), x + y)",
         "if(y == 0, 0, x / y)",
         "max(x, 0) ^ (abs(y) / 8 + 1/8)",
+        "exp(if(x > 0, ln(x), -8) / 2)",
+        "sqrt(if(x > 0, 1 / x, x^2))",
+        "cos(if(x > 0, sqrt(x), 0)) * x + y",
     ] {
         let mut operands = Vec::new();
         for name in ["x", "y"] {

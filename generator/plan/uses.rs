@@ -1,7 +1,10 @@
 //! Defines the operands for which the value of a part of a formula matters: those for which some results are promised, and for
 //! which no choice takes its other case.
 
-use glint_formula::Comparison;
+use std::collections::HashSet;
+use std::ptr;
+
+use glint_formula::{Comparison, Expression, Kind};
 
 /// The operands for which the value of a part matters.
 #[derive(Clone, Debug, Default)]
@@ -20,4 +23,30 @@ impl PartUses {
         readers.all(|(own, other)| *own || !other)
             && self.conditions.iter().all(|condition| other.conditions.contains(condition))
     }
+}
+
+/// Returns whether a formula reads `part` for all operands, and not only in a case of a choice. For example, `if(y > 0, x / y, 0)`
+/// reads y for all operands, and `x / y` only for some.
+pub(super) fn reads_always(formula: &Expression, part: &Expression) -> bool {
+    reads_unseen(&mut HashSet::new(), formula, part)
+}
+
+/// Returns what [`reads_always`] does. The result for a part in `seen`, which several operations may share, is false: the part was
+/// searched before.
+fn reads_unseen(
+    seen: &mut HashSet<*const Expression>,
+    formula: &Expression,
+    part: &Expression,
+) -> bool {
+    if formula == part {
+        return true;
+    }
+    if !seen.insert(ptr::from_ref(formula)) {
+        return false;
+    }
+    let inner = match &formula.kind {
+        Kind::If(comparison, ..) => vec![&*comparison.left, &*comparison.right],
+        _ => formula.parts(),
+    };
+    inner.into_iter().any(|inner| reads_unseen(seen, inner, part))
 }

@@ -28,7 +28,7 @@ const TINY: &str =
 operands.c = { bits = 3, fraction = 40 }\noperands.d = { bits = 3, fraction = 40 }";
 
 /// Operands, and results that other results read or that need no operation.
-const CASES: [(&str, &str); 17] = [
+const CASES: [(&str, &str); 18] = [
     (
         SIGNED,
         "results.l = { formula = \"if(x > 0, ln(x), -8) + y\", fraction = 5 }
@@ -38,6 +38,11 @@ results.q = { formula = \"if(y == 0, 0, x / y)\", fraction = 3 }",
         UNSIGNED,
         "results.s = { formula = \"if(max(x, y) > 0, (max(x, y) - min(x, y)) / max(x, y), 0)\", fraction = 6 }
 results.h = { formula = \"x + y > 0 ? 2 * x * y / (x + y) : 0\", fraction = 6 }",
+    ),
+    (
+        UNSIGNED,
+        "results.q = { formula = \"x / y\", fraction = 3, where = \"y > 0\" }
+results.g = { formula = \"if(y > 0, x / y, round(3 * x))\", fraction = 3 }",
     ),
     (
         UNSIGNED,
