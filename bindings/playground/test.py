@@ -9,11 +9,14 @@ import gzip
 import http.server
 import json
 import math
+import os
+import random
 import re
 import subprocess
 import sys
 import tempfile
 import threading
+import tomllib
 import zipfile
 from pathlib import Path
 
@@ -141,8 +144,23 @@ def a_wrong_key_gets_the_message_of_the_command_line(page, glint):
     assert chosen == "pwer = 3"
 
 
-def every_choice_has_its_views(page):
-    for choice in page.locator("#device option").evaluate_all("all => all.map(it => it.value)"):
+def taken(kind, names):
+    """The names of a kind of check in tests/kinds.toml that this run takes, as tests/common/sample.rs takes them."""
+    if os.environ.get("GLINT_TESTS") == "all":
+        return names
+    cases = tomllib.loads(Path("tests/kinds.toml").read_text())[kind]
+    if seed := os.environ.get("GLINT_SAMPLE"):
+        drawn = random.Random(f"{seed} {kind}").sample(names, cases["drawn"])
+        print(f"{kind}: {drawn}")
+        return drawn
+    assert set(cases["fixed"]) <= set(names), names
+    return cases["fixed"]
+
+
+def views_of_choices(page):
+    """Every view of a device, a function or an expression is there, without a fault."""
+    choices = page.locator("#device option").evaluate_all("all => all.map(it => it.value)")
+    for choice in taken("choices of the page", choices):
         page.locator("#device").select_option(choice)
         # A preset is known by its name in the text, which has underscores, and a device by its key.
         preset = choice.partition(" ")[2].replace("-", "_")
@@ -463,7 +481,7 @@ def main():
         ]:
             files_are_those_of_the_native_program(page, glint, text)
         a_wrong_key_gets_the_message_of_the_command_line(page, glint)
-        every_choice_has_its_views(page)
+        views_of_choices(page)
         entries_are_edited(page, glint)
         bounds_and_estimates_are_those_of_the_native_program(page, glint)
         errors_are_shown_over_the_operands(page)

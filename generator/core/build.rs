@@ -27,9 +27,13 @@ const SOURCES: [&str; 11] = [
 
 fn main() {
     let mut files = Vec::new();
+    println!("cargo::rerun-if-changed=build.rs");
     for source in SOURCES {
-        println!("cargo::rerun-if-changed={source}");
-        collect(Path::new(source), &mut files);
+        // An installed crate has only some of them. Cargo would run the script, and compile the crate, each time for a missing one.
+        if Path::new(source).exists() {
+            println!("cargo::rerun-if-changed={source}");
+            collect(Path::new(source), &mut files);
+        }
     }
     files.sort();
     let mut digest = Sha256::new();
@@ -46,7 +50,6 @@ fn main() {
 fn collect(path: &Path, files: &mut Vec<PathBuf>) {
     match fs::read_dir(path) {
         Ok(entries) => entries.flatten().for_each(|entry| collect(&entry.path(), files)),
-        // An installed crate has no `Cargo.lock`.
-        Err(_) => files.extend(path.is_file().then(|| path.to_owned())),
+        Err(_) => files.push(path.to_owned()),
     }
 }

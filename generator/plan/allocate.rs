@@ -5,8 +5,8 @@
 //! allowed error. If this finds no plan, the module tries the same number of guard bits for every operation. Afterwards it
 //! removes bits that are not needed.
 
-use super::boxes::{BoxError, ResultProof};
-use super::lower::{FoundPolynomials, Guards, PlanStyle, lowered};
+use super::boxes::{BoxError, Partitions, ResultProof, undivided};
+use super::lower::{FoundPolynomials, Guards, PlanSearch, PlanStyle, lowered};
 use super::plan::ExpressionPlan;
 use super::refusal::PlanRefusal;
 use super::statement::ExpressionStatement;
@@ -31,6 +31,8 @@ pub(super) struct Allocation {
     pub(super) plan: ExpressionPlan,
     /// The number of divisions of the domain with which the errors were computed.
     pub(super) divisions: usize,
+    /// The boxes of operands with which the errors were computed.
+    pub(super) partitions: Partitions,
 }
 
 /// Returns guard bits with which every result keeps its allowed error, and the plan with them. The errors of polynomials are
@@ -39,53 +41,56 @@ pub(super) struct Allocation {
 /// # Errors
 /// Fails if a formula has no plan in this style, or if no number of bits is enough.
 pub(super) fn allocated(
-    statement: &ExpressionStatement,
+    search: &PlanSearch<'_>,
     style: PlanStyle,
 ) -> Result<Allocation, PlanRefusal> {
     let [few, many] = DIVISIONS;
     let none = Guards::new(style);
-    allocated_with(statement, &none, few).or_else(|_| allocated_with(statement, &none, many))
+    allocated_with(search, &none, few).or_else(|_| allocated_with(search, &none, many))
 }
 
 /// Returns guard bits with which every result keeps its allowed error, if errors are computed with `divisions` divisions of the
 /// domain. `none` has the style of the plan and no guard bits. Fails as [`allocated`] does.
 fn allocated_with(
-    statement: &ExpressionStatement,
+    search: &PlanSearch<'_>,
     none: &Guards,
     divisions: usize,
 ) -> Result<Allocation, PlanRefusal> {
-    let (mut guards, mut plan) = match grown(statement, none, divisions) {
+    let mut partitions = undivided(search.statement);
+    let (mut guards, mut plan) = match grown(search, none, divisions, &mut partitions) {
         Ok(enough) => enough,
-        Err(refusal) => equally_many(statement, none, divisions).ok_or(refusal)?,
+        Err(refusal) => equally_many(search, none, divisions, &mut partitions).ok_or(refusal)?,
     };
     for source in 0..guards.bits.len() {
         while guards.bits[source] > FIRST_GUARD {
             let mut fewer = guards.clone();
             fewer.bits[source] -= 1;
-            let Ok(candidate) = with_guards(statement, &mut fewer, FIRST_GUARD) else { break };
-            if largest_excess(statement, &candidate, divisions).is_some() {
+            let Ok(candidate) = with_guards(search, &mut fewer, FIRST_GUARD) else { break };
+            if largest_excess(search.statement, &candidate, divisions, &mut partitions).is_some() {
                 break;
             }
             guards = fewer;
             plan = candidate;
         }
     }
-    Ok(Allocation { guards, plan, divisions })
+    Ok(Allocation { guards, plan, divisions, partitions })
 }
 
 /// Returns guard bits with which every result keeps its allowed error, and the plan with them. The function begins with few
 /// bits, and adds one at a time to the operation with the largest share of the error. Fails if a formula has no plan, or if no
 /// number of bits is enough.
 fn grown(
-    statement: &ExpressionStatement,
+    search: &PlanSearch<'_>,
     none: &Guards,
     divisions: usize,
+    partitions: &mut Partitions,
 ) -> Result<(Guards, ExpressionPlan), PlanRefusal> {
-    let (mut guards, mut plan) = first_plan(statement, none)?;
-    while let Some(excess) = largest_excess(statement, &plan, divisions) {
+    let (mut guards, mut plan) = first_plan(search, none)?;
+    let statement = search.statement;
+    while let Some(excess) = largest_excess(statement, &plan, divisions, partitions) {
         let source = excess.source(statement, &plan, &guards)?;
         guards.add_bit(source);
-        plan = with_guards(statement, &mut guards, FIRST_GUARD)
+        plan = with_guards(search, &mut guards, FIRST_GUARD)
             .map_err(|_| excess.refusal(statement, &plan))?;
     }
     Ok((guards, plan))
@@ -94,14 +99,15 @@ fn grown(
 /// Returns the same number of guard bits for all operations, with which every result keeps its allowed error; `None` if no
 /// number is enough. The function finds a plan if [`grown`] gives one operation so many bits that a product is too wide.
 fn equally_many(
-    statement: &ExpressionStatement,
+    search: &PlanSearch<'_>,
     none: &Guards,
     divisions: usize,
+    partitions: &mut Partitions,
 ) -> Option<(Guards, ExpressionPlan)> {
     for guard in (0..=MOST_FIRST_GUARD).step_by(3) {
         let mut guards = none.clone();
-        let Ok(plan) = with_guards(statement, &mut guards, guard) else { continue };
-        if largest_excess(statement, &plan, divisions).is_none() {
+        let Ok(plan) = with_guards(search, &mut guards, guard) else { continue };
+        if largest_excess(search.statement, &plan, divisions, partitions).is_none() {
             return Some((guards, plan));
         }
     }
@@ -112,17 +118,17 @@ fn equally_many(
 /// be no plan, for example because a divisor is rounded to 0. Fails if no number of bits up to [`MOST_FIRST_GUARD`] gives a
 /// plan.
 fn first_plan(
-    statement: &ExpressionStatement,
+    search: &PlanSearch<'_>,
     none: &Guards,
 ) -> Result<(Guards, ExpressionPlan), PlanRefusal> {
     let mut guards = none.clone();
-    let mut refusal = match with_guards(statement, &mut guards, FIRST_GUARD) {
+    let mut refusal = match with_guards(search, &mut guards, FIRST_GUARD) {
         Ok(plan) => return Ok((guards, plan)),
         Err(refusal) => refusal,
     };
     for first in FIRST_GUARD + 1..=MOST_FIRST_GUARD {
         let mut guards = none.clone();
-        match with_guards(statement, &mut guards, first) {
+        match with_guards(search, &mut guards, first) {
             Ok(plan) => return Ok((guards, plan)),
             // With very many bits, a part is too wide, and this error would hide the actual reason.
             Err(other) if first <= 0 => refusal = other,
@@ -135,12 +141,12 @@ fn first_plan(
 /// Returns the plan with the guard bits `guards`. Operations beyond the end of the list get `first` guard bits, and the
 /// function adds these bits to the list. Fails if a formula has no plan with these bits.
 fn with_guards(
-    statement: &ExpressionStatement,
+    search: &PlanSearch<'_>,
     guards: &mut Guards,
     first: i32,
 ) -> Result<ExpressionPlan, PlanRefusal> {
     loop {
-        let (plan, sources) = lowered(statement, guards, first, &FoundPolynomials::default())?;
+        let (plan, sources) = lowered(search, guards, first, &FoundPolynomials::default())?;
         if sources <= guards.bits.len() {
             return Ok(plan);
         }
@@ -155,18 +161,20 @@ pub(super) struct ExcessiveResult {
     worst: BoxError,
 }
 
-/// Returns the result that exceeds its allowed error by the largest factor; `None` if every result keeps its error.
+/// Returns the result that exceeds its allowed error by the largest factor; `None` if every result keeps its error. The search begins
+/// with `partitions`, and replaces them ([`ResultProof::excess`]).
 pub(super) fn largest_excess(
     statement: &ExpressionStatement,
     plan: &ExpressionPlan,
     divisions: usize,
+    partitions: &mut Partitions,
 ) -> Option<ExcessiveResult> {
     let mut largest: Option<(f64, ExcessiveResult)> = None;
     for (result, stated) in statement.results.iter().enumerate() {
         let proof = ResultProof::new(statement, plan, result);
-        let Some(worst) = proof.worst(stated.error, divisions) else { continue };
+        let Some(worst) = proof.excess(divisions, &mut partitions[result]) else { continue };
         let factor = worst.units / stated.error;
-        if stated.allows(worst.units) || largest.as_ref().is_some_and(|(most, _)| *most >= factor) {
+        if largest.as_ref().is_some_and(|(most, _)| *most >= factor) {
             continue;
         }
         largest = Some((factor, ExcessiveResult { result, worst }));

@@ -73,6 +73,17 @@ fn size_of(limits: &OperandBox) -> u128 {
     size
 }
 
+/// A search that begins with many boxes makes at least one division for so many that it may make.
+const LEAST_SHARE_OF_DIVISIONS: usize = 4;
+
+/// For each result, boxes that together contain all operands for which it is promised.
+pub(super) type Partitions = Vec<Vec<OperandBox>>;
+
+/// Returns partitions that consist of the whole domain.
+pub(super) fn undivided(statement: &ExpressionStatement) -> Partitions {
+    vec![vec![statement.domain()]; statement.results.len()]
+}
+
 /// The proof of an error bound for one result of a plan.
 pub(super) struct ResultProof<'p> {
     pub(super) statement: &'p ExpressionStatement,
@@ -110,6 +121,43 @@ impl<'p> ResultProof<'p> {
             open.extend(halves);
         }
         open.pop()
+    }
+
+    /// Returns a box whose error exceeds the allowed error: a single combination of operands if one in the middle of a box that was
+    /// tried does, and otherwise the box with the largest error after `divisions` divisions. Returns `None` if no operands have an
+    /// error that is not allowed, or if the result is promised for no operands.
+    ///
+    /// A single combination ends the search early, because no division shows a smaller error for it. The search begins with the
+    /// boxes in `partition`, which together contain all operands for which the result is promised. If the error is allowed, the
+    /// boxes that show it replace them, because they mostly show it for a similar plan, too.
+    pub(super) fn excess(
+        &self,
+        divisions: usize,
+        partition: &mut Vec<OperandBox>,
+    ) -> Option<BoxError> {
+        let stated = &self.statement.results[self.result];
+        let exceeds = |error: &BoxError| !stated.allows(error.units);
+        let errors = partition.iter().filter_map(|limits| self.error_in(limits.clone()));
+        let mut open: BinaryHeap<BoxError> = errors.collect();
+        let least = divisions / LEAST_SHARE_OF_DIVISIONS;
+        for _ in 0..divisions.saturating_sub(open.len()).max(least) {
+            let Some(worst) = open.peek().filter(|worst| exceeds(worst)) else { break };
+            let single = self.error_in(middle_of(&worst.limits)).filter(exceeds);
+            if single.is_some() {
+                return single;
+            }
+            let Some(halves) = best_halves(&worst.limits, &|limits| self.error_in(limits.clone()))
+            else {
+                break;
+            };
+            open.pop();
+            open.extend(halves);
+        }
+        if open.peek().is_some_and(exceeds) {
+            return open.pop();
+        }
+        *partition = open.into_iter().map(|error| error.limits).collect();
+        None
     }
 
     /// Returns the largest error in a box; `None` if nothing is promised in the box.
@@ -206,6 +254,16 @@ pub(super) fn best_halves<K: BoxScore>(
     let (_, _, operand) = best?;
     let halves = halves_along(limits, operand)?;
     Some(halves.iter().filter_map(known).collect())
+}
+
+/// Returns the combination of operands in the middle of a box, as a box.
+fn middle_of(limits: &OperandBox) -> OperandBox {
+    let mut middle = limits.clone();
+    for (low, high) in &mut middle {
+        *low += (*high - *low) / 2;
+        *high = *low;
+    }
+    middle
 }
 
 /// Returns the two halves of a box along one operand; `None` if the box has a single value of this operand.

@@ -14,7 +14,9 @@ use super::allocate::{Allocation, allocated, largest_excess};
 use super::boxes::ResultProof;
 use super::cost::cells_of_function;
 use super::exhaust::largest_errors;
-use super::lower::{FoundPolynomials, Guards, PlanStyle, has_functions_of_operands, lowered};
+use super::lower::{
+    FoundPolynomials, Guards, PlanSearch, PlanStyle, has_functions_of_operands, lowered,
+};
 use super::node::{NodeId, Operation};
 use super::plan::ExpressionPlan;
 use super::refusal::PlanRefusal;
@@ -75,6 +77,9 @@ pub struct ProvedPlan {
     pub whole_functions: ExpressionPlan,
     /// The proven error bound of each result, in units of the result's last bit.
     pub bounds: Vec<f64>,
+    /// The bound of each result that interval arithmetic proves. It is at least [`Self::bounds`], which may be the largest error of
+    /// all combinations of operands.
+    pub enclosed: Vec<f64>,
     /// For each result and each node of `plan`, the node's share in the error of the result, in units of the result's last bit.
     /// The share is the error that the rounding of this node adds, in the box of operands with the largest error. The share is
     /// 0 for an exact node.
@@ -116,7 +121,8 @@ fn searched(statement: &ExpressionStatement) -> Result<ProvedPlan, PlanRefusal> 
     if first + second > MAX_WIDTH {
         return Err(PlanRefusal::too_wide("product_of_factors", (first + second) as i32));
     }
-    let mut bounds = enclosed_errors(statement, &whole, divisions.max(DIVISIONS))?;
+    let enclosed = enclosed_errors(statement, &whole, divisions.max(DIVISIONS))?;
+    let mut bounds = enclosed.clone();
     let mut proof = ProofKind::Enclosed;
     if statement.combinations() <= 1 << MOST_COMBINATIONS {
         proof = ProofKind::EveryCombination;
@@ -133,7 +139,7 @@ fn searched(statement: &ExpressionStatement) -> Result<ProvedPlan, PlanRefusal> 
         shares.push(of_nodes);
     }
     let statement = statement.clone();
-    Ok(ProvedPlan { statement, plan, whole_functions: whole, bounds, shares, proof })
+    Ok(ProvedPlan { statement, plan, whole_functions: whole, bounds, enclosed, shares, proof })
 }
 
 /// Returns the node of `plan` that has the rounding error of node number `at` of the plan without range reductions. This node
@@ -154,6 +160,7 @@ fn rounding_node(plan: &ExpressionPlan, renumbered: &[NodeId], at: usize) -> Nod
 /// # Errors
 /// Fails if no style has a plan, with the refusal of the first style.
 fn smallest_candidate(statement: &ExpressionStatement) -> Result<PlanCandidate, PlanRefusal> {
+    let search = PlanSearch::new(statement);
     let mut smallest: Option<(f64, PlanCandidate)> = None;
     let mut first_refusal = None;
     let has_functions = has_functions_of_operands(statement);
@@ -161,7 +168,7 @@ fn smallest_candidate(statement: &ExpressionStatement) -> Result<PlanCandidate, 
         if style.keeps_functions && !has_functions {
             continue;
         }
-        let candidate = match candidate_with(statement, style) {
+        let candidate = match candidate_with(&search, style) {
             Ok(candidate) => candidate,
             Err(refusal) => {
                 first_refusal.get_or_insert(refusal);
@@ -182,18 +189,17 @@ fn smallest_candidate(statement: &ExpressionStatement) -> Result<PlanCandidate, 
 
 /// Returns a plan in the given style that keeps the allowed errors, as far as `divisions` divisions of the domain show. Fails
 /// if the style has no such plan.
-fn candidate_with(
-    statement: &ExpressionStatement,
-    style: PlanStyle,
-) -> Result<PlanCandidate, PlanRefusal> {
-    let Allocation { mut guards, plan: estimate, divisions } = allocated(statement, style)?;
-    let mut plan = with_polynomials(statement, &guards, estimate)?;
+fn candidate_with(search: &PlanSearch<'_>, style: PlanStyle) -> Result<PlanCandidate, PlanRefusal> {
+    let Allocation { mut guards, plan: estimate, divisions, mut partitions } =
+        allocated(search, style)?;
+    let statement = search.statement;
+    let mut plan = with_polynomials(search, &guards, estimate)?;
     // The polynomials can have other formats than estimated, and then other errors.
-    while let Some(excess) = largest_excess(statement, &plan, divisions) {
+    while let Some(excess) = largest_excess(statement, &plan, divisions, &mut partitions) {
         let source = excess.source(statement, &plan, &guards)?;
         guards.add_bit(source);
-        let estimate = lowered(statement, &guards, 0, &FoundPolynomials::default())?.0;
-        plan = with_polynomials(statement, &guards, estimate)?;
+        let estimate = lowered(search, &guards, 0, &FoundPolynomials::default())?.0;
+        plan = with_polynomials(search, &guards, estimate)?;
     }
     Ok(PlanCandidate { plan, divisions })
 }
@@ -204,7 +210,7 @@ fn candidate_with(
 /// Polynomials may have results of another width than estimated. A function that reads them then has another operand. The plan
 /// is therefore rebuilt until each function has polynomials that were found for exactly this function.
 fn with_polynomials(
-    statement: &ExpressionStatement,
+    search: &PlanSearch<'_>,
     guards: &Guards,
     estimate: ExpressionPlan,
 ) -> Result<ExpressionPlan, PlanRefusal> {
@@ -223,7 +229,7 @@ fn with_polynomials(
         if is_complete {
             return Ok(plan);
         }
-        plan = lowered(statement, guards, 0, &found)?.0;
+        plan = lowered(search, guards, 0, &found)?.0;
     }
 }
 

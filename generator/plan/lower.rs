@@ -23,7 +23,7 @@ use glint_formula::{Comparison, Enclosure, Expression, Function, Kind, Operator,
 use super::boxes::ResultProof;
 use super::node::{Approximation, NodeId, Operation};
 use super::plan::ExpressionPlan;
-use super::range::{LIMIT_THE_OPERANDS, range_of};
+use super::range::{LIMIT_THE_OPERANDS, RangeMemo};
 use super::refusal::PlanRefusal;
 use super::statement::{ExpressionStatement, StatedOverflow, StatedResult, StatedWidth};
 use super::uses::{PartUses, reads_always};
@@ -115,6 +115,7 @@ struct KnownPart {
 /// The state of the rewriting of formulas as a plan.
 pub(super) struct Lowering<'s> {
     statement: &'s ExpressionStatement,
+    ranges: &'s RangeMemo,
     guards: &'s Guards,
     first_guard: i32,
     found: &'s FoundPolynomials,
@@ -131,20 +132,34 @@ pub(super) struct Lowering<'s> {
     finest: i32,
 }
 
+/// A statement for which a plan is searched, with the intervals of its parts, which do not depend on the widths in a plan.
+pub(super) struct PlanSearch<'s> {
+    pub(super) statement: &'s ExpressionStatement,
+    ranges: RangeMemo,
+}
+
+impl<'s> PlanSearch<'s> {
+    pub(super) fn new(statement: &'s ExpressionStatement) -> Self {
+        Self { statement, ranges: RangeMemo::default() }
+    }
+}
+
 /// Returns the plan of a statement, and the number of its rounding operations. Operation number i gets the guard bits
 /// `guards.bits[i]`, or `first_guard` if the list is shorter.
 ///
 /// # Errors
 /// Fails if no rule computes a part of a formula, or if a part has too many bits or no finite values.
 pub(super) fn lowered(
-    statement: &ExpressionStatement,
+    search: &PlanSearch<'_>,
     guards: &Guards,
     first_guard: i32,
     found: &FoundPolynomials,
 ) -> Result<(ExpressionPlan, usize), PlanRefusal> {
+    let statement = search.statement;
     let finest = statement.results.iter().map(|result| result.fraction as i32).max();
     let mut lowering = Lowering {
         statement,
+        ranges: &search.ranges,
         guards,
         first_guard,
         found,
@@ -249,7 +264,8 @@ impl<'s> Lowering<'s> {
     /// have no finite limits.
     fn range(&self, part: &Expression) -> Result<Enclosure, PlanRefusal> {
         let uses = self.uses_of(part);
-        range_of(self.statement, &uses, part).map_err(|error| error.refusal(self.statement, part))
+        let range = self.ranges.range_of(self.statement, &uses, part);
+        range.map_err(|error| error.refusal(self.statement, part))
     }
 
     /// Returns the uses of `part` as a part of the one that is being rewritten. Without a condition, other results whose formulas

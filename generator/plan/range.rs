@@ -1,6 +1,7 @@
 //! Computes an interval that contains the values of a part of a formula, for all operands for which a result with this part is
 //! promised. The module divides the operands' domain into boxes, which have narrower intervals.
 
+use std::cell::RefCell;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 use std::sync::Arc;
@@ -131,6 +132,40 @@ impl Ord for BoxEnd {
     }
 }
 
+/// The intervals of parts that were computed for a statement, so that each is computed once.
+#[derive(Default)]
+pub(super) struct RangeMemo {
+    known: RefCell<Vec<KnownRange>>,
+}
+
+struct KnownRange {
+    part: Expression,
+    uses: PartUses,
+    range: Result<Enclosure, NoRange>,
+}
+
+impl RangeMemo {
+    /// Returns what [`range_of`] returns. All calls must have the same statement.
+    ///
+    /// # Errors
+    /// Fails as [`range_of`] does.
+    pub(super) fn range_of(
+        &self,
+        statement: &ExpressionStatement,
+        uses: &PartUses,
+        part: &Expression,
+    ) -> Result<Enclosure, NoRange> {
+        let is_same = |known: &&KnownRange| known.part == *part && known.uses == *uses;
+        if let Some(known) = self.known.borrow().iter().find(is_same) {
+            return known.range.clone();
+        }
+        let range = range_of(statement, uses, part);
+        let known = KnownRange { part: part.clone(), uses: uses.clone(), range: range.clone() };
+        self.known.borrow_mut().push(known);
+        range
+    }
+}
+
 /// Returns an interval that contains the values of `formula`, for all operands for which its value matters.
 ///
 /// The domain is divided where the part has no finite limits, and then where its largest and its smallest values are.
@@ -138,7 +173,7 @@ impl Ord for BoxEnd {
 /// # Errors
 /// Fails if the values have no finite limits, for example near a pole, or if no operands satisfy the condition of the promise.
 /// In the first case, the error has a box of operands without finite limits.
-pub(super) fn range_of(
+fn range_of(
     statement: &ExpressionStatement,
     uses: &PartUses,
     formula: &Expression,

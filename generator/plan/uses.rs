@@ -7,7 +7,7 @@ use std::ptr;
 use glint_formula::{Comparison, Expression, Kind};
 
 /// The operands for which the value of a part matters.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct PartUses {
     /// For each result, whether it reads the part. The operands count for which one of these results is promised.
     pub(super) readers: Vec<bool>,

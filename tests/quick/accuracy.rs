@@ -1,7 +1,7 @@
 //! Tests the error bounds of accuracy contracts: no error at random points exceeds the bound, in random configurations of the
 //! devices of `Registry::catalogue`, which are the ten highlights and `function`.
 //!
-//! A default run draws a part of the configurations. Proofs over all control operands are recorded in `records/proofs/`, and
+//! `tests/kinds.toml` says how many configurations a run takes. Proofs over all control operands are recorded in `records/proofs/`, and
 //! `tests/quick/proofs.rs` checks these records.
 
 use std::path::Path;
@@ -17,13 +17,13 @@ use rayon::prelude::*;
 
 use crate::common::Sure;
 use crate::common::cores::parsed;
-use crate::common::sample::sampled;
+use crate::common::sample::sampled_for;
 
-/// Random configurations of each device, and how many of them a run draws.
-const CONFIGURATIONS: (u64, usize) = (300, 60);
+/// The number of random configurations of each device.
+const CONFIGURATIONS: u64 = 300;
 
-/// Random configurations of the function, each of which takes a search, and how many of them a run draws.
-const FUNCTIONS: (u64, usize) = (8, 3);
+/// The number of random configurations of the device `function`, each of which takes a search.
+const FUNCTIONS: u64 = 8;
 
 /// Points of each, and places.
 const POINTS: usize = 2000;
@@ -103,9 +103,11 @@ fn random_configurations_of_every_device() {
     for device in Registry::catalogue().devices() {
         let schema = (device.schema)();
         let is_function = schema.device == FUNCTION;
-        let (all, drawn) = if is_function { FUNCTIONS } else { CONFIGURATIONS };
-        let what = format!("random configurations of {}", device.name);
-        sampled(&what, 0..all, drawn).into_par_iter().for_each(|seed| {
+        let (kind, all) = match is_function {
+            true => ("random functions within their bounds", FUNCTIONS),
+            false => ("random configurations within their bounds", CONFIGURATIONS),
+        };
+        sampled_for(device.name, kind, 0..all).into_par_iter().for_each(|seed| {
             let config = config::sample(&schema, seed);
             let contract = (device.contract)(&config);
             let mut rng = ChaCha8Rng::seed_from_u64(seed);

@@ -2,8 +2,8 @@
 //! has the inputs that the operator reads. Exceptions are the handshake of a pipeline, and the registers that hold its
 //! operands.
 //!
-//! A default run draws ten configurations. The run also checks the devices of `examples/` and devices that are composed of
-//! others.
+//! `tests/kinds.toml` says which configurations a run takes. Each run also checks the devices of `examples/` and devices that are
+//! composed of others.
 
 #[allow(dead_code)]
 #[path = "../../examples/fresnel/main.rs"]
@@ -14,7 +14,7 @@ mod smoothstep;
 
 use crate::common::Sure;
 use crate::common::cores::all_configurations;
-use crate::common::sample::sampled;
+use crate::common::sample::sampled_by_name;
 use glint::config::{Config, parse};
 use glint::core::Core;
 use glint::hdl::netlist::{Design, Driver, Net, NetId, Op, Partition};
@@ -23,7 +23,7 @@ use glint::registry::Registry;
 
 #[test]
 fn every_operator_is_in_one_block_with_its_inputs() {
-    for (path, core) in sampled("blocks", all_configurations(), 10) {
+    for (path, core) in sampled_by_name("blocks", all_configurations(), |(path, _)| path.clone()) {
         check(&path, &core.design);
     }
 }

@@ -2,7 +2,7 @@
 //! `configs/reduced`, and tests the report of a difference. The devices `dot-product`, `normaliser` and `shading` have no
 //! narrow configuration.
 //!
-//! A default run draws a quarter of the combinations.
+//! A default run takes a quarter of the combinations (`tests/kinds.toml`).
 
 use std::collections::BTreeSet;
 use std::env;
@@ -131,9 +131,9 @@ fn part(job: &Job<'_>, shard: Shard) -> ShardState {
 /// In how many parts combinations are gone through.
 const PARTS: u64 = 4;
 
-/// Returns all of them in a run of both tiers; of the quick one alone a part, which the commit draws.
-fn parts(what: &str) -> Vec<Shard> {
-    sampled(what, (1..=PARTS).map(|number| Shard { number, of: PARTS }), 1)
+/// Returns the parts that a run takes.
+fn parts(kind: &str) -> Vec<Shard> {
+    sampled(kind, (1..=PARTS).map(|number| Shard { number, of: PARTS }))
 }
 
 #[test]

@@ -4,12 +4,12 @@
 use glint::config::{Config, Key, KeyKind, Problems, Schema, Value, parse};
 use glint::core::Core;
 use glint::keys::presets::FUNCTION;
-use glint::registry::Registry;
+use glint::registry::{Device, Registry};
 
 use crate::common::Sure;
 use crate::common::cores::device;
 use crate::common::files::{paths, read};
-use crate::common::sample::sampled;
+use crate::common::sample::sampled_by_name;
 use crate::config_device::{lamp, schemas};
 
 /// Reads a file of a device of the catalogue.
@@ -50,7 +50,8 @@ fn one_key_can_be_changed_alone() {
     // A function's ends are searches of minutes.
     let catalogue = Registry::catalogue();
     let devices = catalogue.devices().iter().filter(|device| device.name != FUNCTION);
-    for device in sampled("devices of which a key is changed", devices, 4) {
+    let name_of = |device: &&Device| device.name.to_owned();
+    for device in sampled_by_name("devices with one changed key", devices, name_of) {
         let schema = (device.schema)();
         for key in &schema.keys {
             let KeyKind::Integer { min, max } = key.kind else {

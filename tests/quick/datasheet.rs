@@ -1,5 +1,5 @@
-//! Tests the datasheets of the configurations in `configs/` and `configs/studies/`; a default run draws three cores with a
-//! microprogram and three pipelines. The datasheets must be well-formed, need no other file, be usable without a pointer or
+//! Tests the datasheets of the configurations in `configs/` and `configs/studies/`; `tests/kinds.toml` says which of them a run
+//! takes. The datasheets must be well-formed, need no other file, be usable without a pointer or
 //! colours, and agree with the netlist, the manifest and the formula.
 
 use std::collections::BTreeSet;
@@ -9,7 +9,7 @@ use crate::common::Sure;
 use crate::common::cores::{configuration, configurations, pipelines};
 use crate::common::files::json;
 use crate::common::json::Json;
-use crate::common::sample::sampled;
+use crate::common::sample::sampled_by_name;
 use glint::core::Core;
 use glint::cosim::exhaustive::Record;
 use glint::hdl::netlist::{Design, Driver, RegId, Role};
@@ -60,7 +60,7 @@ fn of_class<'a>(document: &'a Document, class: &'a str) -> impl Iterator<Item = 
 
 #[test]
 fn every_configuration_has_its_page() {
-    for (path, core) in sampled("data sheets", configurations(), 3) {
+    for (path, core) in sampled_by_name("data sheets", configurations(), |(path, _)| path.clone()) {
         let made = make(&path, &core);
         let document = parse(&made.page);
         needs_nothing_else(&path, &made.page, &document);
@@ -385,7 +385,8 @@ fn area_and_speed_are_those_of_the_record() {
 
 #[test]
 fn every_pipeline_has_its_page() {
-    for (path, core) in sampled("data sheets of pipelines", pipelines(), 3) {
+    let path_of = |(path, _): &(String, Core)| path.clone();
+    for (path, core) in sampled_by_name("data sheets of pipelines", pipelines(), path_of) {
         let made = make(&path, &core);
         let document = parse(&made.page);
         needs_nothing_else(&path, &made.page, &document);

@@ -23,6 +23,7 @@ mod divider;
 mod emission;
 mod expressions;
 mod keys;
+mod kinds;
 mod lines;
 mod multipliers;
 mod operand_buffers;
@@ -44,3 +45,13 @@ mod words;
 mod worst;
 
 use cli::{refusals, workspace};
+
+/// Shows in every run without the outside tools which tests are missing.
+#[test]
+#[cfg_attr(
+    not(feature = "outside-tools"),
+    ignore = "LEFT OUT: tests with simulators, synthesis, provers and Python; `bash tools/test` installs the tools and runs all tests"
+)]
+fn tests_with_outside_tools_run_too() {
+    assert!(cfg!(feature = "outside-tools"));
+}

@@ -78,7 +78,7 @@ fn faults_of_a_pipeline_are_noticed_or_proved() {
     let shows = ["valid_s1:no-reset", "valid_s2[0]:inverted", "red_out[0]:inverted"];
     let shows = shows.iter().filter_map(|id| faults.find(id)).collect::<Vec<&NetlistFault>>();
     assert!(shows.len() >= 2, "ids have changed");
-    let sample = sampled("faults of a pipeline", faults.iter(), 250);
+    let sample = sampled("faults of a pipeline", faults.iter());
     let known = shows.len();
     let planted: Vec<&NetlistFault> = shows.into_iter().chain(sample).collect();
     let found = mutate::run(&core, planted, &|| ()).expect("they can be simulated");

@@ -2,7 +2,7 @@
 //!
 //! A proof visits every place of a contract's sweep, which takes minutes; `glint cosim --exhaustive --json CONFIG` makes the
 //! record. The test compares the record's digest, its number of places and its largest errors. The test visits an evenly spread
-//! part of the places again. A default run draws eight records.
+//! part of the places again. `tests/kinds.toml` says which records a run takes.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -10,7 +10,7 @@ use std::path::Path;
 use crate::common::cores::{configuration, configurations};
 use crate::common::files::{json, paths, put, read, replaced};
 use crate::common::json::Json;
-use crate::common::sample::sampled;
+use crate::common::sample::sampled_by_name;
 use glint::core::Core;
 use glint::cosim::exhaustive::{Backing, Places, Proof, Record};
 use glint::golden::{Bounds, Contract, Highlight, Operand, Output, Sweep, cosine_power};
@@ -48,7 +48,8 @@ fn the_default_of_every_device_is_proven_below_one_unit() {
 
 #[test]
 fn the_records_hold_today() {
-    for record in sampled("records of proofs", records(), 8) {
+    let path_of = |record: &Value| record["config"].text().to_owned();
+    for record in sampled_by_name("records of proofs", records(), path_of) {
         let path = record["config"].text();
         let unit = configuration(path);
         let contract = unit.contract.as_ref();

@@ -6,7 +6,7 @@ use glint::package::FileKind;
 use glint::tools::VerilogSimulator;
 
 use crate::common::cores::{Emitted, Files, configuration, configuration_with};
-use crate::common::sample::sampled;
+use crate::common::sample::{sampled, sampled_by_name};
 use crate::common::tools::benched;
 
 /// Points with pauses and stalls.
@@ -55,11 +55,17 @@ fn a_line_that_is_too_long_or_too_short_is_noticed() {
             cases.extend([words - 1, words + 1].map(|other| (simulator, words, other)));
         }
     }
-    for (simulator, words, other) in sampled("lengths of delay lines", cases, 4) {
+    for (simulator, words, other) in sampled("lengths of delay lines", cases) {
         let files = changed(&emitted, &|text| with_words(text, words, other));
         let passed = passes(simulator, &files, &emitted.bench());
         assert!(!passed, "{simulator}: {other} words for {words}");
     }
+}
+
+/// Returns the simulators that a run takes for a kind of check.
+fn simulators(kind: &str) -> Vec<VerilogSimulator> {
+    let both = [VerilogSimulator::Icarus, VerilogSimulator::Verilator];
+    sampled_by_name(kind, both, VerilogSimulator::to_string)
 }
 
 #[test]
@@ -70,11 +76,7 @@ fn a_line_that_does_not_wait_is_noticed() {
         let lines = lines.replace(".enable(advance)", ".enable(1'b1)");
         format!("{stages}    // Delay lines{lines}")
     };
-    for simulator in sampled(
-        "simulators of delay lines",
-        [VerilogSimulator::Icarus, VerilogSimulator::Verilator],
-        1,
-    ) {
+    for simulator in simulators("delay lines that do not wait") {
         let files = changed(&emitted, &forgets);
         assert!(!passes(simulator, &files, &emitted.bench()), "{simulator}");
     }
@@ -88,8 +90,7 @@ fn lines_without_stalls_and_registers_in_their_place_do_the_same() {
         let emitted = Emitted::new(&core, POINTS, 2);
         let has = emitted.rtl().iter().any(|(_, text)| text.contains("// Delay lines"));
         assert_eq!(has, lines, "{keys}");
-        let simulators = [VerilogSimulator::Icarus, VerilogSimulator::Verilator];
-        for simulator in sampled("simulators of delay lines", simulators, 1) {
+        for simulator in simulators("forms of delay lines") {
             assert!(
                 passes(simulator, &emitted.simulated(), &emitted.bench()),
                 "{simulator} {keys}"

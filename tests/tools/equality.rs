@@ -2,8 +2,8 @@
 //! the netlist do.
 //!
 //! The solver must prove the pipelines in `configs/` and `configs/studies/`, except `rough_up5k_pipelined`, which z3 does not
-//! decide. The solver must not prove a pipeline with a fault. A default run draws four pipelines, five pipelines with longer
-//! intervals, and some faults.
+//! decide. The solver must not prove a pipeline with a fault. `tests/kinds.toml` says which pipelines
+//! and faults a run takes.
 
 use std::cell::Cell;
 use std::time::Duration;
@@ -20,7 +20,7 @@ use glint::tools::elaborate;
 
 use crate::common::Sure;
 use crate::common::cores::{Files, configuration, configuration_with, pipelines};
-use crate::common::sample::sampled;
+use crate::common::sample::{sampled, sampled_by_name};
 use crate::common::tools::tool;
 
 /// A number that no test at random meets.
@@ -44,7 +44,7 @@ fn sequential(core: &Core) -> Design {
 #[test]
 fn every_pipeline_is_proved_equal_to_its_sequential_core() {
     let decided = pipelines().into_iter().filter(|(path, _)| path != UNDECIDED);
-    for (path, core) in sampled("equality", decided, 4) {
+    for (path, core) in sampled_by_name("equality", decided, |(path, _)| path.clone()) {
         match verdict(&sequential(&core), &core.design) {
             Verdict::Equal(proof) => {
                 assert!(proof.outputs > 0 && proof.registers > 0 && proof.products > 0, "{path}");
@@ -74,7 +74,9 @@ fn at_longer_intervals() -> Vec<(String, Core)> {
 
 #[test]
 fn every_longer_interval_is_proved_equal_to_its_sequential_core() {
-    for (path, core) in sampled("equality of intervals", at_longer_intervals(), 5) {
+    let name_of = |(name, _): &(String, Core)| name.clone();
+    let taken = sampled_by_name("equality of intervals", at_longer_intervals(), name_of);
+    for (path, core) in taken {
         match verdict(&sequential(&core), &core.design) {
             Verdict::Equal(proof) => {
                 assert!(proof.outputs > 0 && proof.registers > 0 && proof.products > 0, "{path}");
@@ -240,7 +242,8 @@ fn the_text_of_every_pipeline_is_proved_equal_to_its_netlist() {
 
 #[test]
 fn the_text_of_every_longer_interval_is_proved_equal_to_its_netlist() {
-    for (path, core) in sampled("text of intervals", at_longer_intervals(), 5) {
+    let name_of = |(name, _): &(String, Core)| name.clone();
+    for (path, core) in sampled_by_name("text of intervals", at_longer_intervals(), name_of) {
         match of_text(&core, 900, str::to_owned) {
             TextVerdict::Equal(proof) => {
                 assert!(proof.outputs > 0 && proof.registers > 0, "{path}: {proof:?}");
@@ -267,7 +270,7 @@ fn a_fault_in_the_text_of_a_longer_interval_is_not_proved() {
         ("words[slot] <= entering", "if (entering[0]) words[slot] <= entering"),
         ("2'd1: multiplier_1_a_next", "2'd2: multiplier_1_a_next"),
     ];
-    for (was, is) in sampled("faults in the text of an interval", faults, 3) {
+    for (was, is) in sampled("faults in the text of an interval", faults) {
         let planted = Cell::new(false);
         let verdict = of_text(&core, 20, |text| {
             planted.set(planted.get() || text.contains(was));
@@ -295,7 +298,7 @@ fn a_fault_in_the_text_is_not_proved() {
         ("words[slot] <= entering", "words[slot] <= ~entering"),
         ("leaving <= words[slot]", "leaving <= words[0]"),
     ];
-    for (was, is) in sampled("faults in the text of a pipeline", all, 4) {
+    for (was, is) in sampled("faults in the text of a pipeline", all) {
         let verdict = of_text(&core, 20, |text| {
             planted.set(planted.get() + u32::from(text.contains(was)));
             text.replacen(was, is, 1)

@@ -1,12 +1,12 @@
 //! Tests the configurations of expressions that `glint new` can print: each agrees with its golden model and passes its bench
 //! in Icarus Verilog, as a sequential core, as a pipeline, and as a pipeline with an interval of 2.
 //!
-//! A default run draws four of them.
+//! `tests/kinds.toml` says which of them a run takes.
 
 use crate::common::bench::Bench;
 use crate::common::cores::{Emitted, assert_agrees, parsed};
 use crate::common::netlist::POINTS;
-use crate::common::sample::sampled;
+use crate::common::sample::sampled_by_name;
 use glint::keys::presets;
 use glint::tools::VerilogSimulator;
 
@@ -29,7 +29,7 @@ fn text(name: &str, more: &str) -> String {
 
 #[test]
 fn every_expression_passes_its_bench() {
-    for name in sampled("expressions", &names(), 4) {
+    for name in sampled_by_name("expressions", names(), |name| (*name).to_owned()) {
         for line in [
             "",
             "architecture = \"pipelined\"",

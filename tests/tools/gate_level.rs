@@ -7,8 +7,9 @@ use crate::common::Sure;
 use crate::common::cores::{Emitted, configuration, configuration_with};
 use crate::common::files::replaced;
 use crate::common::netlist::{self, POINTS, synthesise};
-use crate::common::sample::sampled;
+use crate::common::sample::sampled_by_name;
 use crate::common::tools::{LIMIT, benched, tool};
+use glint::core::Core;
 use glint::target::{COMPARED, ECP5, Family};
 use glint::tools::VerilogSimulator;
 use glint::tools::gates;
@@ -100,7 +101,8 @@ fn netlists_of_cells_pass_and_wrong_gates_fail() {
     let case = configuration_with("configs/threshold.toml", "\n[package]\nmemories = \"case\"\n");
     let of = |path: &str| configuration(&format!("configs/{path}.toml"));
     let cores = [of("cosine_power_pipelined"), of("lyon_pipelined"), of("cosine_power"), case];
-    sampled("netlists of cells", cores, 2).par_iter().for_each(|core| {
+    let name_of = |core: &Core| core.config.name.clone();
+    sampled_by_name("netlists of cells", cores, name_of).par_iter().for_each(|core| {
         let emitted = Emitted::new(core, POINTS, 1);
         let rtl = emitted.rtl();
         let netlist = cells::netlist(&tool("yosys"), &rtl, &emitted.name, LIMIT).sure();

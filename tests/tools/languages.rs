@@ -1,5 +1,5 @@
-//! Tests the files of a core in other languages: the VHDL entity, the types of SystemVerilog, and transfers in C and Python. In
-//! a default run, some tests draw two of the five cores.
+//! Tests the files of a core in other languages: the VHDL entity, the types of SystemVerilog, and transfers in C and Python.
+//! For some tests, `tests/kinds.toml` says which of the five cores a run takes.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -19,7 +19,7 @@ use serde_json::Value;
 use crate::common::cores::{Emitted, configuration_between, parsed};
 use crate::common::files::{json, read};
 use crate::common::json::Json;
-use crate::common::sample::sampled;
+use crate::common::sample::sampled_by_name;
 use crate::common::tools::{benched, ran, yosys};
 
 /// Numbers with a sign, of more than 32 bits, and of one; both architectures; all wrappers.
@@ -37,9 +37,9 @@ fn cores() -> impl ParallelIterator<Item = (String, Core)> {
     of_cores(CORES.to_vec())
 }
 
-/// Returns two of the cores, which the commit draws.
-fn some_cores(what: &str) -> impl ParallelIterator<Item = (String, Core)> + use<> {
-    of_cores(sampled(what, CORES, 2))
+/// Returns the cores that a run takes for a kind of check.
+fn some_cores(kind: &str) -> impl ParallelIterator<Item = (String, Core)> + use<> {
+    of_cores(sampled_by_name(kind, CORES, |(name, _)| (*name).to_owned()))
 }
 
 fn of_cores(

@@ -9,7 +9,7 @@ use crate::common::Sure;
 use crate::common::cores::{all_configurations, configuration, configurations, run};
 use crate::common::files::json;
 use crate::common::json::Json;
-use crate::common::sample::sampled;
+use crate::common::sample::sampled_for;
 use crate::common::tools::LIMIT;
 use glint::core::{Core, TEST_POINTS};
 use glint::cosim::Lockstep;
@@ -18,13 +18,6 @@ use glint::mutate::{
 };
 use glint::registry::Registry;
 use serde_json::Value;
-
-/// Faults of the netlist that are planted of each device, and of each pipeline.
-const NETLIST_FAULTS: usize = 120;
-const PIPELINE_FAULTS: usize = 50;
-
-/// Faults of the Verilog that are planted of each device.
-const TEXT_FAULTS: usize = 1;
 
 /// About the number of faults of a device that are proved equivalent and given another test.
 const PROVED: usize = 40;
@@ -71,8 +64,9 @@ fn assert_unnoticed(path: &str, core: &Core, found: &[FaultResult]) {
 fn the_records_hold_today() {
     let pipelines = pipelines();
     assert_eq!(pipelines.len(), 12);
-    let all = defaults().into_iter().map(|it| (it, NETLIST_FAULTS));
-    for ((path, core), count) in all.chain(pipelines.into_iter().map(|it| (it, PIPELINE_FAULTS))) {
+    let all = defaults().into_iter().map(|it| (it, "faults of the records"));
+    let pipelines = pipelines.into_iter().map(|it| (it, "faults of the records of pipelines"));
+    for ((path, core), kind) in all.chain(pipelines) {
         let record = record(&core);
         let netlist = &record["netlist"];
         let stale = format!("{path}: `glint mutate --out mutation {path}` makes another record");
@@ -82,7 +76,7 @@ fn the_records_hold_today() {
         let undecided = netlist["undecided"].list().len();
         assert_eq!(all["undecided"], undecided, "{stale}");
         assert!(undecided * 100 <= faults.len(), "{path}: {undecided} are undecided");
-        let planted = sampled(&path, faults.iter(), count);
+        let planted = sampled_for(&path, kind, faults.iter());
         let found = mutate::run(&core, planted, &|| ()).sure_of(&path);
         let open: BTreeSet<&str> =
             netlist["undecided"].list().iter().filter_map(Value::as_str).collect();
@@ -137,7 +131,7 @@ fn faults_of_the_verilog_are_noticed() {
             assert!(ids.contains(id), "{id}: {stale}");
         }
         let decided = all.into_iter().filter(|fault| !undecided.contains(fault.id.as_str()));
-        let faults = sampled(&path, decided, TEXT_FAULTS);
+        let faults = sampled_for(&path, "faults of the Verilog", decided);
         let found = text.run(&faults, LIMIT, &|| ()).sure_of(&path);
         for (fault, found) in faults.iter().zip(found) {
             let id = fault.id.as_str();

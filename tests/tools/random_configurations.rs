@@ -2,34 +2,21 @@
 //! keeps its stated bound. The Verilog of further random configurations has no lint warnings and passes its bench in Icarus
 //! Verilog.
 //!
-//! A default run draws a part of the configurations, and fewer for the device `function`, whose search takes seconds.
+//! A run takes some of the configurations, and fewer for the device `function`, whose search takes seconds.
 
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 
 use crate::common::cores::{Emitted, assert_agrees, parsed, random};
-use crate::common::sample::sampled;
+use crate::common::sample::sampled_for;
 use crate::common::tools::{assert_bench_passes, assert_files_are_clean};
 use glint::core::Core;
 use glint::keys::presets::FUNCTION;
-use glint::registry::{Device, Registry};
+use glint::registry::Registry;
 use glint::tools::VerilogSimulator;
 use rayon::prelude::*;
 
 /// Configurations of each device that are simulated inside the program.
 const SIMULATED: std::ops::Range<u64> = 0..400;
-
-/// The number of these that are drawn.
-const SIMULATED_DRAWN: usize = 40;
-
-/// Configurations of a function that are drawn: each takes a search of seconds.
-const FUNCTIONS_DRAWN: usize = 2;
-
-/// Returns every device, with how many of its configurations are drawn where others have `drawn`.
-fn devices(drawn: usize) -> Vec<(Device, usize)> {
-    let registry = Registry::catalogue();
-    let drawn_of = |device: &Device| if device.name == FUNCTION { FUNCTIONS_DRAWN } else { drawn };
-    registry.devices().iter().map(|device| (*device, drawn_of(device))).collect()
-}
 
 /// Points of each.
 const POINTS: u64 = 150;
@@ -37,17 +24,17 @@ const POINTS: u64 = 150;
 /// Seeds of the configurations of each device that outside tools see: others than those above.
 const EMITTED: std::ops::Range<u64> = 10_000..10_100;
 
-/// The number of these that are drawn.
-const EMITTED_DRAWN: usize = 6;
-
 /// Points of the bench of each.
 const BENCH_POINTS: u64 = 20;
 
 #[test]
 fn golden_model_and_simulation_agree_and_the_bound_holds() {
-    for (device, drawn) in devices(SIMULATED_DRAWN) {
-        sampled(device.name, SIMULATED, drawn).into_par_iter().for_each(|seed| {
-            let (toml, core) = random(device, seed);
+    for device in Registry::catalogue().devices() {
+        // The search of a function takes seconds.
+        let is_function = device.name == FUNCTION;
+        let kind = if is_function { "random functions" } else { "random configurations" };
+        sampled_for(device.name, kind, SIMULATED).into_par_iter().for_each(|seed| {
+            let (toml, core) = random(*device, seed);
             assert_agrees(&core, POINTS, 7, &toml);
         });
     }
@@ -55,9 +42,11 @@ fn golden_model_and_simulation_agree_and_the_bound_holds() {
 
 #[test]
 fn the_verilog_is_clean_and_passes_its_bench() {
-    for (device, drawn) in devices(EMITTED_DRAWN) {
-        sampled(device.name, EMITTED, drawn).into_par_iter().for_each(|seed| {
-            let (toml, core) = random(device, seed);
+    for device in Registry::catalogue().devices() {
+        let is_function = device.name == FUNCTION;
+        let kind = if is_function { "random Verilog of functions" } else { "random Verilog" };
+        sampled_for(device.name, kind, EMITTED).into_par_iter().for_each(|seed| {
+            let (toml, core) = random(*device, seed);
             passes_outside(&toml, &core, seed);
         });
     }

@@ -1,5 +1,5 @@
-//! Tests the emitted model in C: it compiles without warnings, and computes the results of the golden model. A default run
-//! draws two sequential cores and one pipeline for the comparison at random points.
+//! Tests the emitted model in C: it compiles without warnings, and computes the results of the golden model. `tests/kinds.toml`
+//! says which cores a run takes.
 //!
 //! The same holds for the functions in C and Python that set up a line of points.
 
@@ -18,7 +18,7 @@ use rayon::prelude::*;
 
 use crate::common::cores::{Emitted, configuration_with};
 use crate::common::files::{put, read, replaced};
-use crate::common::sample::sampled;
+use crate::common::sample::sampled_by_name;
 use crate::common::tools::ran;
 
 /// Points that are compared of each configuration.
@@ -26,9 +26,6 @@ const POINTS: usize = 1_000_000;
 
 /// Intervals of a line, at most, so that there are many lines.
 const LONGEST: i64 = 300;
-
-/// Configurations of which the test runs by default.
-const SAMPLE: usize = 2;
 
 const SOFTWARE: &str = "\n[package]\nsoftware = true\n";
 
@@ -43,10 +40,15 @@ const DEFAULTS: &str = "blinn cosine_power cosine_squared gauss lyon quad_cosine
 const FLAGS: &str =
     "-std=c99 -O2 -Wall -Wextra -Wpedantic -Wconversion -Werror -fsanitize=undefined";
 
+/// Returns the names that a run takes for a kind of check.
+fn taken(kind: &str, names: &'static str) -> Vec<&'static str> {
+    sampled_by_name(kind, names.split_ascii_whitespace(), |name| (*name).to_owned())
+}
+
 #[test]
 fn the_model_is_the_golden_model_at_random_points() {
-    let mut names = sampled("models in C", DEFAULTS.split(' '), SAMPLE);
-    names.extend(sampled("models of pipelines in C", PIPELINES.split(' '), 1));
+    let mut names = taken("models in C", DEFAULTS);
+    names.extend(taken("models of pipelines in C", PIPELINES));
     names.into_par_iter().for_each(|name| {
         let model = Model::new(&format!("configs/{name}.toml"));
         let mut random = ChaCha8Rng::seed_from_u64(1);
@@ -65,7 +67,7 @@ fn the_model_is_the_golden_model_at_random_points() {
 
 #[test]
 fn the_model_is_the_golden_model_at_every_combination() {
-    sampled("reduced models in C", DEFAULTS.split(' '), SAMPLE).into_par_iter().for_each(|name| {
+    taken("reduced models in C", DEFAULTS).into_par_iter().for_each(|name| {
         let model = Model::new(&format!("configs/reduced/{name}.toml"));
         model.compile();
         let operands = model.core.contract.operands();

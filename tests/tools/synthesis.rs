@@ -1,5 +1,5 @@
 //! Tests the synthesis of cores with a microprogram by Yosys for iCE40, ECP5 and Xilinx 7: no latch, no warning, large
-//! synchronous ROMs in block RAM with all of their contents, and products in DSP blocks. A default run draws five pairs of a
+//! synchronous ROMs in block RAM with all of their contents, and products in DSP blocks. A run takes some pairs of a
 //! configuration and a family.
 //!
 //! The netlists for iCE40 and ECP5, control ROM included, pass the bench of their core. Yosys 0.23 has no model of Xilinx block
@@ -15,16 +15,14 @@ use crate::common::cores::{Emitted, configuration, configuration_with, configura
 use crate::common::files::read;
 use crate::common::json::Json;
 use crate::common::netlist::{self, POINTS, synthesise};
-use crate::common::sample::sampled;
+use crate::common::sample::sampled_by_name;
 use crate::common::tools::{LIMIT, tool};
+use glint::core::Core;
 use glint::hdl::netlist::{Design, Driver, NetlistRom, Op};
 use glint::target::{COMPARED, ECP5, Family, Kinds};
 use glint::tools::gates;
 use glint::tools::synthesis::{self, Usage};
 use rayon::prelude::*;
-
-/// Pairs of a configuration and a family that are synthesised.
-const PAIRS: usize = 5;
 
 /// Returns the prefixes of the names of the initial values of a family's block RAMs, before so many hexadecimal
 /// digits.
@@ -41,24 +39,28 @@ fn initial(family: &Family) -> (&'static [&'static str], usize) {
 fn configurations_are_synthesised_whole() {
     let configurations = configurations();
     let pairs = configurations.iter().flat_map(|one| COMPARED.iter().map(move |it| (one, it)));
-    sampled("synthesis", pairs, PAIRS).into_par_iter().for_each(|((path, unit), family)| {
-        let emitted = Emitted::new(unit, POINTS, 1);
-        let netlist = synthesise(&emitted, family);
-        let cells = Cells::new(&netlist.json, &emitted.name);
-        let what = format!("{path}, {}", family.command);
-        memories_are_whole(&unit.design, &cells, family, &what);
-        let products = products(&unit.design);
-        let blocks = cells.count_all(family.dsps);
-        assert!(blocks >= products, "{what}: {products} products in {blocks} DSP blocks");
-        println!(
-            "{what}: {blocks} DSP blocks, {} block RAMs, {} cells",
-            cells.count_all(family.block_rams),
-            cells.0.len()
-        );
-        if gates::is_simulated(family) {
-            netlist::bench(&emitted, netlist.verilog, family).assert_passes();
-        }
-    });
+    let name_of =
+        |((path, _), family): &(&(String, Core), &Family)| format!("{path} {}", family.name());
+    sampled_by_name("synthesis", pairs, name_of).into_par_iter().for_each(
+        |((path, unit), family)| {
+            let emitted = Emitted::new(unit, POINTS, 1);
+            let netlist = synthesise(&emitted, family);
+            let cells = Cells::new(&netlist.json, &emitted.name);
+            let what = format!("{path}, {}", family.command);
+            memories_are_whole(&unit.design, &cells, family, &what);
+            let products = products(&unit.design);
+            let blocks = cells.count_all(family.dsps);
+            assert!(blocks >= products, "{what}: {products} products in {blocks} DSP blocks");
+            println!(
+                "{what}: {blocks} DSP blocks, {} block RAMs, {} cells",
+                cells.count_all(family.block_rams),
+                cells.0.len()
+            );
+            if gates::is_simulated(family) {
+                netlist::bench(&emitted, netlist.verilog, family).assert_passes();
+            }
+        },
+    );
 }
 
 /// The flows of Yosys, each with the step behind the mapping of memories.
@@ -73,8 +75,8 @@ const FLOWS: [(&str, &str); 8] = [
     ("synth", "check"),
 ];
 
-/// Every flow maps the memories of every pipeline that is shipped, from its files: delay lines ask for no kind of memory. In
-/// ECP5 they are in look-up tables.
+/// Every flow maps the memories of a pipeline that is shipped, from its files: delay lines ask for no kind of memory. In ECP5 they
+/// are in look-up tables.
 #[test]
 fn every_flow_takes_the_delay_lines_of_pipelines() {
     let shipped = fs::read_dir("rtl_out").expect("rtl_out");
@@ -82,7 +84,8 @@ fn every_flow_takes_the_delay_lines_of_pipelines() {
     let pipelines: Vec<String> =
         names.filter_map(Result::ok).filter(|name| name.ends_with("_pipelined")).collect();
     assert_eq!(pipelines.len(), 12);
-    pipelines.par_iter().for_each(|name| {
+    let taken = sampled_by_name("flows of delay lines", pipelines, String::clone);
+    taken.par_iter().for_each(|name| {
         let directory = Path::new("rtl_out").join(name);
         let text = read(directory.join(format!("{name}.v")));
         // The pipeline of a short function has no value to hold for long, and iCE40 has no small memories.

@@ -1,16 +1,17 @@
 //! Tests the video signal of `examples/video`: the pictures on the simulated screen equal the pictures of the model, and the
-//! boards reach the clocks that the signal needs. A default run draws one signal and one board.
+//! boards reach the clocks that the signal needs. `tests/kinds.toml` says which signals and boards a run
+//! takes.
 
 use crate::common::Sure;
 use crate::common::files::root;
-use crate::common::sample::sampled;
+use crate::common::sample::sampled_by_name;
 use crate::common::tools::{LIMIT, checkout, example, tool};
 
 #[test]
 fn cores_shade_under_the_beam() {
     let signals =
         ["icebreaker-ball", "ulx3s-ball", "ulx3s-mesh", "tangnano20k-ball", "tangnano20k-mesh"];
-    for signal in sampled("signals of examples/video", signals, 1) {
+    for signal in sampled_by_name("signals of examples/video", signals, |it| (*it).to_owned()) {
         let dir = tempfile::tempdir().expect("a directory");
         let arguments = [dir.path().as_os_str(), "2".as_ref(), signal.as_ref()];
         let output = example("video/run", &arguments);
@@ -42,7 +43,8 @@ fn boards_keep_the_clocks() {
         ("tangnano20k", "ball"),
         ("tangnano20k", "mesh"),
     ];
-    for (board, scene) in sampled("bitstreams of examples/video", signals, 1) {
+    let name_of = |(board, scene): &(&str, &str)| format!("{board} {scene}");
+    for (board, scene) in sampled_by_name("bitstreams of examples/video", signals, name_of) {
         let dir = tempfile::tempdir().expect("a directory");
         let output =
             example("video/bitstream", &[board.as_ref(), scene.as_ref(), dir.path().as_os_str()]);

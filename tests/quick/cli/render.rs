@@ -1,8 +1,8 @@
 //! Tests `glint render`: the pixels of its pictures, the agreement of its engines, and the messages about unusable meshes and
 //! height maps.
 //!
-//! A default run draws two scenes and ten configurations for the comparison of engines. Among other things the file repeats the
-//! commands of `docs/images/README.md` and compares the pictures with the files of the repository.
+//! `tests/kinds.toml` says which scenes and configurations a run takes for the comparison of engines. Among other things the file
+//! repeats the commands of `docs/images/README.md` and compares the pictures with the files of the repository.
 
 use std::fs;
 use std::io::Cursor;
@@ -14,7 +14,7 @@ use crate::common::Sure;
 use crate::common::cores::all_configurations;
 use crate::common::files::{read, root};
 use crate::common::json::Json;
-use crate::common::sample::sampled;
+use crate::common::sample::sampled_by_name;
 use crate::workspace::{COSINE_POWER, Run, Workspace};
 
 /// Every line of the documentation's list of pictures that is a command.
@@ -89,7 +89,7 @@ fn every_engine_draws_the_same_pixels() {
         ("squared.toml", &[]),
         ("shading.toml", &["--shape", "torus", "--height", "bumps.png"]),
     ];
-    for (config, more) in sampled("scenes", scenes, 2) {
+    for (config, more) in sampled_by_name("scenes", scenes, |(config, _)| (*config).to_owned()) {
         let mut pictures = Vec::new();
         let all = ["golden", "rust-hdl", "verilator"];
         let there = if cfg!(feature = "outside-tools") { &all[..] } else { &all[..2] };
@@ -114,7 +114,8 @@ fn every_configuration_draws() {
     // A function is no highlight.
     let highlights = all_configurations().into_iter();
     let highlights = highlights.filter(|(_, core)| core.contract.highlight().is_some());
-    for (path, _) in sampled("drawn configurations", highlights, 10) {
+    let taken = sampled_by_name("drawn configurations", highlights, |(path, _)| path.clone());
+    for (path, _) in taken {
         let path = root().join(path).display().to_string();
         let mut pictures = Vec::new();
         for through in ["golden", "rust-hdl"] {

@@ -26,23 +26,59 @@ struct Step<'t> {
     expected: Vec<&'t str>,
 }
 
-#[test]
-fn commands_do_as_their_transcripts_say() {
-    let paths = paths(TRANSCRIPTS, ".txt").into_iter();
-    let texts: Vec<(String, String)> = paths.map(|path| (path.clone(), read(path))).collect();
-    let cases = texts.iter().flat_map(|(path, text)| {
-        let cases = text.split("\n## ").skip(1);
-        cases.map(move |case| (path, case.split_once('\n').expect("a title and steps")))
-    });
-    let cases: Vec<_> = cases.collect();
-    assert!(cases.len() > 50, "{} cases", cases.len());
-    let wrong: Vec<String> = cases
-        .par_iter()
-        .flat_map(|(path, (title, text))| {
-            let wrong = played(text);
-            wrong.into_iter().map(|it| format!("{path}: {title}: {it}")).collect::<Vec<_>>()
-        })
-        .collect();
+/// Declares a test for each transcript by the name of its file, and a test that no file is without one.
+macro_rules! transcripts {
+    ($($name:ident)*) => {
+        $(
+            #[test]
+            fn $name() {
+                assert_played(stringify!($name));
+            }
+        )*
+
+        #[test]
+        fn every_transcript_has_a_test() {
+            let files = paths(TRANSCRIPTS, ".txt");
+            let tests = [$(stringify!($name)),*].map(|name| format!("{TRANSCRIPTS}/{name}.txt"));
+            assert_eq!(files, tests);
+        }
+    };
+}
+
+transcripts! {
+    certify
+    compare
+    configurations
+    cosim
+    datasheet
+    describe
+    estimate
+    eval
+    generate
+    new_device
+    render
+    schedule
+    setup
+    synth
+    tune
+    usage
+    verify
+}
+
+/// Plays every case of the transcript of that name.
+///
+/// # Panics
+/// Some output or exit code is not as the transcript says.
+fn assert_played(name: &str) {
+    let text = read(format!("{TRANSCRIPTS}/{name}.txt"));
+    let cases: Vec<&str> = text.split("\n## ").skip(1).collect();
+    assert!(!cases.is_empty(), "{name}: no cases");
+    let played_case = |case: &&str| {
+        let (title, steps) = case.split_once('\n').expect("a title and steps");
+        let wrong = played(steps).into_iter().map(|it| format!("{title}: {it}"));
+        wrong.collect::<Vec<String>>()
+    };
+    let wrong: Vec<String> = cases.par_iter().flat_map(played_case).collect();
     assert!(wrong.is_empty(), "{}", wrong.join("\n\n"));
 }
 

@@ -7,7 +7,7 @@ use std::path::Path;
 use crate::common::Sure;
 use crate::common::cores::{Emitted, configuration_between, configuration_with};
 use crate::common::files::{below, read, root};
-use crate::common::sample::sampled;
+use crate::common::sample::sampled_by_name;
 use crate::common::tools::{
     LIMIT, assert_bench_passes, assert_files_are_clean, benched, ran, tool, yosys,
 };
@@ -15,9 +15,6 @@ use glint::core::Core;
 use glint::package::FileKind;
 use glint::tools::VerilogSimulator;
 use rayon::prelude::*;
-
-/// Configurations with ROM contents in the Verilog that the test runs by default.
-const SAMPLE: usize = 2;
 
 const ALL: &str = "stream = true\nregisters = \"wishbone\"\n[package]\nconstraints = true\n\
                    vivado = true\nquartus = true\nip_xact = true\n";
@@ -170,31 +167,33 @@ fn yosys_quietly(dir: &Path, commands: &str) {
 #[test]
 fn rom_contents_in_the_verilog_are_those_of_the_files() {
     let names = ["blinn", "quad_cosine", "rough", "threshold", "blinn_pipelined"];
-    sampled("ROMs in the Verilog", names, SAMPLE).into_par_iter().for_each(|name| {
-        let path = format!("configs/{name}.toml");
-        let core = configuration_with(&path, INLINE);
-        let emitted = Emitted::new(&core, 300, 1);
-        let rtl = emitted.rtl();
-        assert!(emitted.files.of(&[FileKind::Memory]).is_empty());
-        assert!(rtl.iter().all(|(_, text)| !text.contains("$readmem")));
-        for (file, text) in &rtl {
-            let long = text.lines().find(|line| line.len() > 100);
-            assert_eq!(long, None, "{file}");
-        }
-        // The bench of the configuration with files, word for word.
-        let with_files = Emitted::new(&configuration_with(&path, ""), 300, 1);
-        let bench = with_files.files.sources(FileKind::BENCH_SOURCES);
-        for simulator in [VerilogSimulator::Icarus, VerilogSimulator::Verilator] {
-            let files: Vec<_> = rtl.iter().chain(&bench).cloned().collect();
-            assert_bench_passes(simulator, &files, &with_files.bench());
-        }
-        assert_files_are_clean(&rtl, &emitted.name);
-        // A wrong word is noticed.
-        let wrong = wrong_word(&rtl);
-        let files: Vec<_> = wrong.into_iter().chain(bench).collect();
-        let outcome = benched(VerilogSimulator::Icarus, &files, &with_files.bench());
-        assert!(!outcome.passed, "{name}");
-    });
+    sampled_by_name("ROMs in the Verilog", names, |name| (*name).to_owned())
+        .into_par_iter()
+        .for_each(|name| {
+            let path = format!("configs/{name}.toml");
+            let core = configuration_with(&path, INLINE);
+            let emitted = Emitted::new(&core, 300, 1);
+            let rtl = emitted.rtl();
+            assert!(emitted.files.of(&[FileKind::Memory]).is_empty());
+            assert!(rtl.iter().all(|(_, text)| !text.contains("$readmem")));
+            for (file, text) in &rtl {
+                let long = text.lines().find(|line| line.len() > 100);
+                assert_eq!(long, None, "{file}");
+            }
+            // The bench of the configuration with files, word for word.
+            let with_files = Emitted::new(&configuration_with(&path, ""), 300, 1);
+            let bench = with_files.files.sources(FileKind::BENCH_SOURCES);
+            for simulator in [VerilogSimulator::Icarus, VerilogSimulator::Verilator] {
+                let files: Vec<_> = rtl.iter().chain(&bench).cloned().collect();
+                assert_bench_passes(simulator, &files, &with_files.bench());
+            }
+            assert_files_are_clean(&rtl, &emitted.name);
+            // A wrong word is noticed.
+            let wrong = wrong_word(&rtl);
+            let files: Vec<_> = wrong.into_iter().chain(bench).collect();
+            let outcome = benched(VerilogSimulator::Icarus, &files, &with_files.bench());
+            assert!(!outcome.passed, "{name}");
+        });
 }
 
 /// Returns the Verilog with all words of its first memory with a table inverted.

@@ -1,5 +1,5 @@
 //! Tests faults in the text of wrappers: lint, a shipped bench or a proof notices each of them, except the faults listed as
-//! harmless in `harmless.txt`. A default run draws four faults for each wrapper's configuration.
+//! harmless in `harmless.txt`. A run takes some of the faults.
 
 use std::time::Duration;
 
@@ -7,15 +7,12 @@ use super::{BUSES, STREAM};
 use crate::common::Sure;
 use crate::common::cores::{Files, configuration_between};
 use crate::common::files::put;
-use crate::common::sample::sampled;
+use crate::common::sample::sampled_for;
 use crate::common::tools::{LIMIT, tool};
 use glint::mutate::{TextFault, VerilogText};
 use glint::package::{FileKind, OutputFile};
 use glint::tools::{VerilogSimulator, lint, prove, run_bench};
 use rayon::prelude::*;
-
-/// Faults of each configuration that are planted by default.
-const FAULTS: usize = 4;
 
 /// A bench takes seconds; with a fault it may go round in no time for ever.
 const PATIENCE: Duration = Duration::from_secs(120);
@@ -38,7 +35,7 @@ fn planted_faults_are_noticed() {
             HARMLESS.lines().any(|line| line.split(' ').next() == Some(fault.id.as_str()))
         };
         let harmful = text.faults().into_iter().filter(|fault| !is_harmless(fault));
-        let faults = sampled(name, harmful, FAULTS);
+        let faults = sampled_for(name, "faults of wrappers", harmful);
         assert!(!faults.is_empty(), "{name}: no faults");
         let missed: Vec<&str> = faults
             .par_iter()
