@@ -13,8 +13,8 @@ use glint_base::key_error::KeyError;
 use glint_config::{Config, Key, Problems, Schema, TableEntries, TableEntry, TextPattern, Value};
 use glint_formula::{Comparison, Expression, Fault, Kind, Operator, TextSpan, parse};
 use glint_plan::{
-    ExpressionStatement, PlanRefusal, ProvedPlan, StatedOperand, StatedOverflow, StatedResult,
-    StatedWidth, find, least_size,
+    ExpressionStatement, Operation, PlanRefusal, ProvedPlan, StatedOperand, StatedOverflow,
+    StatedResult, StatedWidth, find, least_size,
 };
 
 use super::function::End;
@@ -174,7 +174,30 @@ impl StatementError {
 pub fn found(config: &Config) -> Result<Arc<ProvedPlan>, StatementError> {
     let keys = Keys::of(config);
     let statement = statement(&keys)?;
-    find(&statement).map_err(|refusal| refused(&keys, &statement, refusal))
+    let plan = find(&statement).map_err(|refusal| refused(&keys, &statement, refusal))?;
+    check_operands_have_readers(&plan)?;
+    Ok(plan)
+}
+
+/// Fails if the plan computes all results without some operand. For example, `if(x < 100, y, 0)` with x below 2 is y.
+fn check_operands_have_readers(found: &ProvedPlan) -> Result<(), StatementError> {
+    let plan = &found.plan;
+    let is_read = |node: usize| {
+        let mut results = 0..found.statement.results.len();
+        results.any(|result| plan.needed_for(result)[node])
+    };
+    for (at, node) in plan.nodes.iter().enumerate() {
+        if let Operation::Operand(number) = node.operation
+            && !is_read(at)
+        {
+            let name = &found.statement.operands[number].name;
+            let message = format!("no result changes with `{name}`, for any values in the domains");
+            let remedy = "remove the operand, and the parts of the formulas that read it; for example, a choice takes the same \
+                          case for all values";
+            return Err(StatementError::new(format!("operands.{name}"), message, remedy));
+        }
+    }
+    Ok(())
 }
 
 /// Returns the refusal of a plan as an error in the formula that the refusal concerns, which may be the formula of a named part,

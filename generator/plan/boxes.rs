@@ -123,6 +123,29 @@ impl<'p> ResultProof<'p> {
         open.pop()
     }
 
+    /// Returns an upper limit of the error as a whole number of `unit` units of the result's last bit, as [`Self::worst`] finds it
+    /// with `divisions` divisions. The search ends early if a single combination of operands has as many units. Returns `None` if
+    /// the result is promised for no operands, and infinity if no limit was found.
+    pub(super) fn whole_units(&self, unit: f64, divisions: usize) -> Option<f64> {
+        let whole = |error: &BoxError| (error.units / unit).ceil();
+        let mut open = BinaryHeap::new();
+        open.extend(self.error_in(self.statement.domain()));
+        for _ in 0..divisions {
+            let worst = open.peek()?;
+            let single = self.error_in(middle_of(&worst.limits));
+            if single.is_some_and(|single| whole(&single) == whole(worst)) {
+                break;
+            }
+            let Some(halves) = best_halves(&worst.limits, &|limits| self.error_in(limits.clone()))
+            else {
+                break;
+            };
+            open.pop();
+            open.extend(halves);
+        }
+        open.peek().map(whole)
+    }
+
     /// Returns a box whose error exceeds the allowed error: a single combination of operands if one in the middle of a box that was
     /// tried does, and otherwise the box with the largest error after `divisions` divisions. Returns `None` if no operands have an
     /// error that is not allowed, or if the result is promised for no operands.

@@ -610,8 +610,7 @@ impl<'s> Lowering<'s> {
     ) -> Result<NodeId, PlanRefusal> {
         let operand = self.plan.node(node).format;
         // The node may differ from its exact value by the roundings before it.
-        let error = if self.is_exact(node) { 0.0 } else { self.largest_error(node) };
-        let slack = (error * exp2(operand.frac)).ceil();
+        let slack = if self.is_exact(node) { 0.0 } else { self.largest_error(node) };
         let mut domain = self.raw_domain(node, range, slack);
         if function_range(function, operand, domain).is_none() {
             // For example, a root below 0. The proof decides whether the node can have such values.
@@ -677,9 +676,10 @@ impl<'s> Lowering<'s> {
         self.plan.polynomial(name, node, approximation, values)
     }
 
-    /// Returns an upper bound of the error of a node as a real value, over all operands for which a result is promised. Returns
-    /// 1 if no bound was found.
+    /// Returns an upper bound of the error of a node in units of its last bit, rounded up, over all operands for which a result is
+    /// promised. Returns the units of an error of 1 if no bound was found.
     fn largest_error(&self, node: NodeId) -> f64 {
+        let unit = exp2(-self.plan.node(node).format.frac);
         let mut plan = self.plan.clone();
         plan.results = vec![node];
         plan.proved = vec![node];
@@ -688,14 +688,14 @@ impl<'s> Lowering<'s> {
             let mut statement = self.statement.clone();
             statement.results = vec![StatedResult { fraction: 0, ..result.clone() }];
             let proof = ResultProof::new(&statement, &plan, 0);
-            let worst = proof.worst(0.0, DIVISIONS_FOR_AN_ERROR);
+            let units = proof.whole_units(unit, DIVISIONS_FOR_AN_ERROR);
             // The promise of a result that does not depend on the node can allow operands for which the node has no value.
-            let units = worst.map_or(0.0, |worst| worst.units);
+            let units = units.unwrap_or(0.0);
             if units.is_finite() {
                 largest = Some(largest.unwrap_or(0.0).max(units));
             }
         }
-        largest.unwrap_or(1.0)
+        largest.unwrap_or_else(|| (1.0 / unit).ceil())
     }
 
     /// Returns whether the value of a node has no rounding error.
