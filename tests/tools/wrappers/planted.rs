@@ -7,7 +7,7 @@ use super::{BUSES, STREAM};
 use crate::common::Sure;
 use crate::common::cores::{Files, configuration_between};
 use crate::common::files::put;
-use crate::common::sample::sampled_for;
+use crate::common::sample::{sampled_by_name, sampled_for};
 use crate::common::tools::{LIMIT, tool};
 use glint::mutate::{TextFault, VerilogText};
 use glint::package::{FileKind, OutputFile};
@@ -106,14 +106,16 @@ fn wrapper_benches(files: &[OutputFile]) -> Vec<&str> {
 #[test]
 fn benches_pass_without_a_fault() {
     let [(axi_lite, _), (wishbone, _)] = BUSES;
-    for (name, keys) in [
+    let cores = [
         // Operands of more than 32 bits, and results that fill several registers, too.
         ("cosine_power", format!("{STREAM}{wishbone}")),
         ("rough", axi_lite.to_owned()),
         ("lyon", format!("stream = true\nuser_bits = 70\n{axi_lite}[operands]\nbuffered = true\n")),
         ("quadratic_pipelined", STREAM.to_owned()),
         ("quad_cosine", STREAM.to_owned()),
-    ] {
+    ];
+    let name_of = |(name, _): &(&str, String)| (*name).to_owned();
+    for (name, keys) in sampled_by_name("benches of wrappers", cores, name_of) {
         let core = configuration_between(&format!("configs/{name}.toml"), &keys);
         let text = VerilogText::of_wrappers(&core).sure_of(name);
         let files = simulated(text.files());
