@@ -179,7 +179,8 @@ pub fn found(config: &Config) -> Result<Arc<ProvedPlan>, StatementError> {
     Ok(plan)
 }
 
-/// Fails if the plan computes all results without some operand. For example, `if(x < 100, y, 0)` with x below 2 is y.
+/// Checks that a result changes with each operand. Fails for an operand that the plan does not read, because every choice or remainder
+/// that reads it was decided. For example, `if(x < 100, y, x)` with x below 2 is y.
 fn check_operands_have_readers(found: &ProvedPlan) -> Result<(), StatementError> {
     let plan = &found.plan;
     let is_read = |node: usize| {
@@ -191,9 +192,11 @@ fn check_operands_have_readers(found: &ProvedPlan) -> Result<(), StatementError>
             && !is_read(at)
         {
             let name = &found.statement.operands[number].name;
-            let message = format!("no result changes with `{name}`, for any values in the domains");
-            let remedy = "remove the operand, and the parts of the formulas that read it; for example, a choice takes the same \
-                          case for all values";
+            let message = format!(
+                "no result changes with `{name}`, because each choice or remainder that reads it is the same for all values \
+                 in the domains"
+            );
+            let remedy = "remove the operand, or give the operands larger domains";
             return Err(StatementError::new(format!("operands.{name}"), message, remedy));
         }
     }

@@ -106,20 +106,8 @@ impl<'p> ResultProof<'p> {
     /// times, or until this box is a single combination. No operands have a larger error than this box states. Returns `None`
     /// if the result is promised for no operands.
     pub(super) fn worst(&self, enough: f64, divisions: usize) -> Option<BoxError> {
-        let mut open = BinaryHeap::new();
-        open.extend(self.error_in(self.statement.domain()));
-        for _ in 0..divisions {
-            let worst = open.peek()?;
-            if worst.units <= enough {
-                break;
-            }
-            let Some(halves) = best_halves(&worst.limits, &|limits| self.error_in(limits.clone()))
-            else {
-                break;
-            };
-            open.pop();
-            open.extend(halves);
-        }
+        let mut open = self.errors_in(&[self.statement.domain()]);
+        self.divide(&mut open, divisions, &mut |worst| worst.units <= enough);
         open.pop()
     }
 
@@ -128,21 +116,11 @@ impl<'p> ResultProof<'p> {
     /// the result is promised for no operands, and infinity if no limit was found.
     pub(super) fn whole_units(&self, unit: f64, divisions: usize) -> Option<f64> {
         let whole = |error: &BoxError| (error.units / unit).ceil();
-        let mut open = BinaryHeap::new();
-        open.extend(self.error_in(self.statement.domain()));
-        for _ in 0..divisions {
-            let worst = open.peek()?;
+        let mut open = self.errors_in(&[self.statement.domain()]);
+        self.divide(&mut open, divisions, &mut |worst| {
             let single = self.error_in(middle_of(&worst.limits));
-            if single.is_some_and(|single| whole(&single) == whole(worst)) {
-                break;
-            }
-            let Some(halves) = best_halves(&worst.limits, &|limits| self.error_in(limits.clone()))
-            else {
-                break;
-            };
-            open.pop();
-            open.extend(halves);
-        }
+            single.is_some_and(|single| whole(&single) == whole(worst))
+        });
         open.peek().map(whole)
     }
 
@@ -160,27 +138,48 @@ impl<'p> ResultProof<'p> {
     ) -> Option<BoxError> {
         let stated = &self.statement.results[self.result];
         let exceeds = |error: &BoxError| !stated.allows(error.units);
-        let errors = partition.iter().filter_map(|limits| self.error_in(limits.clone()));
-        let mut open: BinaryHeap<BoxError> = errors.collect();
+        let mut open = self.errors_in(partition);
         let least = divisions / LEAST_SHARE_OF_DIVISIONS;
-        for _ in 0..divisions.saturating_sub(open.len()).max(least) {
-            let Some(worst) = open.peek().filter(|worst| exceeds(worst)) else { break };
-            let single = self.error_in(middle_of(&worst.limits)).filter(exceeds);
-            if single.is_some() {
-                return single;
+        let divisions = divisions.saturating_sub(open.len()).max(least);
+        let mut single = None;
+        self.divide(&mut open, divisions, &mut |worst| {
+            if exceeds(worst) {
+                single = self.error_in(middle_of(&worst.limits)).filter(exceeds);
             }
-            let Some(halves) = best_halves(&worst.limits, &|limits| self.error_in(limits.clone()))
-            else {
-                break;
-            };
-            open.pop();
-            open.extend(halves);
+            !exceeds(worst) || single.is_some()
+        });
+        if single.is_some() {
+            return single;
         }
         if open.peek().is_some_and(exceeds) {
             return open.pop();
         }
         *partition = open.into_iter().map(|error| error.limits).collect();
         None
+    }
+
+    /// Returns the errors in boxes, except for boxes in which nothing is promised.
+    fn errors_in(&self, boxes: &[OperandBox]) -> BinaryHeap<BoxError> {
+        boxes.iter().filter_map(|limits| self.error_in(limits.clone())).collect()
+    }
+
+    /// Divides the box with the largest error in two, until `is_done` returns true for this box, or `divisions` times, or until this
+    /// box is a single combination.
+    fn divide(
+        &self,
+        open: &mut BinaryHeap<BoxError>,
+        divisions: usize,
+        is_done: &mut dyn FnMut(&BoxError) -> bool,
+    ) {
+        for _ in 0..divisions {
+            let Some(worst) = open.peek().filter(|worst| !is_done(worst)) else { return };
+            let Some(halves) = best_halves(&worst.limits, &|limits| self.error_in(limits.clone()))
+            else {
+                return;
+            };
+            open.pop();
+            open.extend(halves);
+        }
     }
 
     /// Returns the largest error in a box; `None` if nothing is promised in the box.
