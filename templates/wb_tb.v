@@ -22,40 +22,41 @@
         .irq(irq)
     );
 
-    // Does one bus cycle, after clocks in which only one of cyc and stb is high.
-    task access(input [31:0] address, input writes, input [31:0] data, input [3:0] bytes);
-        begin
-            accesses = accesses + 1;
-            random = {random[30:0], random[31] ^ random[21] ^ random[1] ^ random[0]};
-            waited = 0;
-            answered = 1'b0;
-            adr = address | {30'd0, random[9:8]};
-            we = writes;
-            dat = data;
-            sel = bytes;
-            repeat ({30'd0, random[1:0]}) begin
-                cyc = random[2];
-                stb = ~random[2];
-                wait_a_clock;
-                check(!ack && !err, "an answer without a request");
-                @(negedge clk);
-            end
-            cyc = 1'b1;
-            stb = 1'b1;
-            while (!answered) begin
-                wait_a_clock;
-                check((ack & err) === 1'b0, "two answers");
-                answered = ack | err;
-                failed = err;
-                got = dat_o;
-                @(negedge clk);
-            end
-            // The next cycle may begin in the next clock.
-            cyc = random[3];
-            stb = 1'b0;
-            we = random[4];
-            adr = ~address;
-            dat = ~data;
-            sel = ~bytes;
+    // Does one bus cycle for each call of `access`, after clocks in which only one of cyc and stb
+    // is high.
+    initial forever begin
+        wait (asked);
+        accesses = accesses + 1;
+        random = {random[30:0], random[31] ^ random[21] ^ random[1] ^ random[0]};
+        waited = 0;
+        answered = 1'b0;
+        adr = asked_address | {30'd0, random[9:8]};
+        we = asked_write;
+        dat = asked_data;
+        sel = asked_bytes;
+        repeat ({30'd0, random[1:0]}) begin
+            cyc = random[2];
+            stb = ~random[2];
+            wait_a_clock;
+            check(!ack && !err, "an answer without a request");
+            @(negedge clk);
         end
-    endtask
+        cyc = 1'b1;
+        stb = 1'b1;
+        while (!answered) begin
+            wait_a_clock;
+            check((ack & err) === 1'b0, "two answers");
+            answered = ack | err;
+            failed = err;
+            got = dat_o;
+            @(negedge clk);
+        end
+        // The next cycle may begin in the next clock.
+        cyc = random[3];
+        stb = 1'b0;
+        we = random[4];
+        adr = ~asked_address;
+        dat = ~asked_data;
+        sel = ~asked_bytes;
+        asked = 1'b0;
+    end

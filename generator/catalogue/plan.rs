@@ -10,7 +10,7 @@ use glint_base::fixed::{Format, Overflow, Rounding};
 use glint_plan::{
     ExpressionPlan, NodeId, Operation, PlanNode, PlanSchedule, PlanStep, StatedOperand,
 };
-use glint_rtl::blocks::shift::{normalise, normalise_by_pairs, right_by};
+use glint_rtl::blocks::shift::{left_justified, normalise, normalise_by_pairs, right_by};
 use glint_rtl::dsl::{Designer, Register, Signal, Step, end, step, valid};
 
 use crate::mirror::MirrorChain;
@@ -64,6 +64,8 @@ struct PlanDatapath<'d, 'p> {
     chains: Vec<Option<MirrorChain>>,
     /// Whether each node is replaced by a chain of mirrors, and therefore not built.
     is_inner: Vec<bool>,
+    /// Whether the hardware of a result reads each node.
+    is_read: Vec<bool>,
 }
 
 impl<'d, 'p> PlanDatapath<'d, 'p> {
@@ -90,6 +92,7 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
             is_pipelined,
             chains,
             is_inner,
+            is_read: read_nodes(plan),
             registers,
             signals: vec![None; count],
             polynomials: (0..count).map(|_| None).collect(),
@@ -101,10 +104,9 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
     /// products, and for the nodes between a product and the next register. `microprogram` builds the products, and these nodes behind
     /// them, with the multiplier.
     fn build(&mut self) {
-        let is_read = read_nodes(self.plan);
         let plan = self.plan;
         for (at, node) in plan.nodes.iter().enumerate() {
-            if self.is_inner[at] || !is_read[at] {
+            if self.is_inner[at] || !self.is_read[at] {
                 continue;
             }
             if let Operation::Multiply(a, b) = node.operation {
@@ -268,12 +270,17 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
                 return d.rom(name, input(address), *format, words, false).out();
             }
             Operation::Normalise { word, by_pairs } => {
+                // The node with the number of shifted bits directly follows the node of the word.
+                let places = id.0 + 1;
+                if !self.is_read[places] {
+                    let least = if *by_pairs { 2 } else { 1 };
+                    return left_justified(d, name, input(word), least).read_as(*format);
+                }
                 let found = match by_pairs {
                     true => normalise_by_pairs(d, name, input(word)),
                     false => normalise(d, name, input(word)),
                 };
-                // The node with the number of shifted bits directly follows the node of the word.
-                self.signals[id.0 + 1] = Some(found.zeros);
+                self.signals[places] = Some(found.zeros);
                 found.word.read_as(*format)
             }
             Operation::Places(_) => {

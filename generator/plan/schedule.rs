@@ -55,7 +55,11 @@ impl ExpressionPlan {
                     schedule.steps.push(PlanStep::Product { product: node, held });
                 }
                 Operation::Places(normalised) => {
-                    let held = vec![self.held_for(*normalised), node];
+                    let mut held = vec![self.held_for(*normalised)];
+                    // A word that always keeps its octave is restored without its shift.
+                    if self.is_read(node) {
+                        held.push(node);
+                    }
                     for node in &held {
                         schedule.held[node.0] = true;
                     }
@@ -76,8 +80,7 @@ impl ExpressionPlan {
                 _ => {}
             }
             // Later microinstructions read the register of a result, so it is loaded before them.
-            let is_read = self.nodes.iter().any(|other| other.operation.inputs().contains(&node));
-            if self.results.contains(&node) && !schedule.held[at] && is_read {
+            if self.results.contains(&node) && !schedule.held[at] && self.is_read(node) {
                 schedule.held[at] = true;
                 schedule.steps.push(PlanStep::Hold(vec![node]));
             }
@@ -93,6 +96,11 @@ impl ExpressionPlan {
             schedule.steps.push(PlanStep::Hold(last));
         }
         schedule
+    }
+
+    /// Returns whether another node reads `node`.
+    fn is_read(&self, node: NodeId) -> bool {
+        self.nodes.iter().any(|other| other.operation.inputs().contains(&node))
     }
 
     /// Returns the node whose register stores the value of `node`: `node` itself, or a later node that only scales or shortens it.

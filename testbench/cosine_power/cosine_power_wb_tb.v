@@ -48,6 +48,13 @@ module cosine_power_wb_tb #(
     wire irq;
     always #5 clk = ~clk;
 
+    // The access that `access` asks for.
+    reg asked = 1'b0;
+    reg asked_write;
+    reg [31:0] asked_address;
+    reg [31:0] asked_data;
+    reg [3:0] asked_bytes;
+
     task check(input right, input string what);
         if (right !== 1'b1) begin
             if (errors < REPORTED) $display("point %0d, access %0d: %0s", number, accesses, what);
@@ -77,6 +84,19 @@ module cosine_power_wb_tb #(
             #4;
         end
     endtask
+
+    // Does one access to a register: asks the process below for it, and waits until it is done. A
+    // compiler that copies a task to each of its calls then copies little.
+    task access(input [31:0] address, input writes, input [31:0] data, input [3:0] bytes);
+        begin
+            asked_address = address;
+            asked_write = writes;
+            asked_data = data;
+            asked_bytes = bytes;
+            asked = 1'b1;
+            wait (!asked);
+        end
+    endtask
     reg cyc = 1'b0;
     reg stb = 1'b0;
     reg [31:0] adr = 32'd0;
@@ -101,43 +121,44 @@ module cosine_power_wb_tb #(
         .irq(irq)
     );
 
-    // Does one bus cycle, after clocks in which only one of cyc and stb is high.
-    task access(input [31:0] address, input writes, input [31:0] data, input [3:0] bytes);
-        begin
-            accesses = accesses + 1;
-            random = {random[30:0], random[31] ^ random[21] ^ random[1] ^ random[0]};
-            waited = 0;
-            answered = 1'b0;
-            adr = address | {30'd0, random[9:8]};
-            we = writes;
-            dat = data;
-            sel = bytes;
-            repeat ({30'd0, random[1:0]}) begin
-                cyc = random[2];
-                stb = ~random[2];
-                wait_a_clock;
-                check(!ack && !err, "an answer without a request");
-                @(negedge clk);
-            end
-            cyc = 1'b1;
-            stb = 1'b1;
-            while (!answered) begin
-                wait_a_clock;
-                check((ack & err) === 1'b0, "two answers");
-                answered = ack | err;
-                failed = err;
-                got = dat_o;
-                @(negedge clk);
-            end
-            // The next cycle may begin in the next clock.
-            cyc = random[3];
-            stb = 1'b0;
-            we = random[4];
-            adr = ~address;
-            dat = ~data;
-            sel = ~bytes;
+    // Does one bus cycle for each call of `access`, after clocks in which only one of cyc and stb
+    // is high.
+    initial forever begin
+        wait (asked);
+        accesses = accesses + 1;
+        random = {random[30:0], random[31] ^ random[21] ^ random[1] ^ random[0]};
+        waited = 0;
+        answered = 1'b0;
+        adr = asked_address | {30'd0, random[9:8]};
+        we = asked_write;
+        dat = asked_data;
+        sel = asked_bytes;
+        repeat ({30'd0, random[1:0]}) begin
+            cyc = random[2];
+            stb = ~random[2];
+            wait_a_clock;
+            check(!ack && !err, "an answer without a request");
+            @(negedge clk);
         end
-    endtask
+        cyc = 1'b1;
+        stb = 1'b1;
+        while (!answered) begin
+            wait_a_clock;
+            check((ack & err) === 1'b0, "two answers");
+            answered = ack | err;
+            failed = err;
+            got = dat_o;
+            @(negedge clk);
+        end
+        // The next cycle may begin in the next clock.
+        cyc = random[3];
+        stb = 1'b0;
+        we = random[4];
+        adr = ~asked_address;
+        dat = ~asked_data;
+        sel = ~asked_bytes;
+        asked = 1'b0;
+    end
 
     function [31:0] part_at(input integer number);
         case (number)

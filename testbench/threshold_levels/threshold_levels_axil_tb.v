@@ -48,6 +48,13 @@ module threshold_levels_axil_tb #(
     wire irq;
     always #5 clk = ~clk;
 
+    // The access that `access` asks for.
+    reg asked = 1'b0;
+    reg asked_write;
+    reg [31:0] asked_address;
+    reg [31:0] asked_data;
+    reg [3:0] asked_bytes;
+
     task check(input right, input string what);
         if (right !== 1'b1) begin
             if (errors < REPORTED) $display("point %0d, access %0d: %0s", number, accesses, what);
@@ -75,6 +82,19 @@ module threshold_levels_axil_tb #(
                 verdict;
             end
             #4;
+        end
+    endtask
+
+    // Does one access to a register: asks the process below for it, and waits until it is done. A
+    // compiler that copies a task to each of its calls then copies little.
+    task access(input [31:0] address, input writes, input [31:0] data, input [3:0] bytes);
+        begin
+            asked_address = address;
+            asked_write = writes;
+            asked_data = data;
+            asked_bytes = bytes;
+            asked = 1'b1;
+            wait (!asked);
         end
     endtask
     reg [31:0] awaddr = 32'd0;
@@ -121,40 +141,40 @@ module threshold_levels_axil_tb #(
         .irq(irq)
     );
 
-    // Does one write or one read. Address, data and the ready for the response come in random
-    // order.
-    task access(input [31:0] address, input writes, input [31:0] data, input [3:0] bytes);
-        begin
-            accesses = accesses + 1;
-            random = {random[30:0], random[31] ^ random[21] ^ random[1] ^ random[0]};
-            waited = 0;
-            answered = 1'b0;
-            address_taken = 1'b0;
-            data_taken = ~writes;
-            while (!answered) begin
-                awvalid = writes && !address_taken && waited >= {30'd0, random[1:0]};
-                wvalid = !data_taken && waited >= {30'd0, random[3:2]};
-                arvalid = !writes && !address_taken && waited >= {30'd0, random[1:0]};
-                bready = writes && waited >= {29'd0, random[6:4]};
-                rready = !writes && waited >= {29'd0, random[6:4]};
-                awaddr = awvalid ? address | {30'd0, random[9:8]} : ~address;
-                araddr = arvalid ? address | {30'd0, random[9:8]} : ~address;
-                wdata = wvalid ? data : ~data;
-                wstrb = wvalid ? bytes : ~bytes;
-                wait_a_clock;
-                check((bvalid & rvalid) === 1'b0, "two answers");
-                if (bvalid || rvalid) check(address_taken && data_taken, "an answer too early");
-                if (awvalid && awready || arvalid && arready) address_taken = 1'b1;
-                if (wvalid && wready) data_taken = 1'b1;
-                answered = bvalid && bready || rvalid && rready;
-                failed = writes ? bresp[1] : rresp[1];
-                got = rdata;
-                if (answered) check((writes ? bresp[0] : rresp[0]) === 1'b0, "the response");
-                @(negedge clk);
-            end
-            {awvalid, wvalid, arvalid, bready, rready} = 5'd0;
+    // Does one write or one read for each call of `access`. Address, data and the ready for the
+    // response come in random order.
+    initial forever begin
+        wait (asked);
+        accesses = accesses + 1;
+        random = {random[30:0], random[31] ^ random[21] ^ random[1] ^ random[0]};
+        waited = 0;
+        answered = 1'b0;
+        address_taken = 1'b0;
+        data_taken = ~asked_write;
+        while (!answered) begin
+            awvalid = asked_write && !address_taken && waited >= {30'd0, random[1:0]};
+            wvalid = !data_taken && waited >= {30'd0, random[3:2]};
+            arvalid = !asked_write && !address_taken && waited >= {30'd0, random[1:0]};
+            bready = asked_write && waited >= {29'd0, random[6:4]};
+            rready = !asked_write && waited >= {29'd0, random[6:4]};
+            awaddr = awvalid ? asked_address | {30'd0, random[9:8]} : ~asked_address;
+            araddr = arvalid ? asked_address | {30'd0, random[9:8]} : ~asked_address;
+            wdata = wvalid ? asked_data : ~asked_data;
+            wstrb = wvalid ? asked_bytes : ~asked_bytes;
+            wait_a_clock;
+            check((bvalid & rvalid) === 1'b0, "two answers");
+            if (bvalid || rvalid) check(address_taken && data_taken, "an answer too early");
+            if (awvalid && awready || arvalid && arready) address_taken = 1'b1;
+            if (wvalid && wready) data_taken = 1'b1;
+            answered = bvalid && bready || rvalid && rready;
+            failed = asked_write ? bresp[1] : rresp[1];
+            got = rdata;
+            if (answered) check((asked_write ? bresp[0] : rresp[0]) === 1'b0, "the response");
+            @(negedge clk);
         end
-    endtask
+        {awvalid, wvalid, arvalid, bready, rready} = 5'd0;
+        asked = 1'b0;
+    end
 
     function [31:0] part_at(input integer number);
         case (number)

@@ -28,7 +28,12 @@ const TINY: &str =
 operands.c = { bits = 3, fraction = 40 }\noperands.d = { bits = 3, fraction = 40 }";
 
 /// Operands, and results that other results read or that need no operation.
-const CASES: [(&str, &str); 18] = [
+const CASES: [(&str, &str); 19] = [
+    (
+        // The exponential function has a table over an octave, and its results need no shift.
+        "operands.y = { from = \"-9 / 4\", to = \"15 / 4\", to_included = true, fraction = 2, outside = \"anything\" }",
+        "results.r = { formula = \"max(0.97, exp(-abs(y)))\", fraction = 7, where = \"y > 0.1\" }",
+    ),
     (
         SIGNED,
         "results.l = { formula = \"if(x > 0, ln(x), -8) + y\", fraction = 5 }

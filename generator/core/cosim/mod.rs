@@ -28,6 +28,7 @@ mod stimulus;
 mod stream;
 mod through;
 pub mod trial;
+mod vectors;
 
 pub use driven::Driven;
 pub use histogram::{CLASSES, Histogram};

@@ -54,6 +54,13 @@ pub fn normalise_by_pairs<'d>(d: &'d Designer, name: &str, x: Signal<'d>) -> Nor
     normalise_in_steps(d, name, x, 2)
 }
 
+/// Shifts `x` to the left by multiples of `least` places until one of its `least` top bits is 1, and returns only the shifted
+/// bits. `least` must be a power of two. For example, 22 in 8 bits becomes 176 with `least` 1, and 88 with `least` 2.
+#[track_caller]
+pub fn left_justified<'d>(d: &'d Designer, name: &str, x: Signal<'d>, least: u32) -> Signal<'d> {
+    rows(d, name, x, least, |_, _| ())
+}
+
 /// Shifts `x` to the left by multiples of `least` places until one of its `least` top bits is 1. `least` must be a power of two.
 /// Returns the shifted bits and the number of places, in units of `least`. If `x` is 0, all bits of the number are 1. A signal of
 /// at most `least` bits is not shifted, and the number is 0.
@@ -64,25 +71,42 @@ fn normalise_in_steps<'d>(
     x: Signal<'d>,
     least: u32,
 ) -> Normalised<'d> {
+    let mut count = Vec::new();
+    let word = rows(d, name, x, least, |step, stays| {
+        count.push(d.not(&format!("{name}_free{step}"), stays));
+    });
+    let zeros = if count.is_empty() {
+        d.raw_constant("zeros", 0, Format::BIT)
+    } else {
+        let format = Format::unsigned(count.len() as i32, 0);
+        d.join(&format!("{name}_zeros"), &count, format)
+    };
+    Normalised { word, zeros }
+}
+
+/// Builds the rows of muxes that shift `x` to the left until one of its `least` top bits is 1, and returns the shifted bits.
+/// After each row, `each` gets the length of the row's shift and a signal that is 1 if the row does not shift.
+#[track_caller]
+fn rows<'d>(
+    d: &'d Designer,
+    name: &str,
+    x: Signal<'d>,
+    least: u32,
+    mut each: impl FnMut(u32, Signal<'d>),
+) -> Signal<'d> {
     let width = x.format().width();
     let integer = |bits: u32| Format::unsigned(bits as i32, 0);
     let mut word = x.read_as(integer(width));
-    let mut count = Vec::new();
     for bit in (0..(width - 1).max(1).ilog2() + 1).rev() {
         let step = 1u32 << bit;
         if step >= width || step < least {
             continue;
         }
-        let used = d.any(&format!("{name}_top{step}"), word.bits(width - step, integer(step)));
+        let stays = d.any(&format!("{name}_top{step}"), word.bits(width - step, integer(step)));
         let shifted =
             word.bits(0, integer(width - step)).with_fraction(step as i32).shift_left(step as i32);
-        word = d.choose(&format!("{name}_by{step}"), used, [shifted, word]);
-        count.push(d.not(&format!("{name}_free{step}"), used));
+        word = d.choose(&format!("{name}_by{step}"), stays, [shifted, word]);
+        each(step, stays);
     }
-    let zeros = if count.is_empty() {
-        d.raw_constant("zeros", 0, Format::BIT)
-    } else {
-        d.join(&format!("{name}_zeros"), &count, integer(count.len() as u32))
-    };
-    Normalised { word, zeros }
+    word
 }

@@ -15,7 +15,6 @@ mod plant;
 mod proof;
 mod run;
 mod score;
-mod shipped;
 #[cfg(test)]
 mod tests;
 mod unreachable;

@@ -16,11 +16,11 @@ use super::fault::{NetlistFault, Site};
 use super::pinned_operands::{self, Tried};
 use super::plant;
 use super::proof::Prover;
-use super::shipped::Shipped;
 use super::verdict::{Detector, FaultResult, How, MutantVerdict, SignalDifference};
 use super::witness_search::PointSearch;
 use glint_core::core::{self, Core};
 use glint_core::cosim::{Lockstep, Mismatch};
+use glint_core::observation::Vectors;
 use glint_golden::Model;
 use glint_rtl::netlist::{Design, RomId};
 
@@ -57,7 +57,7 @@ pub fn run<'f>(
         prover: Prover::new(&core.design),
         tested: Coverage::of(&core.design, &lockstep, core::TEST_POINTS)?,
         beyond: OnceLock::new(),
-        shipped: Shipped::of(core)?,
+        shipped: core.shipped_vectors()?,
         latency: core.design.pipeline.as_ref().map_or(0, |it| it.stages.len() as u64),
     };
     let faults: Vec<&NetlistFault> = faults.into_iter().collect();
@@ -83,7 +83,8 @@ struct Bench<'a> {
     tested: Coverage,
     /// The positions at which a longer test reads each ROM word, computed when they are first used.
     beyond: OnceLock<Coverage>,
-    shipped: Shipped,
+    /// The vectors of the test bench that Glint ships with the core.
+    shipped: Vectors,
     /// The number of stages of a pipeline, and so the largest number of points in it; 0 for a sequential core.
     latency: u64,
 }
@@ -93,8 +94,8 @@ impl Bench<'_> {
         let mutant = fault.planted(&self.sound);
         let verdict = self.verdict(fault, &mutant)?;
         // A fault that changes nothing that is compared changes no output.
-        let shipped =
-            !matches!(verdict, MutantVerdict::Equivalent(_)) && self.shipped.notices(&mutant)?;
+        let shipped = !matches!(verdict, MutantVerdict::Equivalent(_))
+            && self.shipped.notice_a_fault_in(&mutant)?;
         Ok(FaultResult { fault: fault.clone(), verdict, shipped })
     }
 

@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 use rayon::prelude::*;
 
 use super::proof::Prover;
-use super::shipped::Shipped;
 use super::{Detector, FaultKind, Faults, How, MutantVerdict, NetlistFault, plant, run, unreached};
 use glint_base::fixed::Format;
 use glint_config as config;
@@ -58,8 +57,8 @@ fn no_proof_of_what_shows() {
         let core = core(&path);
         let prover = Prover::new(&core.design).unwrap();
         let sound = plant::bare(&core.design);
-        let bench = Shipped::of(&core).unwrap();
-        assert!(!bench.notices(&sound).unwrap(), "{path}");
+        let bench = core.shipped_vectors().unwrap();
+        assert!(!bench.notice_a_fault_in(&sound).unwrap(), "{path}");
         let faults = Faults::of(&core.design);
         let faults: Vec<_> = faults.iter().step_by(every()).collect();
         let of_each: Vec<(bool, bool)> = faults
@@ -70,7 +69,7 @@ fn no_proof_of_what_shows() {
                 let lockstep = core.lockstep_of(&mutant, 5).unwrap();
                 let shows = lockstep.run_alone(POINTS).unwrap().mismatch.is_some();
                 assert!(!(is_proved && shows), "{path}: {}", fault.id);
-                let benched = is_proved && bench.notices(&mutant).unwrap();
+                let benched = is_proved && bench.notice_a_fault_in(&mutant).unwrap();
                 assert!(!benched, "{path}: the bench notices {}", fault.id);
                 (is_proved, shows)
             })

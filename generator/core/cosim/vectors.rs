@@ -1,0 +1,47 @@
+//! Applies the vectors of a test bench to a design. The built-in simulator runs the design. Only outputs are compared, as the
+//! emitted bench does.
+
+use anyhow::Result;
+use glint_rtl::netlist::{Design, Role};
+use glint_rtl::sim::Simulator;
+
+use crate::observation::Vectors;
+
+impl Vectors {
+    /// Returns whether the bench notices that a design has a fault: in some clock, an output that the bench compares has another
+    /// value than the vectors expect. Mutation testing asks this for each design with a planted fault.
+    ///
+    /// # Errors
+    /// Fails if the design cannot be simulated.
+    pub fn notice_a_fault_in(&self, design: &Design) -> Result<bool> {
+        let mut simulator: Simulator = Simulator::new(design)?;
+        let outputs: Vec<_> = design.outputs().collect();
+        let reset = design.inputs().position(|port| port.role == Role::Reset);
+        // In a pipeline, this output says that the results belong to a point.
+        let valid = outputs.iter().position(|port| port.role == Role::Valid);
+        let shown = valid.filter(|_| design.pipeline.is_some());
+        let mut was_reset = false;
+        for (clock, (inputs, row)) in self.inputs.iter().zip(&self.expected).enumerate() {
+            for (at, &bits) in inputs.iter().enumerate() {
+                simulator.set(at, bits);
+            }
+            // Outputs of a sequential core depend on registers alone, and have had their values since the edge
+            // before. The `in_ready` of a pipeline depends on `out_ready`.
+            if shown.is_some() {
+                simulator.settle()?;
+            }
+            for (port, &expected) in outputs.iter().zip(row) {
+                let compared = match port.role {
+                    role if role.is_status() => was_reset,
+                    _ => clock >= self.known_from && shown.is_none_or(|at| row[at] == 1),
+                };
+                if compared && simulator.value(port.net) != expected {
+                    return Ok(true);
+                }
+            }
+            was_reset |= reset.is_none_or(|reset| inputs[reset] == 0);
+            simulator.clock()?;
+        }
+        Ok(false)
+    }
+}
