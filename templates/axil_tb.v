@@ -1,3 +1,4 @@
+
     reg [31:0] awaddr = 32'd0;
     reg awvalid = 1'b0;
     wire awready;
@@ -42,37 +43,33 @@
         .irq(irq)
     );
 
-    // Does one write or one read for each call of `access`. Address, data and the ready for the
+    // Does the write or the read that `access` asks for. Address, data and the ready for the
     // response come in random order.
-    initial forever begin
-        wait (asked);
-        accesses = accesses + 1;
-        random = {random[30:0], random[31] ^ random[21] ^ random[1] ^ random[0]};
-        waited = 0;
-        answered = 1'b0;
-        address_taken = 1'b0;
-        data_taken = ~asked_write;
-        while (!answered) begin
-            awvalid = asked_write && !address_taken && waited >= {30'd0, random[1:0]};
-            wvalid = !data_taken && waited >= {30'd0, random[3:2]};
-            arvalid = !asked_write && !address_taken && waited >= {30'd0, random[1:0]};
-            bready = asked_write && waited >= {29'd0, random[6:4]};
-            rready = !asked_write && waited >= {29'd0, random[6:4]};
-            awaddr = awvalid ? asked_address | {30'd0, random[9:8]} : ~asked_address;
-            araddr = arvalid ? asked_address | {30'd0, random[9:8]} : ~asked_address;
-            wdata = wvalid ? asked_data : ~asked_data;
-            wstrb = wvalid ? asked_bytes : ~asked_bytes;
-            wait_a_clock;
-            check((bvalid & rvalid) === 1'b0, "two answers");
-            if (bvalid || rvalid) check(address_taken && data_taken, "an answer too early");
-            if (awvalid && awready || arvalid && arready) address_taken = 1'b1;
-            if (wvalid && wready) data_taken = 1'b1;
-            answered = bvalid && bready || rvalid && rready;
-            failed = asked_write ? bresp[1] : rresp[1];
-            got = rdata;
-            if (answered) check((asked_write ? bresp[0] : rresp[0]) === 1'b0, "the response");
-            @(negedge clk);
+    task do_access;
+        begin
+            address_taken = 1'b0;
+            data_taken = ~asked_write;
+            while (!answered) begin
+                awvalid = asked_write && !address_taken && waited >= {30'd0, random[1:0]};
+                wvalid = !data_taken && waited >= {30'd0, random[3:2]};
+                arvalid = !asked_write && !address_taken && waited >= {30'd0, random[1:0]};
+                bready = asked_write && waited >= {29'd0, random[6:4]};
+                rready = !asked_write && waited >= {29'd0, random[6:4]};
+                awaddr = awvalid ? asked_address | {30'd0, random[9:8]} : ~asked_address;
+                araddr = arvalid ? asked_address | {30'd0, random[9:8]} : ~asked_address;
+                wdata = wvalid ? asked_data : ~asked_data;
+                wstrb = wvalid ? asked_bytes : ~asked_bytes;
+                wait_a_clock;
+                check((bvalid & rvalid) === 1'b0, "two answers");
+                if (bvalid || rvalid) check(address_taken && data_taken, "an answer too early");
+                if (awvalid && awready || arvalid && arready) address_taken = 1'b1;
+                if (wvalid && wready) data_taken = 1'b1;
+                answered = bvalid && bready || rvalid && rready;
+                failed = asked_write ? bresp[1] : rresp[1];
+                got = rdata;
+                if (answered) check((asked_write ? bresp[0] : rresp[0]) === 1'b0, "the response");
+                @(negedge clk);
+            end
+            {awvalid, wvalid, arvalid, bready, rready} = 5'd0;
         end
-        {awvalid, wvalid, arvalid, bready, rready} = 5'd0;
-        asked = 1'b0;
-    end
+    endtask

@@ -85,8 +85,8 @@ module ${ top }$_tb #(
         end
     endtask
 
-    // Does one access to a register: asks the process below for it, and waits until it is done. A
-    // compiler that copies a task to each of its calls then copies little.
+    // Does one access to a register, and waits until it is done. The process below calls
+    // `do_access`, so that a compiler that copies a task to each of its calls copies it once.
     task access(input [31:0] address, input writes, input [31:0] data, input [3:0] bytes);
         begin
             asked_address = address;
@@ -103,6 +103,17 @@ module ${ top }$_tb #(
 <%- else %>
 <% include "axil_tb.v" %>
 <%- endif %>
+
+    // Does the accesses that `access` asks for.
+    initial forever begin
+        wait (asked);
+        accesses = accesses + 1;
+        random = {random[30:0], random[31] ^ random[21] ^ random[1] ^ random[0]};
+        waited = 0;
+        answered = 1'b0;
+        do_access;
+        asked = 1'b0;
+    end
 
     function [31:0] part_at(input integer number);
         case (number)

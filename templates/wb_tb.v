@@ -1,3 +1,4 @@
+
     reg cyc = 1'b0;
     reg stb = 1'b0;
     reg [31:0] adr = 32'd0;
@@ -22,41 +23,37 @@
         .irq(irq)
     );
 
-    // Does one bus cycle for each call of `access`, after clocks in which only one of cyc and stb
-    // is high.
-    initial forever begin
-        wait (asked);
-        accesses = accesses + 1;
-        random = {random[30:0], random[31] ^ random[21] ^ random[1] ^ random[0]};
-        waited = 0;
-        answered = 1'b0;
-        adr = asked_address | {30'd0, random[9:8]};
-        we = asked_write;
-        dat = asked_data;
-        sel = asked_bytes;
-        repeat ({30'd0, random[1:0]}) begin
-            cyc = random[2];
-            stb = ~random[2];
-            wait_a_clock;
-            check(!ack && !err, "an answer without a request");
-            @(negedge clk);
+    // Does the bus cycle that `access` asks for, after clocks in which only one of cyc and stb is
+    // high.
+    task do_access;
+        begin
+            adr = asked_address | {30'd0, random[9:8]};
+            we = asked_write;
+            dat = asked_data;
+            sel = asked_bytes;
+            repeat ({30'd0, random[1:0]}) begin
+                cyc = random[2];
+                stb = ~random[2];
+                wait_a_clock;
+                check(!ack && !err, "an answer without a request");
+                @(negedge clk);
+            end
+            cyc = 1'b1;
+            stb = 1'b1;
+            while (!answered) begin
+                wait_a_clock;
+                check((ack & err) === 1'b0, "two answers");
+                answered = ack | err;
+                failed = err;
+                got = dat_o;
+                @(negedge clk);
+            end
+            // The next cycle may begin in the next clock.
+            cyc = random[3];
+            stb = 1'b0;
+            we = random[4];
+            adr = ~asked_address;
+            dat = ~asked_data;
+            sel = ~asked_bytes;
         end
-        cyc = 1'b1;
-        stb = 1'b1;
-        while (!answered) begin
-            wait_a_clock;
-            check((ack & err) === 1'b0, "two answers");
-            answered = ack | err;
-            failed = err;
-            got = dat_o;
-            @(negedge clk);
-        end
-        // The next cycle may begin in the next clock.
-        cyc = random[3];
-        stb = 1'b0;
-        we = random[4];
-        adr = ~asked_address;
-        dat = ~asked_data;
-        sel = ~asked_bytes;
-        asked = 1'b0;
-    end
+    endtask

@@ -92,7 +92,7 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
             is_pipelined,
             chains,
             is_inner,
-            is_read: read_nodes(plan),
+            is_read: plan.read_nodes(),
             registers,
             signals: vec![None; count],
             polynomials: (0..count).map(|_| None).collect(),
@@ -113,7 +113,7 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
                 self.factors[at] = Some(self.distinct_factors(&node.name, [a, b]));
             }
             let is_behind_product =
-                read_inputs(&node.operation).iter().any(|it| self.signals[it.0].is_none());
+                node.operation.hardware_inputs().iter().any(|it| self.signals[it.0].is_none());
             let value = if self.chains[at].is_some() {
                 Some(self.mirrored(NodeId(at)))
             } else if matches!(node.operation, Operation::Multiply(..)) || is_behind_product {
@@ -403,34 +403,6 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
             _ => before.read_as(node.format),
         }
     }
-}
-
-/// Returns the nodes whose signals the hardware of an operation reads. The fraction of a number consists of its low bits, so that
-/// the hardware does not read its integer part.
-fn read_inputs(operation: &Operation) -> Vec<NodeId> {
-    match operation {
-        Operation::FractionPart(a, _) => vec![*a],
-        _ => operation.inputs(),
-    }
-}
-
-/// Returns for each node of a plan whether the hardware of a result reads it.
-fn read_nodes(plan: &ExpressionPlan) -> Vec<bool> {
-    let mut is_read = vec![false; plan.nodes.len()];
-    for result in &plan.results {
-        is_read[result.0] = true;
-    }
-    for at in (0..plan.nodes.len()).rev() {
-        let operation = &plan.nodes[at].operation;
-        // An operand is a port, whether it is read or not.
-        is_read[at] |= matches!(operation, Operation::Operand(_));
-        if is_read[at] {
-            for input in read_inputs(operation) {
-                is_read[input.0] = true;
-            }
-        }
-    }
-    is_read
 }
 
 /// Returns a signal with its low bits replaced by a single 1, which is the lowest bit of `format`.

@@ -96,7 +96,7 @@ pub(super) fn plan_device(
     for (at, (node, is_held)) in plan.nodes.iter().zip(&schedule.held).enumerate() {
         let mut polynomial = None;
         registers.push(match &node.operation {
-            Operation::Polynomial(_, approximation) => {
+            Operation::Polynomial(_, approximation) if *is_held => {
                 let it = approximation.polynomials.as_ref().expect("polynomials that are found");
                 let names = plan.sum_names(NodeId(at));
                 let names: Vec<&str> = names.iter().map(String::as_str).collect();

@@ -192,6 +192,15 @@ impl Operation {
     pub fn inputs(&self) -> Vec<NodeId> {
         inputs_of!(self).into_iter().copied().collect()
     }
+
+    /// Returns the nodes whose signals the hardware of the operation reads. The fraction of a number consists of its low bits,
+    /// so that the hardware does not read its integer part.
+    pub fn hardware_inputs(&self) -> Vec<NodeId> {
+        match self {
+            Self::FractionPart(a, _) => vec![*a],
+            _ => self.inputs(),
+        }
+    }
 }
 
 /// Returns the shifts with which hardware normalises a word of `width` bits, from the largest to the smallest. The shifts are

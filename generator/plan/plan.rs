@@ -47,6 +47,27 @@ impl ExpressionPlan {
         needed
     }
 
+    /// Returns for each node whether the hardware of a result reads it. Operands count as read, because they are ports.
+    ///
+    /// A node can have no reader, although its result is a part of the formula. For example, the table of a function that covers
+    /// one octave has the function's values, and nothing shifts them back.
+    pub fn read_nodes(&self) -> Vec<bool> {
+        let mut is_read = vec![false; self.nodes.len()];
+        for result in &self.results {
+            is_read[result.0] = true;
+        }
+        for at in (0..self.nodes.len()).rev() {
+            let operation = &self.nodes[at].operation;
+            is_read[at] |= matches!(operation, Operation::Operand(_));
+            if is_read[at] {
+                for input in operation.hardware_inputs() {
+                    is_read[input.0] = true;
+                }
+            }
+        }
+        is_read
+    }
+
     /// Returns the widths of the two inputs of one multiplier that can compute all products of the plan, including the products
     /// in polynomials. If any factor has a sign, both widths have room for one.
     pub(super) fn multiplier_widths(&self) -> [u32; 2] {

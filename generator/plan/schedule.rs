@@ -40,15 +40,26 @@ pub struct PlanSchedule {
 }
 
 impl ExpressionPlan {
-    /// Returns the microprogram of the plan, with the nodes that have registers.
+    /// Returns the microprogram of the plan, with the nodes that have registers. It computes no node that no result reads
+    /// ([`ExpressionPlan::read_nodes`]).
     ///
     /// # Panics
     /// Panics if the plan has a function whose polynomials are not known yet.
     pub fn schedule(&self) -> PlanSchedule {
         let mut schedule = PlanSchedule { held: vec![false; self.nodes.len()], steps: Vec::new() };
+        let is_read = self.read_nodes();
         for at in 0..self.nodes.len() {
             let node = NodeId(at);
-            match &self.nodes[at].operation {
+            let operation = &self.nodes[at].operation;
+            let is_computed = match operation {
+                // One microinstruction computes a normalised word and its shift.
+                Operation::Places(word) => is_read[word.0],
+                _ => is_read[at],
+            };
+            if !is_computed {
+                continue;
+            }
+            match operation {
                 Operation::Multiply(..) => {
                     let held = self.held_for(node);
                     schedule.held[held.0] = true;
@@ -56,8 +67,8 @@ impl ExpressionPlan {
                 }
                 Operation::Places(normalised) => {
                     let mut held = vec![self.held_for(*normalised)];
-                    // A word that always keeps its octave is restored without its shift.
-                    if self.is_read(node) {
+                    // The results of a function that covers one octave need no shift back.
+                    if is_read[at] {
                         held.push(node);
                     }
                     for node in &held {
@@ -80,7 +91,9 @@ impl ExpressionPlan {
                 _ => {}
             }
             // Later microinstructions read the register of a result, so it is loaded before them.
-            if self.results.contains(&node) && !schedule.held[at] && self.is_read(node) {
+            let has_reader =
+                self.nodes.iter().any(|other| other.operation.inputs().contains(&node));
+            if self.results.contains(&node) && !schedule.held[at] && has_reader {
                 schedule.held[at] = true;
                 schedule.steps.push(PlanStep::Hold(vec![node]));
             }
@@ -96,11 +109,6 @@ impl ExpressionPlan {
             schedule.steps.push(PlanStep::Hold(last));
         }
         schedule
-    }
-
-    /// Returns whether another node reads `node`.
-    fn is_read(&self, node: NodeId) -> bool {
-        self.nodes.iter().any(|other| other.operation.inputs().contains(&node))
     }
 
     /// Returns the node whose register stores the value of `node`: `node` itself, or a later node that only scales or shortens it.

@@ -85,8 +85,8 @@ module cosine_power_wb_tb #(
         end
     endtask
 
-    // Does one access to a register: asks the process below for it, and waits until it is done. A
-    // compiler that copies a task to each of its calls then copies little.
+    // Does one access to a register, and waits until it is done. The process below calls
+    // `do_access`, so that a compiler that copies a task to each of its calls copies it once.
     task access(input [31:0] address, input writes, input [31:0] data, input [3:0] bytes);
         begin
             asked_address = address;
@@ -97,6 +97,7 @@ module cosine_power_wb_tb #(
             wait (!asked);
         end
     endtask
+
     reg cyc = 1'b0;
     reg stb = 1'b0;
     reg [31:0] adr = 32'd0;
@@ -121,42 +122,49 @@ module cosine_power_wb_tb #(
         .irq(irq)
     );
 
-    // Does one bus cycle for each call of `access`, after clocks in which only one of cyc and stb
-    // is high.
+    // Does the bus cycle that `access` asks for, after clocks in which only one of cyc and stb is
+    // high.
+    task do_access;
+        begin
+            adr = asked_address | {30'd0, random[9:8]};
+            we = asked_write;
+            dat = asked_data;
+            sel = asked_bytes;
+            repeat ({30'd0, random[1:0]}) begin
+                cyc = random[2];
+                stb = ~random[2];
+                wait_a_clock;
+                check(!ack && !err, "an answer without a request");
+                @(negedge clk);
+            end
+            cyc = 1'b1;
+            stb = 1'b1;
+            while (!answered) begin
+                wait_a_clock;
+                check((ack & err) === 1'b0, "two answers");
+                answered = ack | err;
+                failed = err;
+                got = dat_o;
+                @(negedge clk);
+            end
+            // The next cycle may begin in the next clock.
+            cyc = random[3];
+            stb = 1'b0;
+            we = random[4];
+            adr = ~asked_address;
+            dat = ~asked_data;
+            sel = ~asked_bytes;
+        end
+    endtask
+
+    // Does the accesses that `access` asks for.
     initial forever begin
         wait (asked);
         accesses = accesses + 1;
         random = {random[30:0], random[31] ^ random[21] ^ random[1] ^ random[0]};
         waited = 0;
         answered = 1'b0;
-        adr = asked_address | {30'd0, random[9:8]};
-        we = asked_write;
-        dat = asked_data;
-        sel = asked_bytes;
-        repeat ({30'd0, random[1:0]}) begin
-            cyc = random[2];
-            stb = ~random[2];
-            wait_a_clock;
-            check(!ack && !err, "an answer without a request");
-            @(negedge clk);
-        end
-        cyc = 1'b1;
-        stb = 1'b1;
-        while (!answered) begin
-            wait_a_clock;
-            check((ack & err) === 1'b0, "two answers");
-            answered = ack | err;
-            failed = err;
-            got = dat_o;
-            @(negedge clk);
-        end
-        // The next cycle may begin in the next clock.
-        cyc = random[3];
-        stb = 1'b0;
-        we = random[4];
-        adr = ~asked_address;
-        dat = ~asked_data;
-        sel = ~asked_bytes;
+        do_access;
         asked = 1'b0;
     end
 

@@ -116,6 +116,7 @@ fn results_are_simulated_as_stated_for_every_operand() {
                 "device = \"expression\"\nname = \"core\"\n{architecture}{operands}\n{results}\n"
             );
             let core = parsed("core.toml", &text);
+            assert!(core.design.warnings.is_empty(), "{text}{:?}", core.design.warnings);
             assert_agrees(&core, 2000, 1, &text);
             assert_results_as_stated(&core, &text);
         }

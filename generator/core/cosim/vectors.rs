@@ -1,5 +1,8 @@
 //! Applies the vectors of a test bench to a design. The built-in simulator runs the design. Only outputs are compared, as the
 //! emitted bench does.
+//!
+//! Mutation testing does this once for each planted fault. The code stands in this crate because the release profile optimises
+//! this crate for inner loops, and the crate of mutation testing not.
 
 use anyhow::Result;
 use glint_rtl::netlist::{Design, Role};

@@ -58,7 +58,7 @@ pub fn normalise_by_pairs<'d>(d: &'d Designer, name: &str, x: Signal<'d>) -> Nor
 /// bits. `least` must be a power of two. For example, 22 in 8 bits becomes 176 with `least` 1, and 88 with `least` 2.
 #[track_caller]
 pub fn left_justified<'d>(d: &'d Designer, name: &str, x: Signal<'d>, least: u32) -> Signal<'d> {
-    rows(d, name, x, least, |_, _| ())
+    shift_rows(d, name, x, least, None)
 }
 
 /// Shifts `x` to the left by multiples of `least` places until one of its `least` top bits is 1. `least` must be a power of two.
@@ -72,9 +72,7 @@ fn normalise_in_steps<'d>(
     least: u32,
 ) -> Normalised<'d> {
     let mut count = Vec::new();
-    let word = rows(d, name, x, least, |step, stays| {
-        count.push(d.not(&format!("{name}_free{step}"), stays));
-    });
+    let word = shift_rows(d, name, x, least, Some(&mut count));
     let zeros = if count.is_empty() {
         d.raw_constant("zeros", 0, Format::BIT)
     } else {
@@ -85,14 +83,14 @@ fn normalise_in_steps<'d>(
 }
 
 /// Builds the rows of muxes that shift `x` to the left until one of its `least` top bits is 1, and returns the shifted bits.
-/// After each row, `each` gets the length of the row's shift and a signal that is 1 if the row does not shift.
+/// With `count`, each row also appends a bit to `count` that is 1 if the row shifts, the largest shift first.
 #[track_caller]
-fn rows<'d>(
+fn shift_rows<'d>(
     d: &'d Designer,
     name: &str,
     x: Signal<'d>,
     least: u32,
-    mut each: impl FnMut(u32, Signal<'d>),
+    mut count: Option<&mut Vec<Signal<'d>>>,
 ) -> Signal<'d> {
     let width = x.format().width();
     let integer = |bits: u32| Format::unsigned(bits as i32, 0);
@@ -106,7 +104,9 @@ fn rows<'d>(
         let shifted =
             word.bits(0, integer(width - step)).with_fraction(step as i32).shift_left(step as i32);
         word = d.choose(&format!("{name}_by{step}"), stays, [shifted, word]);
-        each(step, stays);
+        if let Some(count) = &mut count {
+            count.push(d.not(&format!("{name}_free{step}"), stays));
+        }
     }
     word
 }
