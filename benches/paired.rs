@@ -70,7 +70,7 @@ fn main() -> Result<()> {
     let named: Vec<String> = std::env::args().skip(1).collect();
     let named: Vec<&String> = named.iter().filter(|it| !it.starts_with('-')).collect();
     for core in cores()? {
-        let name = &core.config.name;
+        let name = &core.config().name;
         if !named.is_empty() && !named.contains(&name) {
             continue;
         }
@@ -274,7 +274,7 @@ fn on_one_thread(
 /// Seconds of wall time from the configuration to the verdict, on all threads.
 fn verdict(core: &Core) -> Result<f64> {
     let begin = Instant::now();
-    let core = Core::new(core.device, core.config.clone())?;
+    let core = Core::new(*core.device(), core.config().clone())?;
     let outcome = core.lockstep(1)?.run(VERDICT_POINTS, &|_| ())?;
     ensure!(outcome.mismatch.is_none(), "golden model and simulation differ");
     Ok(begin.elapsed().as_secs_f64())
@@ -332,7 +332,7 @@ impl Verilator {
                 .split(' ')
                 .filter(|argument| !argument.is_empty())
                 .collect();
-        arguments.push(&core.config.name);
+        arguments.push(&core.config().name);
         arguments.extend(sources.iter().map(String::as_str));
         arguments.push("paired.cpp");
         Tool::find("verilator")?.run_to_success(arguments, dir.path(), LIMIT)?;

@@ -163,9 +163,12 @@ fn of(toml: &str, ask: impl FnOnce(&Core) -> Result<Value>) -> Result<Value> {
         if last.as_ref().is_none_or(|(text, _)| text != toml) {
             *last = None;
             let registry = Registry::shipped();
-            let config = config::parse(FILE, toml, &registry.schemas())?;
-            let device = registry.device(&config.device).context("no such device")?;
-            *last = Some((toml.to_owned(), Core::new(*device, config)?));
+            let (opened, source) = registry.parse(FILE, toml)?;
+            let core = Core::build(opened).map_err(|error| match source.located(error) {
+                Ok(problems) => problems.into(),
+                Err(error) => error,
+            })?;
+            *last = Some((toml.to_owned(), core));
         }
         let (_, core) = last.as_ref().context("no core")?;
         ask(core)
@@ -208,8 +211,8 @@ fn field(key: &Key) -> Value {
 /// Returns a key for the form.
 fn key(core: &Core, key: &Key) -> Value {
     let mut described = field(key);
-    described["value"] = plain(core.config.value(key.name));
-    described["applies"] = json!(core.config.applies(&(core.device.schema)(), key.name));
+    described["value"] = plain(core.config().value(key.name));
+    described["applies"] = json!(core.config().applies(&(core.device().schema)(), key.name));
     described
 }
 
@@ -253,7 +256,7 @@ fn is_sampled(contract: &dyn Contract) -> bool {
 /// Returns everything that the page shows of a core as soon as it is built.
 fn described(core: &Core) -> Result<Value> {
     let (design, contract) = (&core.design, core.contract.as_ref());
-    let schema = (core.device.schema)();
+    let schema = (core.device().schema)();
     let keys: Vec<Value> = schema.all_keys().map(|it| key(core, it)).collect();
     let bounds: Vec<Value> = contract.bounds().outputs.iter().map(bound).collect();
     let parts: Vec<Value> = contract.parts().iter().map(part).collect();
@@ -282,14 +285,14 @@ fn described(core: &Core) -> Result<Value> {
     };
     Ok(json!({
         "ok": true,
-        "name": core.config.name,
+        "name": core.config().name,
         // The form keeps a name that the text states.
-        "named": core.config.name != MODULE,
-        "device": core.device.name,
-        "summary": core.device.summary,
+        "named": core.config().name != MODULE,
+        "device": core.device().name,
+        "summary": core.device().summary,
         "keys": keys,
         "bounds": bounds,
-        "proved": core.device.proved,
+        "proved": core.device().proved,
         "parts": parts,
         "sampled": is_sampled(contract),
         "latency": latency,
@@ -320,7 +323,7 @@ fn picture(core: &Core, exponent: Option<u32>, side: u32) -> Result<Value> {
     let objects = Scene::built_in(BuiltIn::Sphere, None, lines)?;
     let scene = Scene { objects, lights: Light::usual(), relief: None };
     let rendered = render::render(core, &mut Golden(contract), &scene, &settings, &mut |_| ())?;
-    let png = BASE64_STANDARD.encode(rendered.whole(core.device.name).png()?);
+    let png = BASE64_STANDARD.encode(rendered.whole(core.device().name).png()?);
     let units = rendered.comparison.as_ref().map(|it| it.units);
     Ok(json!({ "ok": true, "png": png, "exponent": exponent, "units": units }))
 }
@@ -329,7 +332,7 @@ fn charts(core: &Core) -> Result<Value> {
     let contract = core.contract.as_ref();
     let of_domain = domain::charts(contract);
     let charts = match of_domain.is_empty() {
-        true => curves::configuration(&core.device, contract, &|| ()).charts,
+        true => curves::configuration(core.device(), contract, &|| ()).charts,
         false => of_domain,
     };
     let drawn = charts.iter().map(drawn).collect::<Result<Vec<_>>>()?;

@@ -14,10 +14,10 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString};
 
 use arrays::{OperandColumn, ResultColumns};
-use glint::config::{self, Config};
+use glint::config::{ConfigSource, Problems};
 use glint::core::Core;
 use glint::cosim::batch::{Engine, Golden, Points, RustHdl};
-use glint::registry::Registry;
+use glint::registry::{OpenedConfig, Registry};
 use glint::render::{self, BuiltIn, Light, Material, Object, Scene, Settings, Vector, View};
 use glint::synth::{TARGETS, Target};
 use glint::tune::Cost;
@@ -70,7 +70,7 @@ impl PyCore {
     fn from_toml(text: &str) -> PyResult<Self> {
         let made = || {
             let registry = Registry::shipped();
-            Self::of_config(&registry, config::parse("glint.Core", text, &registry.schemas())?)
+            Self::build(registry.parse("glint.Core", text))
         };
         made().map_err(wrong)
     }
@@ -88,12 +88,12 @@ impl PyCore {
 
     #[getter]
     fn name(&self) -> &str {
-        &self.core.config.name
+        &self.core.config().name
     }
 
     #[getter]
     fn device(&self) -> &str {
-        self.core.device.name
+        self.core.device().name
     }
 
     /// Returns the operands: name, fraction bits, integer bits, sign, domain in raw integers, colour, a sentence.
@@ -130,7 +130,7 @@ impl PyCore {
             outputs.set_item(&bound.output, bound.units)?;
         }
         it.set_item("outputs", outputs)?;
-        it.set_item("proved", self.core.device.proved)?;
+        it.set_item("proved", self.core.device().proved)?;
         let terms = bound.terms.iter().map(|term| (term.key, term.what, term.units));
         it.set_item("terms", terms.collect::<Vec<_>>())?;
         Ok(it)
@@ -146,7 +146,7 @@ impl PyCore {
     }
 
     fn toml(&self) -> String {
-        self.core.config.to_toml(&(self.core.device.schema)())
+        self.core.config().to_toml(&(self.core.device().schema)())
     }
 
     /// Verilog and memory files by name.
@@ -291,8 +291,8 @@ impl PyCore {
 impl PyCore {
     fn made(path: Option<PathBuf>, device: Option<&str>, keys: &Bound<'_, PyDict>) -> Result<Self> {
         let registry = Registry::shipped();
-        let config: Config = match (path, device) {
-            (Some(path), None) if keys.is_empty() => config::read(&path, &registry.schemas())?,
+        let read = match (path, device) {
+            (Some(path), None) if keys.is_empty() => registry.read(&path),
             (None, Some(name)) => {
                 let device = registry.device(name);
                 let module = device.map_or_else(|| "core".to_owned(), |it| (it.schema)().module());
@@ -306,18 +306,23 @@ impl PyCore {
                         toml(&value).with_context(|| format!("key `{key}`"))?
                     );
                 }
-                config::parse("glint.Core", &text, &registry.schemas())?
+                registry.parse("glint.Core", &text)
             }
             _ => bail!(
                 "give a TOML file, or device=… with keys: Core(\"core.toml\"), Core(device=\"lyon\")"
             ),
         };
-        Self::of_config(&registry, config)
+        Self::build(read)
     }
 
-    fn of_config(registry: &Registry, config: Config) -> Result<Self> {
-        let device = registry.device(&config.device).context("no such device")?;
-        Ok(Self { core: Core::new(*device, config)? })
+    /// Builds the core of a configuration that was read, or fails with its problems.
+    fn build(read: Result<(OpenedConfig, ConfigSource), Problems>) -> Result<Self> {
+        let (opened, source) = read?;
+        let core = Core::build(opened).map_err(|error| match source.located(error) {
+            Ok(problems) => problems.into(),
+            Err(error) => error,
+        })?;
+        Ok(Self { core })
     }
 }
 

@@ -25,13 +25,14 @@
 //! `golden.rs`. Description and golden model share nothing but the keys.
 
 mod description;
-mod golden;
+pub mod golden;
 
 use std::process::ExitCode;
+use std::sync::Arc;
 
 use glint::config::{Config, Key, Problems, Schema};
 use glint::fixed::Rounding;
-use glint::registry::{Device, Registry};
+use glint::registry::{Device, KeyParts, Registry};
 
 // The configuration keys, which the user of the device may set. The command `new` writes the keys into a commented file, with
 // these sentences; a file with a wrong value is refused with its line and a remedy.
@@ -78,9 +79,13 @@ pub const FRESNEL: Device = Device {
     name: "fresnel",
     summary: "Schlick's Fresnel factor, f0 + (1 - f0)*(1 - c)^5",
     schema,
-    describe: description::describe,
-    model: golden::model,
-    contract: golden::contract,
+    parts: |_| {
+        Ok(Arc::new(KeyParts {
+            describe: description::describe,
+            model: golden::model,
+            contract: golden::contract,
+        }))
+    },
     proved: false,
 };
 

@@ -13,6 +13,7 @@
 //! commands that compare errors with the bound say that no bound is stated, and `strict = true` refuses the configuration.
 
 use std::process::ExitCode;
+use std::sync::Arc;
 
 use glint::config::{Config, Key, Schema};
 use glint::dsl::{About, Designer, end, step, valid};
@@ -21,7 +22,7 @@ use glint::golden::device::{self, Formula};
 use glint::golden::frame::{Frame, idle, step as execute};
 use glint::golden::narrow::Narrow;
 use glint::golden::{Contract, Model};
-use glint::registry::{Device, Registry};
+use glint::registry::{Device, KeyParts, Registry};
 
 glint::keys! {
     struct Keys {
@@ -119,9 +120,7 @@ pub const SMOOTHSTEP: Device = Device {
     name: "smoothstep",
     summary: "3*x^2 - 2*x^3, a smooth step from 0 to 1",
     schema,
-    describe,
-    model,
-    contract,
+    parts: |_| Ok(Arc::new(KeyParts { describe, model, contract })),
     proved: false,
 };
 

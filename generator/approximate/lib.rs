@@ -8,6 +8,7 @@
 
 mod minimax;
 mod reduction;
+mod refusal;
 mod samples;
 mod search;
 mod seen;
@@ -19,7 +20,6 @@ mod tests;
 mod wide;
 
 use std::collections::HashMap;
-use std::ops::Range;
 use std::sync::{Arc, LazyLock, Mutex};
 
 use rayon::prelude::*;
@@ -28,6 +28,7 @@ use glint_base::fixed::{Format, exp2};
 use glint_formula::{Enclosure, Expression, Fault, RBig};
 
 pub use reduction::{Identity, Reduction, Restore, Rule};
+pub use refusal::{Refusal, RefusalKind, UnsuitedReduction};
 pub use samples::Samples;
 pub use search::Wish;
 pub use segments::{Layout, SegmentOffset, Segments};
@@ -92,30 +93,6 @@ pub struct TargetFunction {
     pub fraction: u32,
     /// The largest allowed error, in units of the last bit of the result. Every error must be below this number.
     pub error: f64,
-}
-
-/// The remedy for a function whose domain has too many operands for an approximation or a proof.
-const WIDE_REMEDY: &str = "use device = \"expression\", which divides such a domain into octaves, or set a smaller operand.fraction";
-
-/// The reason why a search found no approximation, and the configuration key that the user should change.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Refusal {
-    /// The configuration key that the user should change, for example `function.formula`.
-    pub key: &'static str,
-    /// The range of bytes in the formula's text to which the reason applies, or `None` if the reason applies to no particular
-    /// part.
-    pub place: Option<Range<usize>>,
-    /// The reason why no approximation was found, as text for the user.
-    pub message: String,
-    /// The remedy, as text for the user. For example, it may name a larger error that can be reached.
-    pub remedy: String,
-}
-
-impl Refusal {
-    /// Makes a refusal with the given key, reason and remedy, which concerns no particular part of the formula.
-    pub fn new(key: &'static str, message: String, remedy: impl Into<String>) -> Self {
-        Self { key, place: None, message, remedy: remedy.into() }
-    }
 }
 
 /// The bit widths of one step of Horner's rule. Let p be the partial sum so far and t the offset of the operand in its segment.
@@ -298,11 +275,8 @@ impl TargetFunction {
     fn refusal(&self, raw: i64, fault: &Fault) -> Refusal {
         let x = self.operand.to_f64(raw.into());
         Refusal {
-            key: "function.formula",
             place: Some(fault.span.bytes.clone()),
-            message: format!("at x = {x}: {}", fault.message),
-            remedy: "exclude such operands from the domain: change function.from or function.to"
-                .to_owned(),
+            ..Refusal::new(RefusalKind::NoValue, format!("at x = {x}: {}", fault.message))
         }
     }
 }
@@ -447,7 +421,7 @@ impl Piecewise {
         if let Some((sum, format)) = all.find(|(sum, format)| !format.holds(i128::from(**sum))) {
             let message =
                 format!("at the raw operand {raw}, a sum is {sum}, which does not fit {format}");
-            return Err(Refusal::new("result.fraction", message, "change the formats"));
+            return Err(Refusal::new(RefusalKind::ResultBits, message));
         }
         let limits = function.limits(raw).map_err(|fault| function.refusal(raw, &fault))?;
         let result = result as f64;
@@ -457,8 +431,11 @@ impl Piecewise {
         if error >= function.error {
             let message =
                 format!("at the raw operand {raw}, the error of the result is {error:.4} units");
-            let remedy = if function.is_wide() { WIDE_REMEDY } else { "allow a larger error" };
-            return Err(Refusal::new("result.error", message, remedy));
+            let kind = match function.is_wide() {
+                true => RefusalKind::Unproved,
+                false => RefusalKind::ErrorExceeded,
+            };
+            return Err(Refusal::new(kind, message));
         }
         Ok(error)
     }
@@ -470,7 +447,7 @@ type SearchResult = Result<Arc<Piecewise>, Refusal>;
 /// same search was made earlier in this process, returns the earlier result.
 ///
 /// # Errors
-/// Fails if no approximation can be found and proved. The error says why, and names a key to change.
+/// Fails if no approximation can be found and proved. The refusal says why.
 pub fn find(function: &TargetFunction, wish: Wish) -> SearchResult {
     static FOUND: LazyLock<Mutex<HashMap<String, SearchResult>>> = LazyLock::new(Mutex::default);
     let key = format!("{function:?} {wish:?}");

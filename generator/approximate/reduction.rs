@@ -7,7 +7,7 @@
 
 use std::sync::Arc;
 
-use super::{Curve, Outside, Refusal, TargetFunction};
+use super::{Curve, Outside, Refusal, TargetFunction, UnsuitedReduction};
 use glint_base::fixed::{Format, exp2};
 use glint_formula::Function::Log2;
 use glint_formula::{Enclosure, Expression, Kind, RBig, parse};
@@ -203,14 +203,14 @@ impl Reduction {
     ) -> Result<(Self, TargetFunction), Refusal> {
         let Curve::Formula(formula) = &function.curve else {
             return refused(
+                UnsuitedReduction::NoReduction,
                 "samples cannot have a range reduction",
-                "set approximation.reduction to \"none\"",
             );
         };
         let whole = Whole { function, formula, guard };
         let (rule, bits, text) = match identity {
             Identity::None => {
-                return refused("there is no identity", "remove approximation.reduction");
+                return refused(UnsuitedReduction::NoReduction, "there is no identity");
             }
             Identity::Odd => whole.size(true, wider)?,
             Identity::Even => whole.size(false, wider)?,
@@ -221,13 +221,12 @@ impl Reduction {
         if bits == 0 || bits > MOST {
             let message =
                 format!("a reduced operand would have {bits} bits, but 1 to {MOST} are possible");
-            return refused(&message, "set other fraction bits, or another domain");
+            return refused(UnsuitedReduction::Bits, &message);
         }
         let place = formula.span.clone();
         let (fraction, text) = text;
-        let inner = parse(&text).map_err(|fault| {
-            Refusal::new(KEY, fault.message, "set approximation.reduction to \"none\"")
-        })?;
+        let inner = parse(&text)
+            .map_err(|fault| Refusal::of_reduction(UnsuitedReduction::NoIdentity, fault.message))?;
         let reduced = formula.substitute(&Expression::operand("x"), &inner, &place);
         let last = match rule {
             Rule::Size(_) if wider => function.domain.0.abs().max(function.domain.1),
@@ -252,9 +251,6 @@ fn exponent(scale: Option<(i64, u32)>, raw: i64) -> i64 {
     scale.map_or(raw, |(factor, cut)| ((i128::from(raw) * i128::from(factor)) >> cut) as i64)
 }
 
-/// The configuration key of range reductions.
-pub(super) const KEY: &str = "approximation.reduction";
-
 /// A shift to the right by this number of bits leaves nothing of a polynomial's value. Larger shifts are limited to this number.
 const NOTHING: u32 = 64;
 
@@ -264,16 +260,14 @@ const MOST: u32 = 24;
 /// The largest relative difference between two values that count as equal.
 const EQUAL: f64 = 1e-9;
 
-fn refused<T>(message: &str, remedy: &str) -> Result<T, Refusal> {
-    Err(Refusal::new(KEY, message.to_owned(), remedy))
+fn refused<T>(why: UnsuitedReduction, message: &str) -> Result<T, Refusal> {
+    Err(Refusal::of_reduction(why, message))
 }
 
 /// Returns the refusal of a formula for which the identity does not hold. `wanted` is the reason, as text for the user.
 fn unlike<T>(wanted: &str) -> Result<T, Refusal> {
-    refused(
-        &format!("the formula does not satisfy this identity: {wanted}"),
-        "set approximation.reduction to \"none\" or to another identity",
-    )
+    let message = format!("the formula does not satisfy this identity: {wanted}");
+    refused(UnsuitedReduction::NoIdentity, &message)
 }
 
 fn near(a: f64, b: f64) -> bool {
@@ -337,10 +331,7 @@ impl Whole<'_> {
         let TargetFunction { domain: (first, last), operand: Format { frac, .. }, .. } =
             *self.function;
         if first >= 0 || last < 0 {
-            return refused(
-                "the domain is on one side of 0",
-                "set approximation.reduction to \"none\", or change function.from",
-            );
+            return refused(UnsuitedReduction::OneSide, "the domain is on one side of 0");
         }
         let centre = if odd { 2.0 * self.at(0.0)? } else { 0.0 };
         let ends = last.min(-first) as f64 * exp2(-frac);
@@ -369,7 +360,7 @@ impl Whole<'_> {
         if count < 8 || !(count as u64).is_power_of_two() || first % quarter != 0 {
             let message = "the domain is not one period of four quadrants, with a power of two as the number \
                            of operands";
-            return refused(message, "scale the operand, for example sin(2 * pi * x) from 0 to 1");
+            return refused(UnsuitedReduction::NoPeriod, message);
         }
         let mut values = [0.0; 8];
         for (eighth, value) in values.iter_mut().enumerate() {
@@ -388,8 +379,8 @@ impl Whole<'_> {
         let TargetFunction { domain: (first, last), operand: format, .. } = *self.function;
         if first < 0 || last < 8 || last.ilog2() < first.max(1).ilog2() + 2 {
             return refused(
+                UnsuitedReduction::NoReduction,
                 "the domain does not have three octaves above 0",
-                "set approximation.reduction to \"none\"",
             );
         }
         let (low, high) = (first.max(1).ilog2() as i32, last.ilog2() as i32);
@@ -417,8 +408,8 @@ impl Whole<'_> {
         };
         if first == 0 && !rises {
             return refused(
-                "function.from is 0, and 0 does not belong to any octave",
-                "set function.from to the smallest operand above 0",
+                UnsuitedReduction::FromZero,
+                "the domain begins at 0, and 0 does not belong to any octave",
             );
         }
         // The octave, or the pair of octaves, for which the polynomial is fitted: the one with the largest results.
@@ -473,8 +464,8 @@ impl Whole<'_> {
             let factor = exp2(cut as i32 + bits - frac) / unit;
             if factor.abs() >= exp2(40) {
                 return refused(
+                    UnsuitedReduction::Bits,
                     "the factor of the operand would have more than 40 bits",
-                    "set fewer fraction bits",
                 );
             }
             (Some(((factor + 0.5).floor() as i64, cut)), bits)
@@ -483,7 +474,7 @@ impl Whole<'_> {
             let message = format!(
                 "the fraction of the exponent would have {bits} bits, but 1 to {MOST} are possible"
             );
-            return refused(&message, "set other fraction bits");
+            return refused(UnsuitedReduction::Bits, &message);
         }
         let falls = slope < 0.0;
         let whole = exponent(scale, if falls { first } else { last }) >> bits;

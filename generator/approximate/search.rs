@@ -1,13 +1,11 @@
 //! Searches for the cheapest piecewise polynomial that approximates a function. The search tries some combinations of degree,
 //! segments and bit widths, so a cheaper polynomial may exist. Costs are in look-up tables with four inputs.
 
-use super::WIDE_REMEDY;
-use super::reduction::KEY;
 use super::seen::AllowedResults;
 use super::table::{BITS_A_CELL, Table, Widths};
 use super::{
-    Curve, Identity, Layout, MOST_BITS, Numbering, Piecewise, Reduction, Refusal, Segments,
-    TargetFunction,
+    Curve, Identity, Layout, MOST_BITS, Numbering, Piecewise, Reduction, Refusal, RefusalKind,
+    Segments, TargetFunction, UnsuitedReduction,
 };
 use glint_base::fixed::MAX_WIDTH;
 
@@ -62,25 +60,21 @@ const NEAREST: [f64; 14] =
 /// # Errors
 /// Fails if the operands of the domain differ by 2^46 or more, or if there are more than 2^26 operands of samples. Fails if the
 /// function has no value at an operand, or if the identity of `wish` does not hold. Fails if no approximation with the allowed
-/// error is found and proved. The error names a key and a remedy.
+/// error is found and proved.
 pub(super) fn search(function: &TargetFunction, wish: Wish) -> Result<Piecewise, Refusal> {
     let span = function.domain.1.abs_diff(function.domain.0);
     if span >> WIDEST != 0 {
         let bits = u64::BITS - span.leading_zeros();
         return Err(Refusal::new(
-            "operand.fraction",
+            RefusalKind::OperandBits { most: function.operand.frac - (bits - WIDEST) as i32 },
             format!("operands of the domain have {bits} bits, more than {WIDEST}"),
-            format!(
-                "set operand.fraction to at most {}",
-                function.operand.frac - (bits - WIDEST) as i32
-            ),
         ));
     }
     if matches!(function.curve, Curve::Samples(_)) && function.is_wide() {
         let message = format!(
             "with samples, Glint computes every operand, and the domain has more than 2^{MOST_BITS} operands"
         );
-        return Err(Refusal::new("operand.fraction", message, "set a smaller operand.fraction"));
+        return Err(Refusal::new(RefusalKind::ManyOperandsOfSamples, message));
     }
     if let Some(found) = attempt(function, wish)? {
         return Ok(found);
@@ -89,22 +83,17 @@ pub(super) fn search(function: &TargetFunction, wish: Wish) -> Result<Piecewise,
         let larger = TargetFunction { error: *error, ..function.clone() };
         *error <= function.error || !matches!(attempt(&larger, wish), Ok(Some(_)))
     });
-    let reached = NEAREST.get(count_missed);
+    let reached = NEAREST.get(count_missed).copied();
     let keeps = match wish.degree {
         Some(degree) => format!("degree {degree} does not keep"),
         None => format!("no degree up to {DEGREES} keeps"),
     };
-    let fewer = "set a smaller operand.fraction or result.fraction";
     Err(Refusal::new(
-        "result.error",
+        RefusalKind::Error { reached },
         format!(
             "{keeps} an error of {} units within 2^{ADDRESS} words and nets of {MAX_WIDTH} bits",
             function.error
         ),
-        match reached {
-            Some(error) => format!("set result.error to {error}, or {fewer}"),
-            None => fewer.to_owned(),
-        },
     ))
 }
 
@@ -174,7 +163,7 @@ fn attempt_reduced(function: &TargetFunction, wish: Wish) -> Result<Option<Piece
             "with a reduction, Glint computes every operand, and the domain has more than 2^{MOST_BITS} \
              operands"
         );
-        return Err(Refusal::new(KEY, message, WIDE_REMEDY));
+        return Err(Refusal::of_reduction(UnsuitedReduction::ManyOperands, message));
     }
     for &(guard, wider) in variants(wish.identity) {
         let (reduction, inner) = Reduction::of(wish.identity, function, guard, wider)?;

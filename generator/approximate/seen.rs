@@ -4,7 +4,7 @@
 
 use rayon::prelude::*;
 
-use super::{Numbering, Reduction, Refusal, TargetFunction};
+use super::{Numbering, Reduction, Refusal, RefusalKind, TargetFunction};
 use glint_base::fixed::{Format, exp2, nearest};
 
 /// The largest number of operands that the search evaluates. For a larger domain, the search takes evenly spaced operands.
@@ -72,8 +72,7 @@ impl TargetFunction {
         let limits = self.limits(raw).map_err(|fault| self.refusal(raw, &fault))?;
         if limits.low.abs().max(limits.high.abs()) > exp2(48) {
             let message = format!("at the raw operand {raw}, the result has more than 48 bits");
-            let remedy = "set fewer fraction bits, or another domain";
-            return Err(Refusal::new("result.fraction", message, remedy));
+            return Err(Refusal::new(RefusalKind::ResultBits, message));
         }
         let error = self.error - stricter;
         let nearest = nearest(limits.middle()) as i64;

@@ -11,7 +11,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use rayon::prelude::*;
 
-use super::{Curve, Piecewise, Refusal, TargetFunction, WIDE_REMEDY};
+use super::{Curve, Piecewise, Refusal, RefusalKind, TargetFunction};
 use glint_base::fixed::exp2;
 use glint_base::interval::{self, Interval};
 use glint_formula::Enclosure;
@@ -121,7 +121,7 @@ impl Piecewise {
         for (sum, format) in walk.sums.iter().zip(&self.sums).skip(1) {
             if !format.holds(sum.0) || !format.holds(sum.1) {
                 let message = format!("a sum with the table word {word} does not fit {format}");
-                return Err(Refusal::new("result.fraction", message, "change the formats"));
+                return Err(Refusal::new(RefusalKind::ResultBits, message));
             }
         }
         let mut bound: f64 = 0.0;
@@ -185,5 +185,5 @@ impl Piecewise {
 /// Returns the refusal of a proof that needs too many intervals.
 fn unproved() -> Refusal {
     let message = format!("the bound cannot be proved with 2^{} intervals", MOST.ilog2());
-    Refusal::new("result.error", message, WIDE_REMEDY)
+    Refusal::new(RefusalKind::Unproved, message)
 }

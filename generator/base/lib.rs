@@ -3,12 +3,12 @@
 
 pub mod codes;
 pub mod cone;
+pub mod config_error;
 pub mod diagnostic;
 pub mod fixed;
 pub mod identifier;
 pub mod input;
 pub mod interval;
-pub mod key_error;
 pub mod keywords;
 pub mod program;
 pub mod target;

@@ -5,7 +5,7 @@
 
 use glint_base::text;
 use glint_config::{Config, Shared};
-use glint_keys::expression::{Keys, found};
+use glint_keys::expression::Keys;
 use glint_plan::ProvedPlan;
 use glint_rtl::dsl::Designer;
 use glint_rtl::netlist::About;
@@ -13,30 +13,26 @@ use glint_rtl::netlist::About;
 use crate::plan::{PlanOutput, describe_plan};
 
 /// Describes the hardware of `expression`: a datapath and a microprogram for the plan of the configuration's formulas. Each
-/// result has an output port, whose name is the result's name followed by `_out`.
-///
-/// # Panics
-/// Panics if the schema's check does not accept the configuration. The caller must check the configuration first.
-pub fn describe(d: &Designer, config: &Config) {
-    let found = found(config).expect("a configuration that is checked");
+/// result has an output port, whose name is the result's name followed by `_out`. `planned` is the plan of these formulas.
+pub fn describe(d: &Designer, config: &Config, planned: &ProvedPlan) {
     let keys = Keys::of(config);
-    d.about(about(&keys, &found));
+    d.about(about(&keys, planned));
     let is_pipelined = Shared::of(config).architecture == "pipelined";
     let mut outputs = Vec::new();
     for record in &keys.results.0 {
         let doc = record.text("doc").unwrap_or_default().to_owned();
         outputs.push(PlanOutput { name: format!("{}_out", record.name), doc });
     }
-    describe_plan(d, &found.statement.operands, &found.plan, &outputs, is_pipelined);
+    describe_plan(d, &planned.statement.operands, &planned.plan, &outputs, is_pipelined);
 }
 
-fn about(keys: &Keys, found: &ProvedPlan) -> About {
+fn about(keys: &Keys, planned: &ProvedPlan) -> About {
     let mut formulas = Vec::new();
     for record in &keys.parts.0 {
         formulas.push(format!("{} = {}", record.name, record.text("formula").unwrap_or_default()));
     }
     let mut notes = Vec::new();
-    for (record, bound) in keys.results.0.iter().zip(&found.bounds) {
+    for (record, bound) in keys.results.0.iter().zip(&planned.bounds) {
         let name = &record.name;
         formulas.push(format!("{name} = {}", record.text("formula").unwrap_or_default()));
         let promise = match record.text("where") {
@@ -44,7 +40,7 @@ fn about(keys: &Keys, found: &ProvedPlan) -> About {
             None => String::new(),
         };
         let bound = text::rounded_up(*bound, 4);
-        let proof = found.proof.words();
+        let proof = planned.proof.words();
         notes.push(
             format!(
                 "The error of {name} is at most {bound} units of its last place{promise}: {proof}."

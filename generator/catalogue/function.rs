@@ -7,25 +7,21 @@
 use glint_approximate::Piecewise;
 use glint_base::text;
 use glint_config::{Config, Shared};
-use glint_keys::function::{Keys, found, operand};
-use glint_plan::ExpressionPlan;
+use glint_keys::function::{FunctionPlan, Keys, operand};
 use glint_rtl::dsl::Designer;
 use glint_rtl::netlist::About;
 
 use crate::plan::{PlanOutput, describe_plan};
 
-/// Describes the hardware of `function`: a table of coefficients, and Horner's rule with one multiplier.
-///
-/// # Panics
-/// Panics if the schema's check does not accept the configuration. The caller must check the configuration first.
-pub fn describe(d: &Designer, config: &Config) {
-    let (function, it) = found(config).expect("a configuration that is checked");
-    d.about(about(&Keys::of(config), function.proof(), &it));
-    let plan = ExpressionPlan::of_function(&function, &it).expect("a plan that was checked");
-    let operand = operand(&it);
+/// Describes the hardware of `function`: a table of coefficients, and Horner's rule with one multiplier. `planned` is the plan of
+/// the function that the configuration states.
+pub fn describe(d: &Designer, config: &Config, planned: &FunctionPlan) {
+    let polynomials = &planned.polynomials;
+    d.about(about(&Keys::of(config), planned.function.proof(), polynomials));
+    let operand = operand(polynomials);
     let is_pipelined = Shared::of(config).architecture == "pipelined";
     let output = PlanOutput { name: "result_out".to_owned(), doc: String::new() };
-    describe_plan(d, &[operand], &plan, &[output], is_pipelined);
+    describe_plan(d, &[operand], &planned.plan, &[output], is_pipelined);
 }
 
 fn about(keys: &Keys, proof: &str, it: &Piecewise) -> About {

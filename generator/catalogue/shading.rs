@@ -8,19 +8,14 @@
 use super::{blinn, cosine_power, dot_product, function, gauss, quadratic, schlick, threshold};
 use glint_base::fixed::{Overflow, Rounding};
 use glint_config::Config;
-use glint_keys::shading::{HighlightDevice, Keys};
+use glint_keys::shading::{HighlightDevice, HighlightPart, Keys, LightParts};
 use glint_rtl::dsl::{About, Designer, Signal};
 
 /// Describes the hardware of `shading`: its parts, which are other devices, and the sum of ambient, diffuse and specular light
-/// for each colour.
-///
-/// # Panics
-/// Panics if the schema's check does not accept the configuration. The caller must check the configuration first.
-pub fn describe<'d>(d: &'d Designer, config: &Config) {
+/// for each colour. `parts` has the configurations of the parts.
+pub fn describe<'d>(d: &'d Designer, config: &Config, parts: &LightParts) {
     let keys = Keys::of(config);
-    let parts = keys.parts().unwrap_or_else(|(part, _)| panic!("`{part}` is checked"));
     d.about(about(&keys));
-    let highlight_part = highlight_part(&keys);
     let vector = |name: &str, suffix: &str, doc: &str, format| {
         ["x", "y", "z"].map(|axis| {
             let operand = d.operand(&format!("{name}{axis}{suffix}"), format);
@@ -68,8 +63,8 @@ pub fn describe<'d>(d: &'d Designer, config: &Config) {
         given.extend(exponent.map(|it| ("exponent", it)));
         given.extend(["red", "green", "blue"].into_iter().zip(guarded));
         let part = |given: &[(&str, Signal<'d>)]| {
-            let describe = highlight_part.describe;
-            d.instance(&format!("highlight{suffix}"), |d| describe(d, &parts.highlight), given)
+            let name = format!("highlight{suffix}");
+            d.instance(&name, |d| describe_highlight(d, &keys, &parts.highlight), given)
         };
         if keys.has_exponent() {
             let highlight = part(&given);
@@ -102,40 +97,44 @@ pub fn describe<'d>(d: &'d Designer, config: &Config) {
     d.dataflow();
 }
 
-/// The hardware description of a highlight device, with its formula.
-struct HighlightPart {
-    describe: fn(&Designer, &Config),
-    /// The reflectance f as a function of the cosine c and the exponent n. For example, `c^n`.
-    formula: String,
+/// Describes the hardware of the part that computes the highlight.
+fn describe_highlight(d: &Designer, keys: &Keys, part: &HighlightPart) {
+    let config = match part {
+        HighlightPart::OfExponent(config) => config,
+        HighlightPart::OfFormula(config, planned) => return function::describe(d, config, planned),
+    };
+    match keys.highlight {
+        HighlightDevice::CosinePower => cosine_power::describe(d, config),
+        HighlightDevice::Blinn => blinn::describe(d, config),
+        HighlightDevice::Schlick => schlick::describe(d, config),
+        HighlightDevice::Gauss => gauss::describe(d, config),
+        HighlightDevice::Quadratic => quadratic::describe(d, config),
+        HighlightDevice::Threshold => threshold::describe(d, config),
+        HighlightDevice::Function => unreachable!("a formula has a plan"),
+    }
 }
 
-/// Returns the highlight device that the key `highlight` names.
-fn highlight_part(keys: &Keys) -> HighlightPart {
+/// Returns the reflectance f as a function of the cosine c and the exponent n. For example, `c^n`.
+fn highlight_formula(keys: &Keys) -> String {
     let power = keys.power;
-    let (describe, formula): (fn(&Designer, &Config), String) = match keys.highlight {
-        HighlightDevice::CosinePower => (
-            cosine_power::describe,
-            format!("max(0, n/{power}*(c - 1) + 1)^{power} where c > 0, else 0"),
-        ),
-        HighlightDevice::Blinn => (blinn::describe, "c^n".to_owned()),
-        HighlightDevice::Schlick => (schlick::describe, "c/(n - n*c + c)".to_owned()),
-        HighlightDevice::Gauss => {
-            (gauss::describe, "exp(-n*acos(c)^2/2) where c > 0, else 0".to_owned())
+    let formula = match keys.highlight {
+        HighlightDevice::CosinePower => {
+            return format!("max(0, n/{power}*(c - 1) + 1)^{power} where c > 0, else 0");
         }
-        HighlightDevice::Quadratic => {
-            (quadratic::describe, "max(0, c - a(n)*(c - c^2))".to_owned())
+        HighlightDevice::Function => return format!("{} with x = c", keys.formula),
+        HighlightDevice::Blinn => "c^n",
+        HighlightDevice::Schlick => "c/(n - n*c + c)",
+        HighlightDevice::Gauss => "exp(-n*acos(c)^2/2) where c > 0, else 0",
+        HighlightDevice::Quadratic => "max(0, c - a(n)*(c - c^2))",
+        HighlightDevice::Threshold => {
+            "max(0, n/2*(c - 1) + 1)^2 where that reaches ROM(n) and c > 0, else 0"
         }
-        HighlightDevice::Threshold => (
-            threshold::describe,
-            "max(0, n/2*(c - 1) + 1)^2 where that reaches ROM(n) and c > 0, else 0".to_owned(),
-        ),
-        HighlightDevice::Function => (function::describe, format!("{} with x = c", keys.formula)),
     };
-    HighlightPart { describe, formula }
+    formula.to_owned()
 }
 
 fn about(keys: &Keys) -> About {
-    let f = highlight_part(keys).formula;
+    let f = highlight_formula(keys);
     let cosine = |other: &str| match keys.two_sided {
         true => format!("min(1, abs(N.{other}))"),
         false => format!("min(1, max(0, N.{other}))"),

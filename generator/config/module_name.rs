@@ -2,7 +2,7 @@
 //! `2fast` begins with a digit.
 
 use super::problems::quoted;
-use glint_base::key_error::KeyError;
+use glint_base::config_error::ConfigError;
 use glint_base::keywords::is_keyword;
 
 /// The largest number of characters of a name. Derived modules and files append endings to the name.
@@ -10,13 +10,13 @@ const LONGEST: usize = 60;
 
 /// Checks a module name. Returns `None` if the name has 1 to 60 ASCII letters, digits and `_`, does not begin with a digit, and
 /// is no keyword of Verilog or SystemVerilog. Otherwise returns the error, with a similar valid name in the remedy.
-pub(super) fn error(name: &str) -> Option<KeyError> {
+pub(super) fn error(name: &str) -> Option<ConfigError> {
     let message = complaint(name)?;
     let remedy = format!(
         "give a Verilog identifier of at most {LONGEST} letters, digits and _, as \"{}\"",
         legalised(name)
     );
-    Some(KeyError::new("name", message, remedy))
+    Some(ConfigError::new("name", message, remedy))
 }
 
 fn complaint(name: &str) -> Option<String> {

@@ -13,11 +13,12 @@ use super::other_words;
 use super::points;
 use super::problems::{Problems, STANDARD_INPUT, Violation, out_of_range, quoted, shown};
 use super::schema::{Key, KeyKind, Schema};
+use super::source::ConfigSource;
 use super::text_pattern::{TextPattern, is_path_of_points};
 use super::unknown::{UnknownName, common_names, keys_of, suggestion};
 use super::validate::Draft;
 use super::values::{Config, TableEntries, TableEntry, Value};
-use glint_base::key_error::KeyError;
+use glint_base::config_error::ConfigError;
 use glint_base::program::Program;
 
 /// Parses a configuration from the text of a TOML file.
@@ -30,19 +31,18 @@ use glint_base::program::Program;
 /// Fails if the text has any problem. The error lists all problems at once, at most 200. Conditions between keys are checked only
 /// if the text is valid TOML and names a device, because otherwise some keys of the file are unknown.
 pub fn parse(file_name: &str, text: &str, schemas: &[Schema]) -> Result<Config, Problems> {
-    located(file_name, text, schemas).map(|(config, _)| config)
+    parse_located(file_name, text, schemas).map(|(config, _)| config)
 }
 
-/// Parses a text as [`parse`] does. Also returns an empty list of problems that knows the location of each key in the text, for
-/// problems that are found later.
+/// Parses a text as [`parse`] does. Also returns the location of each key in the text, for errors that are found later.
 ///
 /// # Errors
 /// Fails as [`parse`] does.
-pub(super) fn located(
+pub fn parse_located(
     file_name: &str,
     text: &str,
     schemas: &[Schema],
-) -> Result<(Config, Problems), Problems> {
+) -> Result<(Config, ConfigSource), Problems> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut problems = Problems::of_file(file_name, text);
     if text.trim().is_empty() {
@@ -102,7 +102,7 @@ impl TomlReader<'_> {
             let message = format!("not valid TOML: {message}");
             (message, "write one `key = value` or one `[table]` in each line")
         };
-        self.problems.push_error_at(span, KeyError::new("", message, remedy));
+        self.problems.push_error_at(span, ConfigError::new("", message, remedy));
     }
 
     /// Returns the number of the line that contains the byte `offset`, counted from 0.
@@ -129,7 +129,7 @@ impl TomlReader<'_> {
         document: &DeTable,
         file_name: &str,
         schemas: &[Schema],
-    ) -> Result<(Config, Problems), Problems> {
+    ) -> Result<(Config, ConfigSource), Problems> {
         let schema = self.device(document, schemas);
         let name = self.name(document, file_name);
         let strict = self.strict(document);
@@ -140,8 +140,8 @@ impl TomlReader<'_> {
         draft.config.strict = strict;
         self.table(document, "", schema, &mut draft);
         if self.valid_toml {
-            let locations = self.problems.cleared();
-            Ok((draft.finish(schema, self.problems)?, locations))
+            let source = self.problems.source().clone();
+            Ok((draft.finish(schema, self.problems)?, source))
         } else {
             Err(self.problems)
         }
@@ -293,7 +293,7 @@ impl TomlReader<'_> {
             {
                 let points = points::read(&self.directory.join(&**path));
                 points.map(Value::Text).map_err(|(message, remedy)| {
-                    let error = KeyError::new(key.name, message, remedy);
+                    let error = ConfigError::new(key.name, message, remedy);
                     vec![Violation { entry: None, error }]
                 })
             }
@@ -474,11 +474,11 @@ impl TomlReader<'_> {
 
     /// Adds a problem, unless the first line of `span` has a syntax error.
     fn report(&mut self, key: &str, span: Range<usize>, message: String, remedy: String) {
-        self.report_error(span, KeyError::new(key, message, remedy));
+        self.report_error(span, ConfigError::new(key, message, remedy));
     }
 
     /// Adds an error, unless the first line of `span` has a syntax error.
-    fn report_error(&mut self, span: Range<usize>, error: KeyError) {
+    fn report_error(&mut self, span: Range<usize>, error: ConfigError) {
         if !self.broken.contains(&self.line(span.start)) {
             self.problems.push_error_at(span, error);
         }

@@ -1,14 +1,15 @@
 //! Collects the mistakes of a configuration file, each with a remedy, and with its location if the mistake has one. A missing
 //! key has none. The list has at most 200 mistakes; further mistakes are only counted.
 
-use std::collections::BTreeMap;
 use std::fmt;
 use std::ops::Range;
 
 use annotate_snippets::{AnnotationKind, Level, Origin, Renderer, Snippet};
 use serde_json::{Value as Json, json};
 
-use glint_base::key_error::KeyError;
+use glint_base::config_error::ConfigError;
+
+use super::source::ConfigSource;
 
 /// The mistakes of one configuration file, in the order of their locations. The list has at most 200 mistakes; further mistakes
 /// are only counted.
@@ -16,10 +17,7 @@ use glint_base::key_error::KeyError;
 /// `Display` shows each mistake with its lines of the file in plain text. [`Problems::to_json`] returns JSON for scripts.
 #[derive(Clone, Debug, Default)]
 pub struct Problems {
-    file: String,
-    text: String,
-    /// The location of each key in the file, as a range of bytes. [`Problems::push`] uses it.
-    locations: BTreeMap<String, Range<usize>>,
+    source: ConfigSource,
     list: Vec<Problem>,
     /// The number of mistakes beyond the limit of the list.
     further: usize,
@@ -37,9 +35,7 @@ const LIMIT: usize = 200;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Problem {
     /// The key, the message and the remedy.
-    pub error: KeyError,
-    /// The range of bytes in the text of the key's value, if the mistake concerns only a part of the text.
-    pub place: Option<Range<usize>>,
+    pub error: ConfigError,
     /// The range of bytes in the file. `None` if the mistake is something that the file does not contain.
     span: Option<Range<usize>>,
 }
@@ -47,61 +43,49 @@ pub struct Problem {
 impl Problems {
     /// Makes an empty list of problems for a file with this name and text.
     pub(super) fn of_file(file: &str, text: &str) -> Self {
-        Problems { file: file.to_owned(), text: text.to_owned(), ..Problems::default() }
+        Self::of_source(ConfigSource::new(file, text))
+    }
+
+    /// Makes an empty list of problems for a file.
+    pub(super) fn of_source(source: ConfigSource) -> Self {
+        Problems { source, ..Problems::default() }
+    }
+
+    /// Returns the file, with the keys that are located so far.
+    pub(super) fn source(&self) -> &ConfigSource {
+        &self.source
     }
 
     /// Adds a mistake of a key. The report shows the location of the key in the file, or only the name of the file if the file
     /// does not set the key.
     pub fn push(&mut self, key: &str, message: impl Into<String>, remedy: impl Into<String>) {
-        self.push_error(KeyError::new(key, message, remedy));
+        self.push_error(ConfigError::new(key, message, remedy));
     }
 
-    /// Adds a mistake of a key as [`Problems::push`] does, in the form of an error.
-    pub fn push_error(&mut self, error: KeyError) {
-        let span = self.locations.get(&error.key).cloned();
-        self.insert(Problem { error, place: None, span });
-    }
-
-    /// Adds a mistake that concerns some bytes of a key's text. The report marks these bytes if the file contains the text
-    /// literally, in quotes and without escapes. Otherwise, and if `bytes` is `None`, the report marks the whole value.
-    pub fn push_within(
-        &mut self,
-        key: &str,
-        bytes: Option<Range<usize>>,
-        message: impl Into<String>,
-        remedy: impl Into<String>,
-    ) {
-        let whole = self.locations.get(key).cloned();
-        let within = whole.clone().zip(bytes.clone()).and_then(|(whole, bytes)| {
-            // This works only for a text between quotes without escapes. If something is missing at the end of the text, the
-            // span is the closing quote.
-            let text = self.text.get(whole.clone())?;
-            let plain = text.starts_with(['"', '\''])
-                && !text.starts_with("\"\"\"")
-                && !text.contains('\\');
-            let from = whole.start + 1 + bytes.start;
-            plain.then_some(from..(whole.start + 1 + bytes.end).max(from + 1))
-        });
-        let error = KeyError::new(key, message, remedy);
-        self.insert(Problem { error, place: bytes, span: within.or(whole) });
+    /// Adds the mistake `error` of a key. If the error concerns some bytes of the key's text, the report marks these bytes,
+    /// provided that the file contains the text literally, in quotes and without escapes. Otherwise the report marks the whole
+    /// value.
+    pub fn push_error(&mut self, error: ConfigError) {
+        let span = self.source.span_of(&error);
+        self.insert(Problem { error, span });
     }
 
     /// Adds an error with the location `span`, a range of bytes in the file.
-    pub(super) fn push_error_at(&mut self, span: Range<usize>, error: KeyError) {
+    pub(super) fn push_error_at(&mut self, span: Range<usize>, error: ConfigError) {
         // If something is missing at the end of the text, the report marks the last line, and no line below it.
-        let end = self.text.trim_end_matches(['\r', '\n']).len();
+        let end = self.source.text.trim_end_matches(['\r', '\n']).len();
         let span = span.start.min(end)..span.end.min(end);
-        self.insert(Problem { error, place: None, span: Some(span) });
+        self.insert(Problem { error, span: Some(span) });
     }
 
     /// Records the location of a key in the file.
     pub(super) fn locate(&mut self, key: &str, span: Range<usize>) {
-        self.locations.insert(key.to_owned(), span);
+        self.source.locate(key, span);
     }
 
     /// Returns whether the configuration file sets the key `key`.
     pub fn gives(&self, key: &str) -> bool {
-        self.locations.contains_key(key)
+        self.source.gives(key)
     }
 
     /// Returns a list for the same file and with the same locations, but without problems. A check can fill this list for a
@@ -152,26 +136,13 @@ impl Problems {
 
     /// Returns the name of the file as the caller gave it, or an empty text.
     pub fn file(&self) -> &str {
-        &self.file
+        &self.source.file
     }
 
     /// Returns the line and the column of a mistake in this list, both counted from 1. Columns count characters. Returns `None`
     /// if the mistake has no location.
     pub fn position(&self, problem: &Problem) -> Option<(usize, usize)> {
-        self.line_and_column(problem.start()?)
-    }
-
-    /// Returns the line and the column at which the file sets `key`, counted as in [`Problems::position`]. Returns `None` if
-    /// the file does not set the key.
-    pub fn place(&self, key: &str) -> Option<(usize, usize)> {
-        self.line_and_column(self.locations.get(key)?.start)
-    }
-
-    fn line_and_column(&self, at: usize) -> Option<(usize, usize)> {
-        let before = self.text.get(..at)?;
-        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
-        let line = before.matches('\n').count() + 1;
-        Some((line, before[line_start..].chars().count() + 1))
+        self.source.line_and_column(problem.start()?)
     }
 
     /// Returns a JSON array with one object per problem: `file`, `line` and `column` (null without a location), `key` (null if
@@ -181,7 +152,7 @@ impl Problems {
             let (line, column) = self.position(problem).unzip();
             let error = &problem.error;
             json!({
-                "file": self.file,
+                "file": self.source.file,
                 "line": line,
                 "column": column,
                 "key": (!error.key.is_empty()).then_some(&error.key),
@@ -201,11 +172,11 @@ impl Problems {
             let group = match problem.span.clone() {
                 Some(span) => {
                     let annotation = AnnotationKind::Primary.span(span);
-                    let snippet = Snippet::source(&self.text).path(&self.file);
+                    let snippet = Snippet::source(&self.source.text).path(&self.source.file);
                     title.element(snippet.annotation(annotation)).element(help)
                 }
-                None if self.file.is_empty() => title.element(help),
-                None => title.element(Origin::path(&self.file)).element(help),
+                None if self.source.file.is_empty() => title.element(help),
+                None => title.element(Origin::path(&self.source.file)).element(help),
             };
             renderer.render(&[group])
         };
@@ -221,7 +192,7 @@ impl Problem {
     /// Returns the problem with the message that `words` makes from its message.
     pub(super) fn told(self, words: impl FnOnce(&str) -> String) -> Self {
         let message = words(&self.error.message);
-        let error = KeyError { message, ..self.error };
+        let error = ConfigError { message, ..self.error };
         Self { error, ..self }
     }
 
@@ -243,7 +214,7 @@ pub(super) struct Violation {
     /// The index of the list entry that is wrong; `None` if the error concerns the whole value.
     pub entry: Option<usize>,
     /// The key, the message and the remedy.
-    pub error: KeyError,
+    pub error: ConfigError,
 }
 
 pub(super) fn out_of_range(name: &str, given: impl std::fmt::Display) -> String {

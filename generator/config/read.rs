@@ -4,12 +4,13 @@ use std::io::{self, Read};
 use std::path::Path;
 
 use super::nearest::nearest;
-use super::parse::located;
+use super::parse::parse_located;
 use super::problems::{Problems, STANDARD_INPUT};
 use super::schema::Schema;
+use super::source::ConfigSource;
 use super::values::Config;
+use glint_base::config_error::ConfigError;
 use glint_base::input;
-use glint_base::key_error::KeyError;
 use glint_base::program::Program;
 
 /// The largest size of a configuration file in bytes. The limit protects against files that would exhaust the memory.
@@ -24,12 +25,11 @@ pub fn read(path: &Path, schemas: &[Schema]) -> Result<Config, Problems> {
     read_located(path, schemas).map(|(config, _)| config)
 }
 
-/// Reads a file as [`read`] does. Also returns an empty list of problems that knows the location of each key in the file, so
-/// that later checks can report mistakes there.
+/// Reads a file as [`read`] does. Also returns the location of each key in the file, for errors that are found later.
 ///
 /// # Errors
 /// Fails as [`read`] does.
-pub fn read_located(path: &Path, schemas: &[Schema]) -> Result<(Config, Problems), Problems> {
+pub fn read_located(path: &Path, schemas: &[Schema]) -> Result<(Config, ConfigSource), Problems> {
     let file_name = if path == Path::new(input::STDIN) {
         STANDARD_INPUT.to_owned()
     } else {
@@ -41,7 +41,7 @@ pub fn read_located(path: &Path, schemas: &[Schema]) -> Result<(Config, Problems
         problems
     })?;
     match std::str::from_utf8(&bytes) {
-        Ok(text) => located(&file_name, text, schemas),
+        Ok(text) => parse_located(&file_name, text, schemas),
         Err(error) => {
             // Up to the wrong byte, the converted text equals the file, so the location of the wrong byte is correct.
             let lossy = String::from_utf8_lossy(&bytes);
@@ -55,7 +55,7 @@ pub fn read_located(path: &Path, schemas: &[Schema]) -> Result<(Config, Problems
                 }
                 _ => "save the file as UTF-8 text",
             };
-            problems.push_error_at(start..end, KeyError::new("", message, remedy));
+            problems.push_error_at(start..end, ConfigError::new("", message, remedy));
             Err(problems)
         }
     }

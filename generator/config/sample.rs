@@ -1,5 +1,6 @@
 //! Draws random valid configurations of a device, for tests. The same seed always draws the same configuration.
 
+use glint_base::config_error::ConfigError;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
 
@@ -17,13 +18,18 @@ const REPAIRS: usize = 100;
 /// Integers, numbers, choices, flags and lists of the device are drawn from their ranges. A key with a [`Key::drawn`] range is
 /// drawn from that range. The ends of a range are drawn more often than other values. Texts, tables, keys that do not apply and
 /// the keys that every device shares keep their defaults. If the device refuses a combination, the offending key is drawn again,
-/// so that keys with narrow conditions vary too. The name of the configuration is the device's name, with `_` for `-`, and the
+/// so that keys with narrow conditions vary too. `refusal` returns the error of a configuration that the schema accepts and the
+/// device cannot have. The name of the configuration is the device's name, with `_` for `-`, and the
 /// seed. For example, seed 7 of `dot-product` gives the name `dot_product_7`.
 ///
 /// # Panics
 /// Panics if the device refuses all 1000 configurations that are drawn. The ranges of a schema must allow enough valid
 /// combinations.
-pub fn sample(schema: &Schema, seed: u64) -> Config {
+pub fn sample(
+    schema: &Schema,
+    seed: u64,
+    refusal: &dyn Fn(&Config) -> Option<ConfigError>,
+) -> Config {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let name = format!("{}_{seed}", schema.device.replace('-', "_"));
     for _ in 0..DRAWS {
@@ -35,6 +41,11 @@ pub fn sample(schema: &Schema, seed: u64) -> Config {
             config.reset_keys_without_effect(schema);
             let mut problems = Problems::default();
             (schema.check)(&config, &mut problems);
+            if problems.is_empty()
+                && let Some(error) = refusal(&config)
+            {
+                problems.push_error(error);
+            }
             if problems.is_empty() {
                 return config;
             }

@@ -13,7 +13,7 @@ use super::shared::Shared;
 use super::text_pattern::TextPattern;
 use super::unknown::UnknownName;
 use super::values::{Config, Value, is_integer};
-use glint_base::key_error::KeyError;
+use glint_base::config_error::ConfigError;
 
 impl Key {
     /// Returns the mistakes of a value; an empty list if the key accepts the value.
@@ -43,7 +43,7 @@ impl Key {
                 let message = format!("`{name}` has a line break, and a formula is a single line");
                 let remedy =
                     "write the formula in one line, or end each line of a text in \"\"\" with \\";
-                vec![Violation { entry: None, error: KeyError::new(name, message, remedy) }]
+                vec![Violation { entry: None, error: ConfigError::new(name, message, remedy) }]
             }
             (KeyKind::Text(pattern), Value::Text(given)) => self
                 .required(pattern.fits(given), || format!("`{name}` cannot be {}", quoted(given))),
@@ -118,7 +118,7 @@ impl Key {
     /// Returns a violation with this message, and with the accepted values of the key as the remedy.
     pub(super) fn violation(&self, message: String) -> Violation {
         let remedy = format!("give {} (default {})", self.accepts(), self.default.toml());
-        Violation { entry: None, error: KeyError::new(self.name, message, remedy) }
+        Violation { entry: None, error: ConfigError::new(self.name, message, remedy) }
     }
 
     fn required(&self, good: bool, message: impl FnOnce() -> String) -> Vec<Violation> {
@@ -137,7 +137,7 @@ impl Key {
             None => violation,
             Some(near) => {
                 let remedy = format!("did you mean {near}? {}", violation.error.remedy);
-                let error = KeyError { remedy, ..violation.error };
+                let error = ConfigError { remedy, ..violation.error };
                 Violation { error, ..violation }
             }
         }
@@ -317,7 +317,7 @@ fn check(schema: &Schema, draft: &Draft, problems: &mut Problems) {
         let governs = schema.key(&problem.error.key).filter(|key| !draft.given.contains(key.name));
         match governs {
             None => problem,
-            Some(key) => problem.told(|message| of_default(key, draft, message)),
+            Some(key) => problem.told(|message| of_default(key, &draft.config, message)),
         }
     });
     problems.extend(found);
@@ -325,8 +325,8 @@ fn check(schema: &Schema, draft: &Draft, problems: &mut Problems) {
 
 /// Returns the message about a key that the user did not give. The message begins with the key's value, and says that this value
 /// is the default.
-fn of_default(key: &Key, draft: &Draft, message: &str) -> String {
-    let value = draft.config.value(key.name).toml();
+pub(super) fn of_default(key: &Key, config: &Config, message: &str) -> String {
+    let value = config.value(key.name).toml();
     format!("`{}` is not set and has the default {value}: {message}", key.name)
 }
 

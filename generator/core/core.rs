@@ -13,7 +13,7 @@ use crate::package::{
     self, ContractFacts, EmitInputs, FileKind, HandshakeTiming, InstanceExample, LineClocks,
     OutputFiles, Surroundings, Vectors, WorkedExample,
 };
-use crate::registry::{DesignError, Device};
+use crate::registry::{DesignError, Device, OpenedConfig};
 use glint_base::input;
 use glint_base::program::Program;
 use glint_config::{Config, Key};
@@ -44,10 +44,8 @@ pub const BENCH_SEED: u64 = 1;
 
 /// A configuration of a device, with the netlist and the accuracy contract that are built from it.
 pub struct Core {
-    /// The device that the configuration names.
-    pub device: Device,
-    /// The configuration: a value for each key of the device.
-    pub config: Config,
+    /// The configuration, with its device and the parts that the device made for it.
+    pub opened: OpenedConfig,
     /// The netlist that the device's description builds from the configuration.
     pub design: Design,
     /// The accuracy contract of the device for this configuration: operands, formula and error bound.
@@ -69,25 +67,34 @@ impl Core {
     ///   [`Core::recomputation`].
     /// - The golden model cannot model the output registers or the operand buffers.
     pub fn new(device: Device, config: Config) -> Result<Self> {
-        let design = device.design(&config);
-        Self::of_design(device, config, design)
+        Self::build(device.open(config)?)
     }
 
-    /// Builds the core of a configuration that does not set a clock frequency. [`Device::design_with_free_clock`] chooses the
-    /// frequency.
+    /// Builds the netlist of an opened configuration and checks it, as [`Core::new`] does.
+    ///
+    /// # Errors
+    /// Fails as [`Core::new`] does.
+    pub fn build(opened: OpenedConfig) -> Result<Self> {
+        let design = opened.design();
+        Self::of_design(opened, design)
+    }
+
+    /// Builds the core of a configuration that does not set a clock frequency. [`OpenedConfig::design_with_free_clock`] chooses
+    /// the frequency.
     ///
     /// # Errors
     /// Fails if [`Core::new`] fails with that clock, too.
-    pub fn with_free_clock(device: Device, mut config: Config) -> Result<Self> {
-        let design = device.design_with_free_clock(&mut config);
-        Self::of_design(device, config, design)
+    pub fn build_with_free_clock(mut opened: OpenedConfig) -> Result<Self> {
+        let design = opened.design_with_free_clock();
+        Self::of_design(opened, design)
     }
 
-    fn of_design(
-        device: Device,
-        config: Config,
-        design: Result<Design, DesignError>,
-    ) -> Result<Self> {
+    /// Builds the core of an opened configuration and its netlist.
+    ///
+    /// # Errors
+    /// Fails if `design` is an error, and as [`Core::new`] does.
+    fn of_design(opened: OpenedConfig, design: Result<Design, DesignError>) -> Result<Self> {
+        let OpenedConfig { device, config, .. } = &opened;
         let mut design = match design {
             Ok(design) => design,
             Err(DesignError::Key(error)) => return Err(error.into()),
@@ -97,12 +104,12 @@ impl Core {
             }
         };
         if let Some(pipeline) = &design.pipeline {
-            package::check_clock(&config, pipeline)?;
+            package::check_clock(config, pipeline)?;
         }
-        package::check_rom_style(&config, &design)?;
-        device.check_golden(&config)?;
-        let contract = (device.contract)(&config);
-        device.check_contract(&config, &design, contract.as_ref())?;
+        package::check_rom_style(config, &design)?;
+        opened.check_golden()?;
+        let contract = opened.contract();
+        opened.check_contract(&design, contract.as_ref())?;
         if !device.proved && contract.bounds().are_stated() {
             // The descriptions of the catalogue state their bounds themselves, or refer to their pages.
             let note = format!(
@@ -111,17 +118,27 @@ impl Core {
             );
             design.about.notes.push(note.into());
         }
-        let asked = Surroundings::new(&config, design.pipeline.as_ref());
+        let asked = Surroundings::new(config, design.pipeline.as_ref());
         if asked.software && asked.recomputation {
             package::check_recomputation(&design.name, &ContractFacts::new(contract.as_ref()))?;
         }
-        Ok(Self { device, config, design, contract })
+        Ok(Self { opened, design, contract })
+    }
+
+    /// Returns the device that the configuration names.
+    pub fn device(&self) -> &Device {
+        &self.opened.device
+    }
+
+    /// Returns the configuration: a value for each key of the device.
+    pub fn config(&self) -> &Config {
+        &self.opened.config
     }
 
     /// Returns a digest that identifies this configuration and the version of Glint: SHA-256 of the version and the TOML text, in
     /// hexadecimal.
     pub fn digest(&self) -> String {
-        let text = self.config.to_toml(&(self.device.schema)());
+        let text = self.config().to_toml(&(self.device().schema)());
         package::digest(format!("{}\n{text}", env!("CARGO_PKG_VERSION")).as_bytes())
     }
 
@@ -129,7 +146,7 @@ impl Core {
     /// of the device, and those keys of this device alone that apply and are not at their defaults. Keys that all devices share
     /// do not change the digest. A key that is added to the device later does not change the digest while it is at its default.
     pub fn contract_digest(&self) -> String {
-        self.digest_of((self.device.schema)().keys.iter())
+        self.digest_of((self.device().schema)().keys.iter())
     }
 
     /// Returns the evidence for the contract's bound. `proofs` is the directory of records; a device whose bound is proved in the
@@ -139,7 +156,7 @@ impl Core {
     /// # Errors
     /// Fails if a record cannot be read, or does not fit the contract.
     pub fn backing(&self, proofs: &Path) -> Result<Backing> {
-        if self.device.proved {
+        if self.device().proved {
             return Ok(Backing::Catalogue);
         }
         Backing::of_records(proofs, &self.contract_digest(), self.contract.as_ref())
@@ -149,7 +166,7 @@ impl Core {
     /// [`Core::contract_digest`], and the keys that all devices share, such as the architecture. Keys of the tables `interface`
     /// and `package` do not change the digest, because these keys concern only wrappers and packages around the core.
     pub fn core_digest(&self) -> String {
-        let schema = (self.device.schema)();
+        let schema = (self.device().schema)();
         self.digest_of(schema.all_keys().filter(|key| {
             let (table, _) = key.table_and_leaf();
             !["interface", "package"].contains(&table)
@@ -157,11 +174,11 @@ impl Core {
     }
 
     fn digest_of<'k>(&self, keys: impl Iterator<Item = &'k Key>) -> String {
-        let schema = (self.device.schema)();
-        let mut text = format!("device = {}\n", self.device.name);
+        let schema = (self.device().schema)();
+        let mut text = format!("device = {}\n", self.device().name);
         for key in keys {
-            let value = self.config.value(key.name);
-            if *value != key.default && self.config.applies(&schema, key.name) {
+            let value = self.config().value(key.name);
+            if *value != key.default && self.config().applies(&schema, key.name) {
                 text += &format!("{} = {}\n", key.name, value.toml());
             }
         }
@@ -198,7 +215,7 @@ impl Core {
     /// # Errors
     /// Fails if golden model, design and contract do not have the same signals, operands and outputs.
     pub fn lockstep_of<'a>(&'a self, design: &'a Design, seed: u64) -> Result<Lockstep<'a>> {
-        let model = self.device.golden(&self.config);
+        let model = self.opened.golden();
         Lockstep::new(design, model, self.contract.as_ref(), seed)
     }
 
@@ -225,7 +242,7 @@ impl Core {
     /// # Errors
     /// Fails if golden model, design and contract do not have the same signals, operands and outputs.
     pub fn clocks(&self) -> Result<Clocks<'_>> {
-        let model = self.device.golden(&self.config);
+        let model = self.opened.golden();
         Clocks::new(&self.design, model, self.contract.as_ref())
     }
 
@@ -319,7 +336,7 @@ impl Core {
     /// Fails if the sequential design cannot be built.
     fn microprogram(&self, is_wanted: bool) -> Result<Option<Design>> {
         let wanted = is_wanted && self.design.pipeline.is_some();
-        Ok(wanted.then(|| self.device.sequential(&self.config)).transpose()?)
+        Ok(wanted.then(|| self.opened.sequential()).transpose()?)
     }
 
     /// Returns every emitted file of the configuration. `config` is the path of the configuration file, which the heads of the
@@ -329,7 +346,7 @@ impl Core {
     /// Fails if golden model and simulation differ, if a computation does not end, or if a file or wrapper that the
     /// configuration asks for does not fit the core.
     pub fn files(&self, config: &str, vectors: impl Into<Option<Vectors>>) -> Result<OutputFiles> {
-        let around = Surroundings::new(&self.config, self.design.pipeline.as_ref());
+        let around = Surroundings::new(self.config(), self.design.pipeline.as_ref());
         let sequential = self.microprogram(around.software)?;
         let inputs = EmitInputs {
             regenerate: format!("{Program} generate {}", input::label(config)),
@@ -352,7 +369,7 @@ impl Core {
     pub fn instances(&self) -> Result<Vec<InstanceExample>> {
         let inputs = EmitInputs {
             accuracy: Some(ContractFacts::new(self.contract.as_ref())),
-            around: Surroundings::new(&self.config, self.design.pipeline.as_ref()),
+            around: Surroundings::new(self.config(), self.design.pipeline.as_ref()),
             ..EmitInputs::default()
         };
         package::instances(&self.design, &inputs)
@@ -365,7 +382,7 @@ impl Core {
     /// Fails if the design cannot be written as Verilog.
     pub fn core_files(&self) -> Result<OutputFiles> {
         let around = Surroundings {
-            style: Surroundings::new(&self.config, None).style,
+            style: Surroundings::new(self.config(), None).style,
             ..Surroundings::default()
         };
         package::emit_core(&self.design, &EmitInputs { around, ..EmitInputs::default() })

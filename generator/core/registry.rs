@@ -1,28 +1,25 @@
 //! Defines the registry of devices: for each device its configuration keys, its description, its golden model and its contract.
 
 mod design_error;
+mod opened;
 mod pipeline_keys;
+mod planned;
 
-use anyhow::{Result, ensure};
+use std::path::Path;
+use std::sync::Arc;
 
-use glint_base::codes;
-use glint_base::diagnostic::Diagnostics;
+use glint_base::config_error::ConfigError;
 use glint_catalogue as devices;
-use glint_config::{Config, Schema, Shared, Value};
-use glint_golden::{self as golden, Contract, Model};
+use glint_config::{self as config, Config, ConfigSource, Problems, Schema};
+use glint_golden as golden;
 use glint_keys as keys;
-use glint_rtl::dsl::Designer;
-use glint_rtl::netlist::Design;
-use glint_rtl::pipeline::{self, PassResult};
 
 pub use design_error::DesignError;
+pub use opened::{DeviceParts, KeyParts, OpenedConfig};
 pub use pipeline_keys::CLOCK_MHZ;
 
-/// The key that asks for registers behind the results.
-const OUTPUT_REGISTERED: &str = "output.registered";
-
-/// The key that asks for buffers in front of the operand registers.
-const OPERANDS_BUFFERED: &str = "operands.buffered";
+/// The parts of a device for a configuration, or the error of the key whose value the device cannot have.
+pub type PartsResult = Result<Arc<dyn DeviceParts>, ConfigError>;
 
 /// A device that Glint can generate, simulate and check.
 ///
@@ -36,17 +33,14 @@ pub struct Device {
     pub summary: &'static str,
     /// Returns the device's own configuration keys, with their defaults.
     pub schema: fn() -> Schema,
-    /// Describes the hardware of a configuration: adds blocks and a microprogram to a designer, whose name is the name of the
-    /// module. The function must not call `finish`.
-    pub describe: fn(&Designer, &Config),
-    /// Returns the golden model of a configuration.
-    pub model: fn(&Config) -> Box<dyn Model>,
-    /// Returns the accuracy contract of a configuration.
-    pub contract: fn(&Config) -> Box<dyn Contract>,
+    /// Returns the description, golden model and contract for a configuration. A device that has nothing to find first returns
+    /// [`KeyParts`]. The function fails if the device cannot have the values of the keys together; an error that needs no long
+    /// search belongs into the check of the schema.
+    pub parts: fn(&Config) -> PartsResult,
     /// Whether the contract's bound is proved for every configuration, by a proof next to the golden model. Otherwise the bound
     /// is only the statement of the author.
     ///
-    /// A device that replaces the contract must set this field too: `Device { contract, proved: false, ..own }`.
+    /// A device that replaces the contract must set this field too: `Device { parts, proved: false, ..own }`.
     pub proved: bool,
 }
 
@@ -56,150 +50,54 @@ impl Device {
         let schema = (self.schema)();
         Config::defaults(&schema, &schema.module())
     }
-
-    /// Returns the netlist of a configuration: with a microprogram, or as a pipeline if the configuration asks for a pipeline.
-    ///
-    /// # Errors
-    /// Fails if the description has mistakes, or if the pipeline cannot be made. The error lists the mistakes, or names the key
-    /// to change.
-    pub fn design(&self, config: &Config) -> Result<Design, DesignError> {
-        let sequential = self.sequential(config)?;
-        let pipelined = pipeline_keys::pipelined(&sequential, config)?;
-        Ok(pipelined.unwrap_or(sequential))
-    }
-
-    /// Returns the netlist of a configuration that does not set a clock frequency. If a pipeline cannot reach the default of
-    /// [`CLOCK_MHZ`], the function sets this key in `config` to the fastest clock that the pipeline can reach.
-    ///
-    /// # Errors
-    /// Fails if the description has mistakes, or if the pipeline cannot be made with that clock either.
-    pub fn design_with_free_clock(&self, config: &mut Config) -> Result<Design, DesignError> {
-        let sequential = self.sequential(config)?;
-        let mut pipelined = pipeline_keys::pipelined(&sequential, config);
-        if let Err(error) = &pipelined
-            && error.key == CLOCK_MHZ
-            && let Some(nearest) = error.nearest
-        {
-            config.set(CLOCK_MHZ, Value::Number(nearest));
-            pipelined = pipeline_keys::pipelined(&sequential, config);
-        }
-        Ok(pipelined?.unwrap_or(sequential))
-    }
-
-    /// Returns the computation of a pipeline before the passes that rewrite it, and after each pass. Returns an empty list if
-    /// the configuration has a sequential architecture.
-    ///
-    /// # Errors
-    /// Fails if the description has mistakes, or if the microprogram cannot be unrolled.
-    pub fn pass_results(&self, config: &Config) -> Result<Vec<PassResult>, DesignError> {
-        let sequential = self.sequential(config)?;
-        let results = pipeline_keys::pass_results(&sequential, config)?;
-        Ok(results.unwrap_or_default())
-    }
-
-    /// Returns the sequential netlist, which executes a microprogram. [`Device::design`] makes pipelines from this netlist.
-    ///
-    /// # Errors
-    /// Fails if the description has mistakes. The error lists them.
-    pub fn sequential(&self, config: &Config) -> Result<Design, Diagnostics> {
-        let designer = Designer::new(&config.name);
-        let keys = Shared::of(config);
-        if keys.operands_buffered {
-            designer.buffer_operands();
-        }
-        (self.describe)(&designer, config);
-        if keys.output_registered {
-            designer.register_outputs();
-        }
-        if keys.operands_logic == "combinational" {
-            designer.keep_operand_logic();
-        }
-        designer.finish().map_err(|mistakes| with_key_remedies(mistakes, &keys))
-    }
-
-    /// Returns the golden model of the sequential netlist, with output registers and operand buffers if the configuration asks
-    /// for them and the model supports them.
-    pub fn golden(&self, config: &Config) -> Box<dyn Model> {
-        let mut model = (self.model)(config);
-        // A model that lacks the registers or buffers differs from the design, and the comparison reports the difference.
-        if config.flag(OUTPUT_REGISTERED) {
-            model = model.with_output_registers().unwrap_or(model);
-        }
-        if config.flag(OPERANDS_BUFFERED) {
-            model = model.with_operand_buffers().unwrap_or(model);
-        }
-        model
-    }
-
-    /// Checks whether the golden model supports the keys of the configuration.
-    ///
-    /// # Errors
-    /// Fails if the configuration asks for output registers or operand buffers, and the golden model does not model them.
-    pub fn check_golden(&self, config: &Config) -> Result<()> {
-        let model = (self.model)(config);
-        ensure!(
-            !config.flag(OUTPUT_REGISTERED) || model.with_output_registers().is_some(),
-            "the golden model of `{}` does not model output registers (`Model::with_output_registers`): \
-             remove {OUTPUT_REGISTERED}",
-            self.name
-        );
-        ensure!(
-            !config.flag(OPERANDS_BUFFERED) || model.with_operand_buffers().is_some(),
-            "the golden model of `{}` does not model operand buffers (`Model::with_operand_buffers`): remove \
-             {OPERANDS_BUFFERED}",
-            self.name
-        );
-        Ok(())
-    }
-
-    /// Checks that the contract can describe the results of the device.
-    ///
-    /// # Errors
-    /// Fails if [`Contract::check`] fails, for example because the golden model never shows a result, or because the formula
-    /// gives too few values. Fails also if results depend on values that an earlier computation left.
-    pub fn check_contract(
-        &self,
-        config: &Config,
-        design: &Design,
-        contract: &dyn Contract,
-    ) -> Result<()> {
-        contract.check().map_err(anyhow::Error::msg)?;
-        let carried = if design.pipeline.is_some() {
-            // The design is a pipeline, and no pipeline can be made from a description that carries values over.
-            None
-        } else if config.flag(OPERANDS_BUFFERED) {
-            // The value in a buffer is an operand, and not a value that an earlier computation left.
-            let designer = Designer::new(&config.name);
-            (self.describe)(&designer, config);
-            pipeline::carried(&designer.finish()?)
-        } else {
-            pipeline::carried(design)
-        };
-        match carried {
-            None => Ok(()),
-            Some(carried) => Err(anyhow::Error::new(Diagnostics(vec![carried])).context(format!(
-                "the results of `{}` must depend only on the operands of their own point, because the \
-                 contract states them so",
-                self.name
-            ))),
-        }
-    }
 }
 
-/// Makes a list of devices from the modules with their keys, description and golden model, each with its name and summary.
+/// Makes a list of devices from the modules with their keys, description and golden model, each with its name and summary. The
+/// functions of these modules read all that they need from the keys.
 macro_rules! of_catalogue {
     ($($module:ident: $name:literal, $summary:literal;)*) => {
         vec![$(Device {
             name: $name,
             summary: $summary,
             schema: keys::$module::schema,
-            describe: devices::$module::describe,
-            model: golden::$module::model,
-            contract: golden::$module::contract,
+            parts: |_| {
+                Ok(Arc::new(KeyParts {
+                    describe: devices::$module::describe,
+                    model: golden::$module::model,
+                    contract: golden::$module::contract,
+                }))
+            },
             proved: true,
         }),*]
     };
 }
+
+/// The device `function`.
+const FUNCTION: Device = Device {
+    name: "function",
+    summary: "any formula of one operand, by piecewise polynomials with a proved error",
+    schema: keys::function::schema,
+    parts: planned::function,
+    proved: true,
+};
+
+/// The device `expression`.
+const EXPRESSION: Device = Device {
+    name: "expression",
+    summary: "formulas of up to eight operands, by integer operations with a proved error",
+    schema: keys::expression::schema,
+    parts: planned::expression,
+    proved: true,
+};
+
+/// The device `shading`.
+const SHADING: Device = Device {
+    name: "shading",
+    summary: "ambient + diffuse*N.L + specular*highlight, from normals of any length",
+    schema: keys::shading::schema,
+    parts: planned::shading,
+    proved: true,
+};
 
 /// The devices that a command line offers.
 #[derive(Clone)]
@@ -225,8 +123,8 @@ impl Registry {
             schlick: "schlick", "Schlick's function, c / (n - n*c + c), by a divider (seed 002)";
             blinn: "blinn", "cos(gamma)^n itself, by tables of -log2 and 2^-x (seeds 000 to 002)";
             gauss: "gauss", "exp(-n*gamma^2/2), by tables of gamma^2 and 2^-x (seed 002)";
-            function: "function", "any formula of one operand, by piecewise polynomials with a proved error";
         ])
+        .with(FUNCTION)
     }
 
     /// Returns a registry with all devices of Glint: the catalogue, and the devices without records in this repository, for
@@ -236,10 +134,8 @@ impl Registry {
         all.0.extend(of_catalogue![
             normaliser: "normaliser", "(x, y, z)/sqrt(x^2 + y^2 + z^2), by a table of inverse roots";
             dot_product: "dot-product", "max(0, N.H) of a normal of any length, the cosine that highlights start from";
-            expression: "expression", "formulas of up to eight operands, by integer operations with a proved error";
-            shading: "shading", "ambient + diffuse*N.L + specular*highlight, from normals of any length";
         ]);
-        all
+        all.with(EXPRESSION).with(SHADING)
     }
 
     /// Adds a device to the registry.
@@ -259,21 +155,40 @@ impl Registry {
         self.0.iter().find(|device| device.name == name)
     }
 
+    /// Reads a configuration file and opens the configuration. Also returns the location of each key in the file, for errors that
+    /// are found later.
+    ///
+    /// # Errors
+    /// Fails as [`config::read`] does, or if the device cannot have the configuration ([`Device::open`]).
+    pub fn read(&self, path: &Path) -> Result<(OpenedConfig, ConfigSource), Problems> {
+        self.opened(config::read_located(path, &self.schemas())?)
+    }
+
+    /// Parses the text of a configuration file and opens the configuration, as [`Registry::read`] does. Messages show `file_name`.
+    ///
+    /// # Errors
+    /// Fails as [`config::parse`] does, or if the device cannot have the configuration ([`Device::open`]).
+    pub fn parse(
+        &self,
+        file_name: &str,
+        text: &str,
+    ) -> Result<(OpenedConfig, ConfigSource), Problems> {
+        self.opened(config::parse_located(file_name, text, &self.schemas())?)
+    }
+
+    fn opened(
+        &self,
+        (config, source): (Config, ConfigSource),
+    ) -> Result<(OpenedConfig, ConfigSource), Problems> {
+        let device = self.device(&config.device).expect("the schemas are those of the devices");
+        match device.open(config.clone()) {
+            Ok(opened) => Ok((opened, source)),
+            Err(error) => Err(source.refusal(&(device.schema)(), &config, error)),
+        }
+    }
+
     /// Returns the configuration keys of all devices.
     pub fn schemas(&self) -> Vec<Schema> {
         self.0.iter().map(|device| (device.schema)()).collect()
     }
-}
-
-/// Completes the messages about mistakes that come from a key of the configuration: the user can also leave out this key.
-fn with_key_remedies(mut mistakes: Diagnostics, keys: &Shared) -> Diagnostics {
-    for mistake in &mut mistakes.0 {
-        if mistake.code == codes::OUTPUT_REGISTER && keys.output_registered {
-            mistake.message += &format!(", or remove {OUTPUT_REGISTERED} from the configuration");
-        }
-        if mistake.code == codes::BUFFER && keys.operands_buffered {
-            mistake.message += &format!(": remove {OPERANDS_BUFFERED} from the configuration");
-        }
-    }
-    mistakes
 }

@@ -9,33 +9,24 @@ use super::device::{self, Formula};
 use super::plan::plan_device;
 use super::{ComputedPart, Contract, Model, Term};
 use glint_base::fixed::{Format, exp2};
-use glint_config::Config;
 use glint_formula::{Comparison, Enclosure, RBig};
-use glint_keys::expression::found;
 use glint_plan::{NodeId, Operation, ProvedPlan, StatedOverflow, StatedWidth};
 
-/// Returns the device that executes the plan `found`, with the operands and results of its statement.
-fn device(found: &ProvedPlan) -> device::Device {
-    let results = found.statement.results.iter();
+/// Returns the device that executes the plan `planned`, with the operands and results of its statement.
+fn device(planned: &ProvedPlan) -> device::Device {
+    let results = planned.statement.results.iter();
     let outputs: Vec<String> = results.map(|result| format!("{}_out", result.name)).collect();
-    plan_device(&found.statement.operands, &found.plan, &outputs)
+    plan_device(&planned.statement.operands, &planned.plan, &outputs)
 }
 
-/// Returns the golden model of the device `expression` for a configuration.
-///
-/// # Panics
-/// Panics if the check of the schema has not accepted the configuration. The caller must check it first.
-pub fn model(config: &Config) -> Box<dyn Model> {
-    device(&found(config).expect("a configuration that is checked")).model()
+/// Returns the golden model of the device `expression` for the plan of its formulas.
+pub fn model(planned: &ProvedPlan) -> Box<dyn Model> {
+    device(planned).model()
 }
 
-/// Returns the accuracy contract of the device `expression` for a configuration.
-///
-/// # Panics
-/// Panics as [`model`] does.
-pub fn contract(config: &Config) -> Box<dyn Contract> {
-    let found = found(config).expect("a configuration that is checked");
-    device(&found).contract(ProvedFormulas { found })
+/// Returns the accuracy contract of the device `expression` for the plan of its formulas.
+pub fn contract(planned: &Arc<ProvedPlan>) -> Box<dyn Contract> {
+    device(planned).contract(ProvedFormulas { planned: planned.clone() })
 }
 
 /// Returns the two numbers nearest to a format that differ from `value` by a multiple of the format's range. The first is in
@@ -53,13 +44,13 @@ const MOST_PARTS: u32 = 20_000;
 
 /// The formulas of the configuration, with the plan and with the bound that was proved for each formula.
 struct ProvedFormulas {
-    found: Arc<ProvedPlan>,
+    planned: Arc<ProvedPlan>,
 }
 
 impl ProvedFormulas {
     /// Returns whether no formula and no condition has more than [`MOST_PARTS`] parts.
     fn is_writable(&self) -> bool {
-        self.found.statement.results.iter().all(|result| {
+        self.planned.statement.results.iter().all(|result| {
             let promise = result.promise.iter();
             let mut sides = promise.flat_map(|it| [it.left.size(), it.right.size()]);
             result.target().size() <= MOST_PARTS && sides.all(|size| size <= MOST_PARTS)
@@ -69,7 +60,7 @@ impl ProvedFormulas {
     /// Returns the values of the operands by name, as intervals of a single number.
     fn enclosed(&self, operands: &[f64]) -> Vec<(&str, Enclosure)> {
         let mut named = Vec::with_capacity(operands.len());
-        for (operand, value) in self.found.statement.operands.iter().zip(operands) {
+        for (operand, value) in self.planned.statement.operands.iter().zip(operands) {
             named.push((operand.name.as_str(), Enclosure::exactly(operand.computed(*value))));
         }
         named
@@ -78,7 +69,7 @@ impl ProvedFormulas {
     /// Returns the values of the operands by name, as rational numbers.
     fn rational(&self, operands: &[f64]) -> Vec<(&str, RBig)> {
         let mut named = Vec::with_capacity(operands.len());
-        for (operand, value) in self.found.statement.operands.iter().zip(operands) {
+        for (operand, value) in self.planned.statement.operands.iter().zip(operands) {
             let value =
                 RBig::try_from(operand.computed(*value)).expect("an operand is a finite number");
             named.push((operand.name.as_str(), value));
@@ -91,8 +82,8 @@ impl Formula for ProvedFormulas {
     /// Returns the values of the formulas, in the order of the outputs; NaN for a formula without a value, such as 1 / 0.
     fn exact(&self, operands: &[f64]) -> Vec<f64> {
         let enclosed = self.enclosed(operands);
-        let mut values = Vec::with_capacity(self.found.statement.results.len());
-        for result in &self.found.statement.results {
+        let mut values = Vec::with_capacity(self.planned.statement.results.len());
+        for result in &self.planned.statement.results {
             let value = result.value(&enclosed, || self.rational(operands));
             values.push(value.map_or(f64::NAN, Enclosure::middle));
         }
@@ -100,7 +91,7 @@ impl Formula for ProvedFormulas {
     }
 
     fn right_values(&self, value: f64, output: usize) -> [f64; 2] {
-        match &self.found.statement.results[output].width {
+        match &self.planned.statement.results[output].width {
             Some(StatedWidth { format, overflow: StatedOverflow::Wrap }) => {
                 values_in_format(value, *format)
             }
@@ -109,7 +100,7 @@ impl Formula for ProvedFormulas {
     }
 
     fn is_promised(&self, operands: &[f64], output: usize) -> bool {
-        let result = &self.found.statement.results[output];
+        let result = &self.planned.statement.results[output];
         result.promise.is_none() || result.is_promised(&self.enclosed(operands)) != Some(false)
     }
 
@@ -118,7 +109,7 @@ impl Formula for ProvedFormulas {
     /// operands.
     fn results(&self, operands: &[i64], raw: &mut Vec<i64>) -> bool {
         let mut computed = Vec::with_capacity(operands.len());
-        for (operand, raw) in self.found.statement.operands.iter().zip(operands) {
+        for (operand, raw) in self.planned.statement.operands.iter().zip(operands) {
             let (low, high) = operand.domain;
             let raw = operand.computed_raw(*raw);
             if !(low..=high).contains(&raw) {
@@ -126,8 +117,8 @@ impl Formula for ProvedFormulas {
             }
             computed.push(raw);
         }
-        let values = self.found.plan.values(&computed);
-        for result in &self.found.plan.results {
+        let values = self.planned.plan.values(&computed);
+        for result in &self.planned.plan.results {
             raw.push(values[result.0] as i64);
         }
         true
@@ -135,7 +126,7 @@ impl Formula for ProvedFormulas {
 
     /// Returns the terms of the bound of a result: the rounding of the result, and everything before it.
     fn terms(&self, output: usize) -> Vec<Term> {
-        let bound = self.found.bounds[output];
+        let bound = self.planned.bounds[output];
         let rounding = bound.min(0.5);
         vec![
             Term { key: "results", what: "rounding of the result", units: rounding },
@@ -149,7 +140,7 @@ impl Formula for ProvedFormulas {
 
     /// Returns the operations of the plan as parts, without operands and exact constants.
     fn parts(&self) -> Vec<ComputedPart> {
-        let plan = &self.found.plan;
+        let plan = &self.planned.plan;
         let mut parts = Vec::new();
         for (at, node) in plan.nodes.iter().enumerate() {
             let is_given = match node.operation {
@@ -164,7 +155,7 @@ impl Formula for ProvedFormulas {
                 name: node.name.clone(),
                 words: plan.words(NodeId(at)),
                 format: node.format,
-                shares: self.found.shares.iter().map(|of_result| of_result[at]).collect(),
+                shares: self.planned.shares.iter().map(|of_result| of_result[at]).collect(),
                 cells: plan.cells(NodeId(at)),
                 products: plan.products(NodeId(at)),
             });
@@ -173,7 +164,7 @@ impl Formula for ProvedFormulas {
     }
 
     fn limit(&self, output: usize) -> f64 {
-        self.found.statement.results[output].error
+        self.planned.statement.results[output].error
     }
 
     /// Returns the formulas as Python, or an empty list if they are too long to be written out. In the text, each use of a
@@ -182,7 +173,7 @@ impl Formula for ProvedFormulas {
         if !self.is_writable() {
             return Vec::new();
         }
-        let results = self.found.statement.results.iter();
+        let results = self.planned.statement.results.iter();
         results.map(|result| result.target().python()).collect()
     }
 
@@ -190,13 +181,13 @@ impl Formula for ProvedFormulas {
         if !self.is_writable() {
             return None;
         }
-        let results = self.found.statement.results.iter();
+        let results = self.planned.statement.results.iter();
         Some(results.map(|result| result.promise.clone()).collect())
     }
 
     fn wraps(&self) -> bool {
         let wraps = |width: &StatedWidth| matches!(width.overflow, StatedOverflow::Wrap);
-        let mut results = self.found.statement.results.iter();
+        let mut results = self.planned.statement.results.iter();
         results.any(|result| result.width.as_ref().is_some_and(wraps))
     }
 }

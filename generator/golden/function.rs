@@ -10,38 +10,27 @@ use super::plan::plan_device;
 use super::{Contract, Model, Term};
 use glint_approximate::{Curve, Piecewise, TargetFunction};
 use glint_base::fixed::exp2;
-use glint_config::Config;
 use glint_formula::{Enclosure, parse};
-use glint_keys::function::{found, operand};
-use glint_plan::ExpressionPlan;
+use glint_keys::function::{FunctionPlan, operand};
 
 /// The number of pieces of a domain in which a slope is enclosed. The number is a power of two, so that the ends of the pieces
 /// are exact.
 const PIECES: u32 = 4096;
 
-/// Returns the device that evaluates the piecewise polynomial `it` of the function.
-fn device(function: &TargetFunction, it: &Arc<Piecewise>) -> device::Device {
-    let plan = ExpressionPlan::of_function(function, it).expect("a plan that was checked");
-    plan_device(&[operand(it)], &plan, &["result_out".to_owned()])
+/// Returns the device that executes the plan of a function.
+fn device(planned: &FunctionPlan) -> device::Device {
+    plan_device(&[operand(&planned.polynomials)], &planned.plan, &["result_out".to_owned()])
 }
 
-/// Returns the golden model of the device `function` for a configuration.
-///
-/// # Panics
-/// Panics if the check of the schema has not accepted the configuration. The caller must check it first.
-pub fn model(config: &Config) -> Box<dyn Model> {
-    let (function, it) = found(config).expect("a configuration that is checked");
-    device(&function, &it).model()
+/// Returns the golden model of the device `function` for the plan of its function.
+pub fn model(planned: &FunctionPlan) -> Box<dyn Model> {
+    device(planned).model()
 }
 
-/// Returns the accuracy contract of the device `function` for a configuration.
-///
-/// # Panics
-/// Panics as [`model`] does.
-pub fn contract(config: &Config) -> Box<dyn Contract> {
-    let (function, it) = found(config).expect("a configuration that is checked");
-    let bound = it.bound;
-    device(&function, &it).contract(Stated { function, bound, polynomials: it.clone() })
+/// Returns the accuracy contract of the device `function` for the plan of its function.
+pub fn contract(planned: &FunctionPlan) -> Box<dyn Contract> {
+    let function = planned.function.clone();
+    device(planned).contract(Stated { function, polynomials: planned.polynomials.clone() })
 }
 
 /// Returns the value of a formula of x, in f64. Returns NaN if the formula cannot be parsed or has no value.
@@ -51,10 +40,9 @@ pub(super) fn at(formula: &str, x: f64) -> f64 {
 }
 
 /// Returns a proven limit of the absolute slope of the formula over its domain, from interval derivatives. Returns `None` if
-/// the formula may jump or be infinitely steep, if the function is given by samples, or if the configuration has no such
-/// function.
-pub(super) fn slope(config: &Config) -> Option<f64> {
-    let (function, it) = found(config).ok()?;
+/// the formula may jump or be infinitely steep, or if the function is given by samples.
+pub(super) fn slope(planned: &FunctionPlan) -> Option<f64> {
+    let FunctionPlan { function, polynomials: it, .. } = planned;
     let Curve::Formula(formula) = &function.curve else { return None };
     let [low, high] = [it.domain.0, it.domain.1].map(|raw| it.operand.to_f64(raw.into()));
     let mut steepest: f64 = 0.0;
@@ -67,10 +55,9 @@ pub(super) fn slope(config: &Config) -> Option<f64> {
     Some(steepest)
 }
 
-/// The function, its piecewise polynomial, and the bound of the error that was proved, in units of the result.
+/// The function, and its piecewise polynomial with the bound of the error that was proved.
 struct Stated {
     function: TargetFunction,
-    bound: f64,
     polynomials: Arc<Piecewise>,
 }
 
@@ -97,13 +84,14 @@ impl Formula for Stated {
     }
 
     fn terms(&self, _output: usize) -> Vec<Term> {
-        let rounding = self.bound.min(0.5);
+        let bound = self.polynomials.bound;
+        let rounding = bound.min(0.5);
         vec![
             Term { key: "result.fraction", what: "rounding of the result", units: rounding },
             Term {
                 key: "result.error",
                 what: "the polynomials and their roundings, at every operand",
-                units: self.bound - rounding,
+                units: bound - rounding,
             },
         ]
     }

@@ -23,10 +23,10 @@ use super::{
 use glint_base::fixed::{Format, Rounding, exp2};
 use glint_config::Config;
 use glint_formula::{Expression, Kind, TextSpan, parse};
-use glint_keys::shading::{HighlightDevice, Keys, PartConfigs};
+use glint_keys::shading::{HighlightDevice, HighlightPart, Keys, LightParts};
 
 /// Returns the device: the parts of each light, one after the other, followed by the sum of ambient, diffuse and specular light.
-fn device(keys: &Keys, parts: &PartConfigs) -> device::Device {
+fn device(keys: &Keys, parts: &LightParts) -> device::Device {
     let mut frame = Frame::default();
     let normal = vector(&mut frame, "n", "", keys.normal_format());
     let mut lights: Vec<[[Slot; 3]; 2]> = Vec::new();
@@ -45,7 +45,7 @@ fn device(keys: &Keys, parts: &PartConfigs) -> device::Device {
         facing.push(cosine(&mut frame, &name, &parts.facing, normal, light));
         let name = format!("specular_cosine{suffix}");
         let cos_gamma = cosine(&mut frame, &name, &parts.cosine, normal, half);
-        let (model, name) = ((part(keys).model)(&parts.highlight), format!("highlight{suffix}"));
+        let (model, name) = (highlight_model(keys, &parts.highlight), format!("highlight{suffix}"));
         let Some(exponent) = exponent else {
             let part = frame.part(&name, &*model, [left("x", cos_gamma, 0)]);
             shine.push([part.out("result_out"); 3]);
@@ -59,8 +59,10 @@ fn device(keys: &Keys, parts: &PartConfigs) -> device::Device {
         shine.push(["red_out", "green_out", "blue_out"].map(|it| part.out(it)));
     }
 
-    let function = (!keys.has_exponent()).then(|| function::contract(&parts.highlight));
-    let of_f = function.map_or(0, |it| it.outputs()[0].format.frac as u32);
+    let of_f = match &parts.highlight {
+        HighlightPart::OfFormula(_, planned) => planned.function.fraction,
+        HighlightPart::OfExponent(_) => 0,
+    };
     let places = keys.facing().max(of_f);
     let sum = Narrow::new(places, keys.colour_format(), Rounding::Nearest);
     let (to_light, is_formula) = (places - keys.facing(), !keys.has_exponent());
@@ -118,53 +120,50 @@ fn cosine(
     frame.part(name, &*dot_product::model(config), operands).out("cosine_out")
 }
 
-/// The functions that make the golden model and the accuracy contract of a highlight device.
-struct HighlightModels {
-    model: fn(&Config) -> Box<dyn Model>,
-    contract: fn(&Config) -> Box<dyn Contract>,
-}
-
-/// Returns the golden model and the accuracy contract of the highlight device that the keys choose.
-fn part(keys: &Keys) -> HighlightModels {
-    macro_rules! part {
-        ($of:ident) => {
-            HighlightModels { model: $of::model, contract: $of::contract }
-        };
-    }
+/// Returns the golden model of the part that computes the highlight.
+fn highlight_model(keys: &Keys, part: &HighlightPart) -> Box<dyn Model> {
+    let config = match part {
+        HighlightPart::OfExponent(config) => config,
+        HighlightPart::OfFormula(_, planned) => return function::model(planned),
+    };
     match keys.highlight {
-        HighlightDevice::CosinePower => part!(cosine_power),
-        HighlightDevice::Blinn => part!(blinn),
-        HighlightDevice::Schlick => part!(schlick),
-        HighlightDevice::Gauss => part!(gauss),
-        HighlightDevice::Quadratic => part!(quadratic),
-        HighlightDevice::Threshold => part!(threshold),
-        HighlightDevice::Function => part!(function),
+        HighlightDevice::CosinePower => cosine_power::model(config),
+        HighlightDevice::Blinn => blinn::model(config),
+        HighlightDevice::Schlick => schlick::model(config),
+        HighlightDevice::Gauss => gauss::model(config),
+        HighlightDevice::Quadratic => quadratic::model(config),
+        HighlightDevice::Threshold => threshold::model(config),
+        HighlightDevice::Function => unreachable!("a formula has a plan"),
     }
 }
 
-/// Returns the configurations of the parts. Panics if a part's configuration is wrong, which the check of the schema refuses.
-fn parts(keys: &Keys) -> PartConfigs {
-    keys.parts().unwrap_or_else(|(part, _)| panic!("`{part}` is checked"))
+/// Returns the accuracy contract of the part that computes the highlight.
+fn highlight_contract(keys: &Keys, part: &HighlightPart) -> Box<dyn Contract> {
+    let config = match part {
+        HighlightPart::OfExponent(config) => config,
+        HighlightPart::OfFormula(_, planned) => return function::contract(planned),
+    };
+    match keys.highlight {
+        HighlightDevice::CosinePower => cosine_power::contract(config),
+        HighlightDevice::Blinn => blinn::contract(config),
+        HighlightDevice::Schlick => schlick::contract(config),
+        HighlightDevice::Gauss => gauss::contract(config),
+        HighlightDevice::Quadratic => quadratic::contract(config),
+        HighlightDevice::Threshold => threshold::contract(config),
+        HighlightDevice::Function => unreachable!("a formula has a plan"),
+    }
 }
 
-/// Returns the golden model of the device `shading` for a configuration.
-///
-/// # Panics
-/// Panics if the check of the schema has not accepted the configuration. The caller must check it first.
-pub fn model(config: &Config) -> Box<dyn Model> {
-    let keys = Keys::of(config);
-    device(&keys, &parts(&keys)).model()
+/// Returns the golden model of the device `shading` for a configuration and its parts.
+pub fn model(config: &Config, parts: &LightParts) -> Box<dyn Model> {
+    device(&Keys::of(config), parts).model()
 }
 
-/// Returns the accuracy contract of the device `shading` for a configuration.
-///
-/// # Panics
-/// Panics as [`model`] does.
-pub fn contract(config: &Config) -> Box<dyn Contract> {
+/// Returns the accuracy contract of the device `shading` for a configuration and its parts.
+pub fn contract(config: &Config, parts: &LightParts) -> Box<dyn Contract> {
     let keys = Keys::of(config);
-    let parts = parts(&keys);
-    let device = device(&keys, &parts);
-    let highlight = (part(&keys).contract)(&parts.highlight);
+    let device = device(&keys, parts);
+    let highlight = highlight_contract(&keys, &parts.highlight);
     let colour = exp2(keys.colour_bits as i32) - 1.0;
     let errors = PartErrors {
         facing: error(&*dot_product::contract(&parts.facing)),
@@ -173,9 +172,11 @@ pub fn contract(config: &Config) -> Box<dyn Contract> {
             true => error(&*highlight) * exp2(-(keys.guard() as i32)),
             false => error(&*highlight) * colour,
         },
-        variation: match highlight.highlight() {
-            Some(highlight) => highlight.variation(),
-            None => function::slope(&parts.highlight).map(|slope| Variation { slope, jump: 0.0 }),
+        variation: match &parts.highlight {
+            HighlightPart::OfFormula(_, planned) => {
+                function::slope(planned).map(|slope| Variation { slope, jump: 0.0 })
+            }
+            HighlightPart::OfExponent(_) => highlight.highlight().and_then(|it| it.variation()),
         },
     };
     device.contract(Shading { highlight, errors, keys })
@@ -420,10 +421,11 @@ mod tests {
         let keys = [("cosine.fraction", 12), ("domain.exponent_max", 1000)];
         let keys = keys.map(|(key, value)| (key.to_owned(), Value::Integer(value)));
         let config = Config::from_values(&schema(), "coarse", keys.into()).expect("sound keys");
-        let (keys, whole) = (Keys::of(&config), contract(&config));
+        let parts = glint_keys::shading::parts(&config).expect("sound parts");
+        let (keys, whole) = (Keys::of(&config), contract(&config, &parts));
         let variation = Some(Variation { slope: 1000.0, jump: 0.0 });
         let errors = PartErrors { facing: 2e-7, cosine: 2e-7, highlight: 0.1, variation };
-        let highlight = (part(&keys).contract)(&parts(&keys).highlight);
+        let highlight = highlight_contract(&keys, &parts.highlight);
         let claimed = Shading { highlight, errors, keys };
         let claimed = Bound::of(claimed.terms(0)).units;
         // A linear congruential generator.

@@ -8,7 +8,8 @@
 use std::sync::Arc;
 
 use super::common::{self, Domain, Intensity, Operands};
-use glint_approximate::{Curve, Outside, Piecewise, Refusal, TargetFunction, Wish, find};
+use glint_approximate::{Curve, Outside, Piecewise, TargetFunction, Wish, find};
+use glint_base::config_error::ConfigError;
 use glint_base::fixed::Format;
 use glint_config::{Config, Key, Problems, Schema, Value};
 use glint_formula::parse;
@@ -133,7 +134,7 @@ impl Keys {
     ///
     /// # Errors
     /// Fails if no approximation can be found. The error has the key `ratio.fraction` and says why.
-    pub fn ratio(&self, decay: Decay) -> Result<Arc<Piecewise>, Refusal> {
+    pub fn ratio(&self, decay: Decay) -> Result<Arc<Piecewise>, ConfigError> {
         let unseen = self.unseen();
         let fraction = self.operands.cosine.fraction - unseen;
         let middle = format!("(x + 1/2^{} + 1/2^{})", fraction + 1, fraction + unseen + 1);
@@ -149,7 +150,7 @@ impl Keys {
     ///
     /// # Errors
     /// Fails if no approximation can be found. The error has the key `exponential.fraction` and says why.
-    pub fn power(&self) -> Result<Arc<Piecewise>, Refusal> {
+    pub fn power(&self) -> Result<Arc<Piecewise>, ConfigError> {
         let formula = format!("exp2(-x - 1/2^{})", self.argument + 1);
         let (last, of) = ((1 << self.argument) - 1, (0, self.argument as i32));
         table(&formula, (last, of), self.fraction, &self.degree, EXPONENTIAL)
@@ -169,7 +170,7 @@ fn table(
     fraction: u32,
     degree: &str,
     [key, degree_key]: [&'static str; 2],
-) -> Result<Arc<Piecewise>, Refusal> {
+) -> Result<Arc<Piecewise>, ConfigError> {
     let function = TargetFunction {
         curve: Curve::Formula(parse(formula).expect("a formula of ours")),
         domain: (0, last),
@@ -180,9 +181,8 @@ fn table(
     };
     let wish = Wish { degree: degree.parse().ok(), ..Wish::default() };
     find(&function, wish).map_err(|refusal| {
-        // The remedy of the search names keys of the device `function`.
         let remedy = format!("set a smaller {key}, or set {degree_key} to \"auto\"");
-        Refusal { key, place: None, remedy, ..refusal }
+        ConfigError::new(key, refusal.message, remedy)
     })
 }
 
@@ -215,7 +215,7 @@ pub(super) fn check(config: &Config, decay: Decay, problems: &mut Problems) {
     if problems.is_refused() {
         return;
     }
-    for refusal in [keys.ratio(decay).err(), keys.power().err()].into_iter().flatten() {
-        problems.push(refusal.key, refusal.message, refusal.remedy);
+    for error in [keys.ratio(decay).err(), keys.power().err()].into_iter().flatten() {
+        problems.push_error(error);
     }
 }

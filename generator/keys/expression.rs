@@ -8,8 +8,8 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use glint_approximate::Outside;
+use glint_base::config_error::ConfigError;
 use glint_base::fixed::{Format, MAX_WIDTH, exp2};
-use glint_base::key_error::KeyError;
 use glint_config::{Config, Key, Problems, Schema, TableEntries, TableEntry, TextPattern, Value};
 use glint_formula::{Comparison, Expression, Fault, Kind, Operator, TextSpan, parse};
 use glint_plan::{
@@ -140,38 +140,24 @@ pub fn schema() -> Schema {
 }
 
 fn check(config: &Config, problems: &mut Problems) {
-    if let Err(StatementError { error, place }) = found(config) {
-        problems.push_within(&error.key, place, error.message, error.remedy);
+    if let Err(error) = statement(&Keys::of(config)) {
+        problems.push_error(error);
     }
 }
 
-/// An error in a key of the device `expression`, with the part of the key's text that is wrong.
-#[derive(Clone, Debug, PartialEq)]
-pub struct StatementError {
-    /// The error. Its key names the table, the entry and the field, for example `results.r.formula`.
-    pub error: KeyError,
-    /// The range of bytes in the text of the formula, or `None` if the error does not concern a part of a formula.
-    pub place: Option<Range<usize>>,
+/// Returns the error of a formula that cannot be read.
+fn misread(key: String, fault: Fault) -> ConfigError {
+    let remedy = "write a formula of numbers, pi, e, operands, + - * / ^, parentheses and functions, for \
+                  example `sqrt(x^2 + y^2)`";
+    ConfigError::new(key, fault.message, remedy).at(fault.span.bytes)
 }
 
-impl StatementError {
-    fn new(key: impl Into<String>, message: impl Into<String>, remedy: impl Into<String>) -> Self {
-        Self { error: KeyError::new(key, message, remedy), place: None }
-    }
-
-    fn of_fault(key: String, fault: Fault) -> Self {
-        let remedy = "write a formula of numbers, pi, e, operands, + - * / ^, parentheses and functions, for \
-                      example `sqrt(x^2 + y^2)`";
-        Self { place: Some(fault.span.bytes), ..Self::new(key, fault.message, remedy) }
-    }
-}
-
-/// Returns the plan for the formulas of a configuration, with a proved error bound for each result.
+/// Plans the formulas of a configuration, and proves an error bound for each result. This can take some seconds.
 ///
 /// # Errors
 /// Fails if a name, an operand, a formula or an allowed error is wrong, if no result depends on some operand, or if no plan can
 /// be found. The error says why.
-pub fn found(config: &Config) -> Result<Arc<ProvedPlan>, StatementError> {
+pub fn plan(config: &Config) -> Result<ProvedPlan, ConfigError> {
     let keys = Keys::of(config);
     let statement = statement(&keys)?;
     let plan = find(&statement).map_err(|refusal| refused(&keys, &statement, refusal))?;
@@ -181,7 +167,7 @@ pub fn found(config: &Config) -> Result<Arc<ProvedPlan>, StatementError> {
 
 /// Checks that a result changes with each operand. Fails for an operand that the plan does not read, because every choice or remainder
 /// that reads it was decided. For example, `if(x < 100, y, x)` with x below 2 is y.
-fn check_operands_have_readers(found: &ProvedPlan) -> Result<(), StatementError> {
+fn check_operands_have_readers(found: &ProvedPlan) -> Result<(), ConfigError> {
     let plan = &found.plan;
     let is_read = |node: usize| {
         let mut results = 0..found.statement.results.len();
@@ -197,7 +183,7 @@ fn check_operands_have_readers(found: &ProvedPlan) -> Result<(), StatementError>
                  in the domains"
             );
             let remedy = "remove the operand, or give the operands larger domains";
-            return Err(StatementError::new(format!("operands.{name}"), message, remedy));
+            return Err(ConfigError::new(format!("operands.{name}"), message, remedy));
         }
     }
     Ok(())
@@ -205,15 +191,15 @@ fn check_operands_have_readers(found: &ProvedPlan) -> Result<(), StatementError>
 
 /// Returns the refusal of a plan as an error in the formula that the refusal concerns, which may be the formula of a named part,
 /// or in the table `results` if it concerns no single formula.
-fn refused(keys: &Keys, statement: &ExpressionStatement, refusal: PlanRefusal) -> StatementError {
+fn refused(keys: &Keys, statement: &ExpressionStatement, refusal: PlanRefusal) -> ConfigError {
     let of_part = |place: &TextSpan| Some(&keys.parts.0.get(place.text.checked_sub(1)?)?.name);
     let key = match (refusal.place.as_ref().and_then(of_part), refusal.result) {
         (Some(name), _) => part_key(name),
         (None, Some(number)) => format!("results.{}.formula", statement.results[number].name),
         (None, None) => "results".to_owned(),
     };
-    let error = StatementError::new(key, refusal.message, refusal.remedy);
-    StatementError { place: refusal.place.map(|place| place.bytes), ..error }
+    let place = refusal.place.map(|place| place.bytes);
+    ConfigError::new(key, refusal.message, refusal.remedy).at(place)
 }
 
 /// The named parts of the formulas, in the order of the table `let`. The formula of part number i lies in text number i + 1
@@ -231,7 +217,7 @@ fn part_key(name: &str) -> String {
 /// # Errors
 /// Fails if an entry is wrong, if two entries have the same name, if there is an operand on which no result depends, or if
 /// [`error_of_relative`] fails.
-fn statement(keys: &Keys) -> Result<ExpressionStatement, StatementError> {
+fn statement(keys: &Keys) -> Result<ExpressionStatement, ConfigError> {
     check_names(keys)?;
     let mut operands = Vec::new();
     for record in &keys.operands.0 {
@@ -253,7 +239,7 @@ fn statement(keys: &Keys) -> Result<ExpressionStatement, StatementError> {
         if !results.iter().any(names_it) {
             let key = format!("operands.{}", operand.name);
             let message = format!("no result depends on `{}`", operand.name);
-            return Err(StatementError::new(
+            return Err(ConfigError::new(
                 key,
                 message,
                 "remove the operand, or use it in a formula",
@@ -281,16 +267,15 @@ fn error_of_relative(
     statement: &ExpressionStatement,
     number: usize,
     text: &str,
-) -> Result<f64, StatementError> {
+) -> Result<f64, ConfigError> {
     let StatedResult { name, fraction, .. } = &statement.results[number];
     let key = format!("results.{name}.error_relative");
-    let part = parse(text).and_then(|part| part.enclose(&[])).map_err(|fault| StatementError {
-        place: Some(fault.span.bytes),
-        ..StatementError::new(&key, fault.message, RELATIVE_ERROR)
+    let part = parse(text).and_then(|part| part.enclose(&[])).map_err(|fault| {
+        ConfigError::new(&key, fault.message, RELATIVE_ERROR).at(fault.span.bytes)
     })?;
     if !(part.low > 0.0 && part.high < 1.0) {
         let message = format!("`{text}` is not a number between 0 and 1");
-        return Err(StatementError::new(key, message, RELATIVE_ERROR));
+        return Err(ConfigError::new(key, message, RELATIVE_ERROR));
     }
     let least =
         least_size(statement, number).map_err(|refusal| refused(keys, statement, refusal))?;
@@ -300,7 +285,7 @@ fn error_of_relative(
         );
         let remedy = "limit the operands with `where` or with their domains, or give `error` in place of \
                       `error_relative`";
-        return Err(StatementError::new(key, message, remedy));
+        return Err(ConfigError::new(key, message, remedy));
     }
     let allowed = part.low * least;
     let units = (allowed * exp2(*fraction as i32)).next_down();
@@ -311,7 +296,7 @@ fn error_of_relative(
              more than {text} of this value"
         );
         let remedy = format!("set at least {needed} fraction bits, or a larger error_relative");
-        return Err(StatementError::new(key, message, remedy));
+        return Err(ConfigError::new(key, message, remedy));
     }
     Ok(units.min(LARGEST_ERROR))
 }
@@ -320,7 +305,7 @@ fn error_of_relative(
 ///
 /// # Errors
 /// Fails at the first name that cannot be used. The error names the entry.
-fn check_names(keys: &Keys) -> Result<(), StatementError> {
+fn check_names(keys: &Keys) -> Result<(), ConfigError> {
     let tables = [
         (NamedTable::Operands, &keys.operands),
         (NamedTable::Parts, &keys.parts),
@@ -332,11 +317,11 @@ fn check_names(keys: &Keys) -> Result<(), StatementError> {
     }
     port_names::check(&entries).map_err(|NameFault { entry, message, remedy }| {
         let (table, name) = entries[entry];
-        StatementError::new(format!("{}.{name}", table.key()), message, remedy)
+        ConfigError::new(format!("{}.{name}", table.key()), message, remedy)
     })
 }
 
-fn operand(record: &TableEntry) -> Result<StatedOperand, StatementError> {
+fn operand(record: &TableEntry) -> Result<StatedOperand, ConfigError> {
     let key = |field: &str| format!("operands.{}.{field}", record.name);
     let name = record.name.clone();
     let doc = record.text("doc").unwrap_or_default().to_owned();
@@ -344,7 +329,7 @@ fn operand(record: &TableEntry) -> Result<StatedOperand, StatementError> {
     let Some(Value::Integer(fraction)) = record.field("fraction") else {
         let remedy =
             "add fraction, the number of fraction bits: for example, { bits = 12, fraction = 11 }";
-        return Err(StatementError::new(whole, format!("`{name}` has no `fraction`"), remedy));
+        return Err(ConfigError::new(whole, format!("`{name}` has no `fraction`"), remedy));
     };
     let frac = *fraction as i32;
     let (from, to) = (record.text("from"), record.text("to"));
@@ -352,12 +337,12 @@ fn operand(record: &TableEntry) -> Result<StatedOperand, StatementError> {
         if from.is_some() || to.is_some() {
             let message = format!("`{name}` has both `bits` and a domain");
             let remedy = "keep bits and signed, or from and to";
-            return Err(StatementError::new(key("bits"), message, remedy));
+            return Err(ConfigError::new(key("bits"), message, remedy));
         }
         if record.field("outside").is_some() {
             let message =
                 format!("`outside` has no effect on `{name}`: its domain is the whole format");
-            return Err(StatementError::new(
+            return Err(ConfigError::new(
                 key("outside"),
                 message,
                 "remove `outside`, or give from and to",
@@ -377,16 +362,16 @@ fn operand(record: &TableEntry) -> Result<StatedOperand, StatementError> {
     let (Some(from), Some(to)) = (from, to) else {
         let message = format!("`{name}` has neither `bits` nor `from` and `to`");
         let remedy = "add bits for a whole format, or from and to for a domain";
-        return Err(StatementError::new(whole, message, remedy));
+        return Err(ConfigError::new(whole, message, remedy));
     };
     if record.field("signed").is_some() {
         let message =
             "`from` and `to` determine whether the operand has a sign, so `signed` has no effect";
-        return Err(StatementError::new(key("signed"), message, "remove `signed`"));
+        return Err(ConfigError::new(key("signed"), message, "remove `signed`"));
     }
     let Ok(fraction) = u32::try_from(frac) else {
         let message = "an operand with `from` and `to` cannot have fewer than 0 fraction bits";
-        return Err(StatementError::new(
+        return Err(ConfigError::new(
             key("fraction"),
             message,
             "give 0 or more, or bits in place of from and to",
@@ -401,7 +386,7 @@ fn operand(record: &TableEntry) -> Result<StatedOperand, StatementError> {
             "the domain from {from} to {to} has operands of more than {} bits",
             MAX_WIDTH / 2
         );
-        return Err(StatementError::new(
+        return Err(ConfigError::new(
             key("fraction"),
             message,
             "set fewer fraction bits, or a smaller domain",
@@ -411,7 +396,7 @@ fn operand(record: &TableEntry) -> Result<StatedOperand, StatementError> {
         let message = format!(
             "the domain from {from} to {to} has no two operands with {fraction} fraction bits"
         );
-        return Err(StatementError::new(
+        return Err(ConfigError::new(
             key("to"),
             message,
             "set a larger `to`, or more fraction bits",
@@ -425,25 +410,23 @@ fn operand(record: &TableEntry) -> Result<StatedOperand, StatementError> {
     Ok(StatedOperand { name, format, domain: (low as i64, high as i64), outside, doc })
 }
 
-fn end(text: &str, fraction: u32, key: String) -> Result<End, StatementError> {
-    End::read("", text, fraction).map_err(|refusal| {
-        let error = StatementError::new(key, refusal.message, refusal.remedy);
-        StatementError { place: refusal.place, ..error }
-    })
+fn end(text: &str, fraction: u32, key: String) -> Result<End, ConfigError> {
+    End::read("", text, fraction)
+        .map_err(|refusal| ConfigError::new(key, refusal.message, refusal.remedy).at(refusal.place))
 }
 
-fn result(record: &TableEntry, keys: &Keys, parts: &Parts) -> Result<StatedResult, StatementError> {
+fn result(record: &TableEntry, keys: &Keys, parts: &Parts) -> Result<StatedResult, ConfigError> {
     let name = record.name.clone();
     let whole = format!("results.{name}");
     let Some(fraction) = record.bits("fraction") else {
         let remedy = "add fraction, the number of fraction bits: for example, { formula = \"x * y\", \
                       fraction = 11 }";
-        return Err(StatementError::new(whole, format!("`{name}` has no `fraction`"), remedy));
+        return Err(ConfigError::new(whole, format!("`{name}` has no `fraction`"), remedy));
     };
     let key = format!("{whole}.formula");
     if record.text("formula").is_none() {
         let message = format!("`{name}` has no `formula`");
-        return Err(StatementError::new(
+        return Err(ConfigError::new(
             whole,
             message,
             "add a formula: for example, formula = \"x * y\"",
@@ -456,7 +439,7 @@ fn result(record: &TableEntry, keys: &Keys, parts: &Parts) -> Result<StatedResul
     };
     if record.field("error").is_some() && record.field("error_relative").is_some() {
         let message = format!("`{name}` has both `error` and `error_relative`");
-        return Err(StatementError::new(
+        return Err(ConfigError::new(
             format!("{whole}.error_relative"),
             message,
             "keep one of the two",
@@ -477,7 +460,7 @@ fn result(record: &TableEntry, keys: &Keys, parts: &Parts) -> Result<StatedResul
             if record.field(field).is_some() {
                 let message = format!("`{field}` has no effect without `bits`");
                 let key = format!("{whole}.{field}");
-                return Err(StatementError::new(key, message, "add bits, or remove the field"));
+                return Err(ConfigError::new(key, message, "add bits, or remove the field"));
             }
         }
     }
@@ -516,9 +499,9 @@ fn formula(
     key: &str,
     keys: &Keys,
     parts: &Parts,
-) -> Result<Expression, StatementError> {
+) -> Result<Expression, ConfigError> {
     let text = text.unwrap_or_default();
-    let formula = parse(text).map_err(|fault| StatementError::of_fault(key.to_owned(), fault))?;
+    let formula = parse(text).map_err(|fault| misread(key.to_owned(), fault))?;
     resolved(&formula, key, keys, parts)
 }
 
@@ -534,7 +517,7 @@ fn resolved(
     key: &str,
     keys: &Keys,
     parts: &Parts,
-) -> Result<Expression, StatementError> {
+) -> Result<Expression, ConfigError> {
     let mut unknown = None;
     formula.walk(&mut |part| {
         let (Kind::Operand(name) | Kind::Word(name, _)) = &part.kind else { return };
@@ -550,8 +533,7 @@ fn resolved(
         names.extend(parts.iter().map(|(part, _)| part.as_str()));
         let message = format!("there is no operand and no earlier part `{name}`");
         let remedy = format!("use one of these names: {}", names.join(", "));
-        let error = StatementError::new(key.to_owned(), message, remedy);
-        return Err(StatementError { place: Some(span), ..error });
+        return Err(ConfigError::new(key, message, remedy).at(span));
     }
     let is_operand = |name: &str| keys.operands.0.iter().any(|operand| operand.name == name);
     let of_part = |name: &str| {
@@ -566,12 +548,7 @@ fn resolved(
 ///
 /// # Errors
 /// Fails if the text is not a comparison, or if it has an unknown name. The error's place counts from the start of `text`.
-fn promise(
-    text: &str,
-    key: &str,
-    keys: &Keys,
-    parts: &Parts,
-) -> Result<Comparison, StatementError> {
+fn promise(text: &str, key: &str, keys: &Keys, parts: &Parts) -> Result<Comparison, ConfigError> {
     const BEFORE: &str = "if(";
     let moved = |span: Range<usize>| {
         let start = span.start.saturating_sub(BEFORE.len()).min(text.len());
@@ -579,20 +556,15 @@ fn promise(
     };
     let choice = parse(&format!("{BEFORE}{text}, 1, 0)")).map_err(|fault| {
         let remedy = "give a comparison of two formulas, for example `x < y` or `s > 0`";
-        let error = StatementError::new(key.to_owned(), fault.message, remedy);
-        StatementError { place: Some(moved(fault.span.bytes)), ..error }
+        ConfigError::new(key, fault.message, remedy).at(moved(fault.span.bytes))
     })?;
     let choice = resolved(&choice, key, keys, parts)
-        .map_err(|error| StatementError { place: error.place.map(moved), ..error })?;
+        .map_err(|error| ConfigError { place: error.place.map(moved), ..error })?;
     match choice.kind {
         Kind::If(comparison, ..) => Ok(comparison),
         _ => {
             let message = format!("`{text}` is not a comparison");
-            Err(StatementError::new(
-                key.to_owned(),
-                message,
-                "give a comparison, for example `x < y`",
-            ))
+            Err(ConfigError::new(key.to_owned(), message, "give a comparison, for example `x < y`"))
         }
     }
 }

@@ -6,12 +6,16 @@
 use std::sync::Arc;
 
 use glint_approximate::{
-    Curve, Identity, Layout, Outside, Piecewise, Refusal, Samples, TargetFunction, Wish, find,
+    Curve, Identity, Layout, Outside, Piecewise, Refusal, RefusalKind, TargetFunction,
+    UnsuitedReduction, Wish, find,
 };
+use glint_base::config_error::ConfigError;
 use glint_base::fixed::{Format, MAX_WIDTH};
 use glint_config::{Config, Key, Problems, Schema, TextPattern};
 use glint_formula::{Fault, parse};
 use glint_plan::{ExpressionPlan, StatedOperand};
+
+use super::samples;
 
 glint_config::keys! {
     /// The values of a configuration of the device `function`, one field for each of its keys.
@@ -71,22 +75,27 @@ fn check(config: &Config, problems: &mut Problems) {
         let message = format!("`{formula}` and `{samples}` are both given");
         return problems.push(formula, message, "remove one of the two keys");
     }
-    let refusal = match problems.is_refused() {
-        true => function(&Keys::of(config)).err(),
-        false => found(config).err(),
-    };
-    if let Some(refusal) = refusal {
-        problems.push_within(refusal.key, refusal.place, refusal.message, refusal.remedy);
+    if let Err(error) = function(&Keys::of(config)) {
+        problems.push_error(error);
     }
 }
 
-/// Returns the function that a configuration states, and the piecewise polynomial that approximates it with a proved error
-/// bound.
+/// The plan for the function of a configuration.
+pub struct FunctionPlan {
+    /// The function, with its domain and the allowed error.
+    pub function: TargetFunction,
+    /// The polynomials that approximate the function, with a proved bound of the error.
+    pub polynomials: Arc<Piecewise>,
+    /// The operations that evaluate the polynomials.
+    pub plan: ExpressionPlan,
+}
+
+/// Plans the function that a configuration states: finds polynomials that approximate it, and proves a bound of the error.
 ///
 /// # Errors
 /// Fails if the formula, the samples or the domain are wrong, if no approximation can be found, or if the planner refuses the
 /// approximation. The error says why, and names a key to change.
-pub fn found(config: &Config) -> Result<(TargetFunction, Arc<Piecewise>), Refusal> {
+pub fn plan(config: &Config) -> Result<FunctionPlan, ConfigError> {
     let keys = Keys::of(config);
     let function = function(&keys)?;
     let wish = Wish {
@@ -95,15 +104,59 @@ pub fn found(config: &Config) -> Result<(TargetFunction, Arc<Piecewise>), Refusa
         identity: keys.reduction,
         least_words: 0,
     };
-    let it = find(&function, wish)?;
-    if let Err(refusal) = ExpressionPlan::of_function(&function, &it) {
-        return Err(Refusal::new(
-            "operand.fraction",
-            refusal.message,
-            "set a smaller operand.fraction",
-        ));
-    }
-    Ok((function, it))
+    let polynomials = find(&function, wish).map_err(refused)?;
+    let plan = ExpressionPlan::of_function(&function, &polynomials).map_err(|refusal| {
+        ConfigError::new("operand.fraction", refusal.message, "set a smaller operand.fraction")
+    })?;
+    Ok(FunctionPlan { function, polynomials, plan })
+}
+
+/// Returns the refusal of the search as an error of the key that the user should change.
+fn refused(refusal: Refusal) -> ConfigError {
+    const SMALLER: &str = "set a smaller operand.fraction";
+    const DIVIDED: &str = "use device = \"expression\", which divides such a domain into octaves, or set a smaller \
+                           operand.fraction";
+    let (key, remedy) = match refusal.kind {
+        RefusalKind::NoValue => (
+            "function.formula",
+            "exclude such operands from the domain: change function.from or function.to".to_owned(),
+        ),
+        RefusalKind::OperandBits { most } => {
+            ("operand.fraction", format!("set operand.fraction to at most {most}"))
+        }
+        RefusalKind::ManyOperandsOfSamples => ("operand.fraction", SMALLER.to_owned()),
+        RefusalKind::ResultBits => {
+            ("result.fraction", "set fewer fraction bits, or another domain".to_owned())
+        }
+        RefusalKind::Error { reached: Some(error) } => (
+            "result.error",
+            format!("set result.error to {error}, or {SMALLER} or result.fraction"),
+        ),
+        RefusalKind::Error { reached: None } => {
+            ("result.error", format!("{SMALLER} or result.fraction"))
+        }
+        RefusalKind::ErrorExceeded => ("result.error", "allow a larger error".to_owned()),
+        RefusalKind::Unproved => ("result.error", DIVIDED.to_owned()),
+        RefusalKind::Reduction(why) => {
+            let remedy = match why {
+                UnsuitedReduction::NoReduction => "set approximation.reduction to \"none\"",
+                UnsuitedReduction::NoIdentity => {
+                    "set approximation.reduction to \"none\" or to another identity"
+                }
+                UnsuitedReduction::OneSide => {
+                    "set approximation.reduction to \"none\", or change function.from"
+                }
+                UnsuitedReduction::FromZero => "set function.from to the smallest operand above 0",
+                UnsuitedReduction::NoPeriod => {
+                    "scale the operand, for example sin(2 * pi * x) from 0 to 1"
+                }
+                UnsuitedReduction::Bits => "set other fraction bits, or another domain",
+                UnsuitedReduction::ManyOperands => DIVIDED,
+            };
+            ("approximation.reduction", remedy.to_owned())
+        }
+    };
+    ConfigError::new(key, refusal.message, remedy).at(refusal.place)
 }
 
 /// Returns the operand x of the device, with the format and the domain of the piecewise polynomial.
@@ -117,7 +170,7 @@ pub fn operand(polynomials: &Piecewise) -> StatedOperand {
     }
 }
 
-fn function(keys: &Keys) -> Result<TargetFunction, Refusal> {
+fn function(keys: &Keys) -> Result<TargetFunction, ConfigError> {
     let fraction = keys.operand as i32;
     let ends = [("function.from", &keys.from), ("function.to", &keys.to)];
     let [from, to] = ends.map(|(key, text)| End::read(key, text, keys.operand));
@@ -125,7 +178,11 @@ fn function(keys: &Keys) -> Result<TargetFunction, Refusal> {
     let beyond = 1i128 << (MAX_WIDTH - 2);
     if [from, to].iter().any(|end| end.ceiling.abs() >= beyond) {
         let message = format!("an operand of the domain has more than {} bits", MAX_WIDTH - 2);
-        return Err(Refusal::new("operand.fraction", message, too_wide(&from, &to, keys.operand)));
+        return Err(ConfigError::new(
+            "operand.fraction",
+            message,
+            too_wide(&from, &to, keys.operand),
+        ));
     }
     let first = from.ceiling as i64;
     let last = match to.is_operand && keys.to_included {
@@ -138,20 +195,20 @@ fn function(keys: &Keys) -> Result<TargetFunction, Refusal> {
             keys.from, keys.to
         );
         let remedy = "set a larger function.to or a larger operand.fraction";
-        return Err(Refusal::new("function.to", message, remedy));
+        return Err(ConfigError::new("function.to", message, remedy));
     }
     let count = (last - first) as u64 + 1;
     if keys.outside == Outside::Wrap && !count.is_power_of_two() {
         let message = format!("the period has {count} operands, which is not a power of two");
         let remedy = "scale the operand so that the number of operands is a power of two, or set \
                       function.outside to \"clamp\" or \"anything\"";
-        return Err(Refusal::new("function.outside", message, remedy));
+        return Err(ConfigError::new("function.outside", message, remedy));
     }
     let curve = if keys.samples.is_empty() {
         let formula = parse(&keys.formula).and_then(|formula| formula.of_operand("x"));
         Curve::Formula(formula.map_err(|fault| misread("function.formula", fault))?)
     } else {
-        Curve::Samples(Samples::read(&keys.samples, keys.operand, (first, last))?)
+        Curve::Samples(samples::read(&keys.samples, keys.operand, (first, last))?)
     };
     Ok(TargetFunction {
         curve,
@@ -180,12 +237,12 @@ impl End {
     /// # Errors
     /// Fails if the text is not a formula, or if the formula has an operand or no value, such as `1 / 0`. Fails also if 1024 bits
     /// do not decide whether the value is an operand.
-    pub(super) fn read(key: &'static str, text: &str, fraction: u32) -> Result<Self, Refusal> {
+    pub(super) fn read(key: &'static str, text: &str, fraction: u32) -> Result<Self, ConfigError> {
         let formula = parse(text).map_err(|fault| misread(key, fault))?;
         let (ceiling, is_operand) = formula.ceiling(fraction).map_err(|fault| {
             let remedy =
                 "write the end as a number, for example `2` or `1e-3`, or as a formula of numbers";
-            Refusal { place: Some(fault.span.bytes), ..Refusal::new(key, fault.message, remedy) }
+            ConfigError::new(key, fault.message, remedy).at(fault.span.bytes)
         })?;
         Ok(Self { ceiling, is_operand })
     }
@@ -201,8 +258,8 @@ fn too_wide(from: &End, to: &End, fraction: u32) -> String {
     }
 }
 
-fn misread(key: &'static str, fault: Fault) -> Refusal {
+fn misread(key: &'static str, fault: Fault) -> ConfigError {
     let remedy = "write a formula of numbers, pi, e, + - * / ^, parentheses and functions, for example `1 / \
                   sqrt(x)`";
-    Refusal { place: Some(fault.span.bytes), ..Refusal::new(key, fault.message, remedy) }
+    ConfigError::new(key, fault.message, remedy).at(fault.span.bytes)
 }

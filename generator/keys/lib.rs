@@ -20,6 +20,7 @@ pub mod presets;
 pub mod quad_cosine;
 pub mod quadratic;
 pub mod rough;
+mod samples;
 pub mod schlick;
 pub mod shading;
 pub mod threshold;

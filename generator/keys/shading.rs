@@ -4,7 +4,9 @@
 //! and a highlight device such as `blinn`.
 
 use super::common;
+use super::function::FunctionPlan;
 use super::{blinn, cosine_power, dot_product, function, gauss, quadratic, schlick, threshold};
+use glint_base::config_error::ConfigError;
 use glint_base::fixed::Format;
 use glint_config::{Config, Key, Problems, Schema, TextPattern, Value};
 
@@ -74,34 +76,6 @@ fn check(config: &Config, problems: &mut Problems) {
         let remedy =
             format!("set domain.exponent_max to at most {most}, or set a larger exponent.bits");
         problems.push("domain.exponent_max", message, remedy);
-        return;
-    }
-    // Making the parts can take seconds, which a file that is refused anyway is not worth.
-    if problems.is_refused() {
-        return;
-    }
-    let Err((part, why)) = keys.parts() else { return };
-    let Some(problem) = why.iter().next() else { return };
-    let error = &problem.error;
-    if part != function::schema().device {
-        let message = format!(
-            "the part `{part}` of the device cannot be made: `{}`: {}",
-            error.key, error.message
-        );
-        return problems.push("highlight", message, "set other widths");
-    }
-    // The keys of the part are not the keys of this file. The part shares only the formula with this file, and makes its
-    // other keys itself.
-    let message = error.message.clone();
-    if error.key == FORMULA {
-        let remedy = error.remedy.replace(
-            "change function.from or function.to",
-            "change the formula, because the cosine x is from 0 to 1",
-        );
-        problems.push_within(FORMULA, problem.place.clone(), message, remedy);
-    } else {
-        let remedy = "give another formula, or set a smaller cosine.fraction";
-        problems.push(FORMULA, message, remedy);
     }
 }
 
@@ -112,13 +86,46 @@ const FORMULA: &str = "function.formula";
 const SUFFIXES: [&str; 4] = ["", "2", "3", "4"];
 
 /// The configurations of the devices that are the parts of `shading`.
-pub struct PartConfigs {
+pub struct LightParts {
     /// The configuration of the `dot-product` that computes the cosine between the normal and the direction of the light.
     pub facing: Config,
     /// The configuration of the `dot-product` that computes the cosine between the normal and the half vector.
     pub cosine: Config,
-    /// The configuration of the device that computes the highlight, such as `blinn`.
-    pub highlight: Config,
+    /// The part that computes the highlight.
+    pub highlight: HighlightPart,
+}
+
+/// The part that computes the highlight: the reflectance f at the cosine c.
+pub enum HighlightPart {
+    /// The configuration of a highlight device that has the exponent n as an operand, such as `blinn`.
+    OfExponent(Config),
+    /// The configuration of the device `function` for the formula of the highlight, with the plan of the formula.
+    OfFormula(Config, FunctionPlan),
+}
+
+/// Makes the parts of a configuration of `shading`, and plans the formula of the highlight.
+///
+/// # Errors
+/// Fails if a part refuses its configuration, or if the formula has no plan. The error names a key of `shading`.
+pub fn parts(config: &Config) -> Result<LightParts, ConfigError> {
+    Keys::of(config).parts()
+}
+
+/// Makes the configuration of a part, with the module name `part`.
+///
+/// # Errors
+/// Fails if the part refuses its configuration. The first problem of the part becomes an error of the key `highlight`.
+fn part(schema: &Schema, keys: Vec<(&str, Value)>) -> Result<Config, ConfigError> {
+    let keys = keys.into_iter().map(|(key, value)| (key.to_owned(), value)).collect();
+    Config::from_values(schema, "part", keys).map_err(|problems| {
+        let why = problems.iter().next().map_or_else(String::new, |it| it.error.to_string());
+        let message = format!("the part `{}` of the device cannot be made: {why}", schema.device);
+        ConfigError::new("highlight", message, "set other widths")
+    })
+}
+
+fn integer(key: &'static str, value: i64) -> (&'static str, Value) {
+    (key, Value::Integer(value))
 }
 
 /// A highlight device as a part of `shading`.
@@ -198,45 +205,36 @@ impl Keys {
         SUFFIXES.into_iter().take(self.lights as usize)
     }
 
-    /// Returns the configurations of the parts.
-    ///
-    /// # Errors
-    /// Fails if a part refuses its configuration. The error has the name of the part's device, and the problems of its
-    /// configuration.
-    pub fn parts(&self) -> Result<PartConfigs, (&'static str, Box<Problems>)> {
-        let make = |schema: Schema, keys: Vec<(&str, Value)>| {
-            let keys = keys.into_iter().map(|(key, value)| (key.to_owned(), value)).collect();
-            Config::from_values(&schema, "part", keys).map_err(|why| (schema.device, Box::new(why)))
+    /// Makes the parts as [`parts`] does, and fails as it does.
+    fn parts(&self) -> Result<LightParts, ConfigError> {
+        let facing = self.cosine_part(self.facing())?;
+        let cosine = self.cosine_part(self.cosine)?;
+        let highlight = match self.has_exponent() {
+            true => HighlightPart::OfExponent(self.exponent_part()?),
+            false => self.formula_part()?,
         };
-        let integer = |key, value: i64| (key, Value::Integer(value));
+        Ok(LightParts { facing, cosine, highlight })
+    }
+
+    /// Makes a `dot-product` whose cosine has `fraction` fraction bits. Fails as [`part`] does.
+    fn cosine_part(&self, fraction: u32) -> Result<Config, ConfigError> {
         // The highlight's slope is n: beyond 128 each bit of n is one more of the cosine.
         let more = i64::from((self.most.max(2) - 1).ilog2()).saturating_sub(6).clamp(0, 3);
-        let between = |kept: u32| {
-            let keys = vec![
-                integer("vector.fraction", self.normal.into()),
-                integer("half.fraction", self.light.into()),
-                ("two_sided", Value::Flag(self.two_sided)),
-                integer("table.address", 10 + (more + 1) / 2),
-                integer("inverse.fraction", 21 + more),
-                integer("factor.bits", 18 + more),
-                integer("output.fraction", kept.into()),
-            ];
-            make(dot_product::schema(), keys)
-        };
-        let (facing, cosine) = (between(self.facing())?, between(self.cosine)?);
+        let keys = vec![
+            integer("vector.fraction", self.normal.into()),
+            integer("half.fraction", self.light.into()),
+            ("two_sided", Value::Flag(self.two_sided)),
+            integer("table.address", 10 + (more + 1) / 2),
+            integer("inverse.fraction", 21 + more),
+            integer("factor.bits", 18 + more),
+            integer("output.fraction", fraction.into()),
+        ];
+        part(&dot_product::schema(), keys)
+    }
+
+    /// Makes the configuration of the highlight device that the key `highlight` names. Fails as [`part`] does.
+    fn exponent_part(&self) -> Result<Config, ConfigError> {
         let PartSettings { schema, fraction, .. } = self.highlight_part();
-        if !self.has_exponent() {
-            let text = |key, value: &str| (key, Value::Text(value.to_owned()));
-            let keys = vec![
-                text("function.formula", &self.formula),
-                text("function.from", "0"),
-                text("function.to", "1"),
-                ("function.to_included", Value::Flag(true)),
-                integer("operand.fraction", self.cosine.into()),
-                integer("result.fraction", fraction),
-            ];
-            return Ok(PartConfigs { facing, cosine, highlight: make(schema, keys)? });
-        }
         let mut keys = vec![
             integer("cosine.fraction", self.cosine.into()),
             integer("exponent.bits", self.exponent_bits.into()),
@@ -248,6 +246,40 @@ impl Keys {
         if self.highlight == HighlightDevice::CosinePower {
             keys.push(("power", Value::Text(self.power.to_string())));
         }
-        Ok(PartConfigs { facing, cosine, highlight: make(schema, keys)? })
+        part(&schema, keys)
+    }
+
+    /// Makes the device `function` for the formula of the highlight, and plans the formula.
+    ///
+    /// # Errors
+    /// Fails if the formula cannot be read, has no value at a cosine from 0 to 1, or has no plan.
+    fn formula_part(&self) -> Result<HighlightPart, ConfigError> {
+        let text = |key: &'static str, value: &str| (key.to_owned(), Value::Text(value.to_owned()));
+        let integer = |key: &'static str, value: i64| (key.to_owned(), Value::Integer(value));
+        let PartSettings { schema, fraction, .. } = self.highlight_part();
+        let keys = vec![
+            text(FORMULA, &self.formula),
+            text("function.from", "0"),
+            text("function.to", "1"),
+            ("function.to_included".to_owned(), Value::Flag(true)),
+            integer("operand.fraction", self.cosine.into()),
+            integer("result.fraction", fraction),
+        ];
+        // The part shares only the formula with the user's file, and has its other keys from here.
+        const OTHER: &str = "give another formula, or set a smaller cosine.fraction";
+        let of_formula = |error: ConfigError, remedy: &str| match error.key == FORMULA {
+            true => ConfigError { remedy: remedy.to_owned(), ..error },
+            false => ConfigError::new(FORMULA, error.message, OTHER),
+        };
+        let config = Config::from_values(&schema, "part", keys).map_err(|problems| {
+            let first = problems.iter().next().map(|problem| problem.error.clone());
+            let error = first.unwrap_or_else(|| ConfigError::new(FORMULA, "", OTHER));
+            let remedy = error.remedy.clone();
+            of_formula(error, &remedy)
+        })?;
+        let planned = function::plan(&config).map_err(|error| {
+            of_formula(error, "change the formula, because the cosine x is from 0 to 1")
+        })?;
+        Ok(HighlightPart::OfFormula(config, planned))
     }
 }

@@ -2,12 +2,12 @@
 //! proves a bound on the error of each result.
 //!
 //! Of the plans that it tries, it chooses the one with the fewest estimated look-up tables. If no plan keeps the allowed
-//! errors, the search fails with a [`PlanRefusal`]. The module caches plans and refusals.
+//! errors, the search fails with a [`PlanRefusal`].
 
-use std::collections::{HashMap, HashSet};
-use std::sync::{Arc, LazyLock, Mutex};
+use std::collections::HashSet;
+use std::sync::Arc;
 
-use glint_approximate::{FULL_CELL, Identity, Piecewise, TargetFunction, Wish};
+use glint_approximate::{FULL_CELL, Identity, Piecewise, RefusalKind, TargetFunction, Wish};
 use glint_base::fixed::MAX_WIDTH;
 
 use super::allocate::{Allocation, allocated, largest_excess};
@@ -88,25 +88,6 @@ pub struct ProvedPlan {
     pub proof: ProofKind,
 }
 
-type FindResult = Result<Arc<ProvedPlan>, PlanRefusal>;
-
-/// Returns the plan for a statement, with proven error bounds. The same statement gets the same plan or the same refusal again
-/// from a cache, without a new search.
-///
-/// # Errors
-/// Fails if a formula has no plan, or if no plan keeps the allowed errors. The refusal says why, and how to change the
-/// statement.
-pub fn find(statement: &ExpressionStatement) -> FindResult {
-    static FOUND: LazyLock<Mutex<HashMap<String, FindResult>>> = LazyLock::new(Mutex::default);
-    let key = format!("{statement:?}");
-    if let Some(known) = FOUND.lock().expect("no search panics").get(&key) {
-        return known.clone();
-    }
-    let found = searched(statement).map(Arc::new);
-    FOUND.lock().expect("no search panics").insert(key, found.clone());
-    found
-}
-
 /// A plan whose functions have polynomials.
 struct PlanCandidate {
     plan: ExpressionPlan,
@@ -114,7 +95,12 @@ struct PlanCandidate {
     divisions: usize,
 }
 
-fn searched(statement: &ExpressionStatement) -> Result<ProvedPlan, PlanRefusal> {
+/// Returns the plan for a statement, with proven error bounds.
+///
+/// # Errors
+/// Fails if a formula has no plan, or if no plan keeps the allowed errors. The refusal says why, and how to change the
+/// statement.
+pub fn find(statement: &ExpressionStatement) -> Result<ProvedPlan, PlanRefusal> {
     let PlanCandidate { plan: whole, divisions } = smallest_candidate(statement)?;
     let (plan, renumbered) = whole.with_reductions()?;
     let [first, second] = plan.multiplier_widths();
@@ -256,8 +242,15 @@ fn cheapest_polynomials(function: &TargetFunction) -> Result<Arc<Piecewise>, Pla
     if let Some((_, found)) = cheapest {
         return Ok(found);
     }
-    glint_approximate::find(function, Wish::default())
-        .map_err(|refusal| PlanRefusal::new(refusal.message, refusal.remedy))
+    glint_approximate::find(function, Wish::default()).map_err(|refusal| {
+        let remedy = match refusal.kind {
+            RefusalKind::NoValue => {
+                "exclude such operands with `where`, or with the domains of the operands"
+            }
+            _ => "give the operands or the results fewer fraction bits, or allow a larger error",
+        };
+        PlanRefusal::new(refusal.message, remedy)
+    })
 }
 
 /// Returns the share that each node of `plan` has in the error of each result, by result and node, in units of the result's

@@ -3,12 +3,12 @@
 use std::fs;
 use std::path::Path;
 
-use glint::config::{self, Config, Problems};
+use glint::config::{self, Config};
 use glint::core::Core;
 use glint::cosim::batch::{Engine, Golden, Points, RustHdl};
 use glint::cosim::{Outcome, trial};
 use glint::package::{Computation, FileKind, OutputFile, OutputFiles, driver};
-use glint::registry::{Device, Registry};
+use glint::registry::{Device, OpenedConfig, Registry};
 use tempfile::TempDir;
 
 use super::Sure;
@@ -56,12 +56,8 @@ pub fn all_configurations() -> Vec<(String, Core)> {
 /// # Panics
 /// It is wrong.
 pub fn configuration(path: &str) -> Core {
-    of_config(path, config::read(Path::new(path), &Registry::shipped().schemas()))
-}
-
-fn of_config(path: &str, config: Result<Config, Problems>) -> Core {
-    let config = config.sure();
-    Core::new(device(&config.device), config).sure_of(path)
+    let (opened, _) = Registry::shipped().read(Path::new(path)).sure();
+    Core::build(opened).sure_of(path)
 }
 
 /// Returns the device of that name.
@@ -112,7 +108,8 @@ pub fn configuration_between(path: &str, interface: &str) -> Core {
 /// # Panics
 /// It is wrong.
 pub fn parsed(path: &str, text: &str) -> Core {
-    of_config(path, config::parse(path, text, &Registry::shipped().schemas()))
+    let (opened, _) = Registry::shipped().parse(path, text).sure();
+    Core::build(opened).sure_of(path)
 }
 
 /// Returns the core of a device, of the catalogue or changed, by its defaults and more keys, as TOML.
@@ -161,11 +158,21 @@ pub fn assert_agrees(core: &Core, points: u64, seed: u64, what: &str) {
 /// # Panics
 /// The description does not make a design of it.
 pub fn random(device: Device, seed: u64) -> (String, Core) {
-    let schema = (device.schema)();
-    let config = config::sample(&schema, seed);
-    let toml = format!("{}, seed {seed}\n{}", device.name, config.to_toml(&schema));
-    let core = Core::new(device, config).unwrap_or_else(|error| panic!("{error:?}\n{toml}"));
+    let opened = sample(device, seed);
+    let toml = opened.config.to_toml(&(device.schema)());
+    let toml = format!("{}, seed {seed}\n{toml}", device.name);
+    let core = Core::build(opened).unwrap_or_else(|error| panic!("{error:?}\n{toml}"));
     (toml, core)
+}
+
+/// Returns a configuration that is drawn at random and that the device can have.
+///
+/// # Panics
+/// The ranges of the schema allow too few such configurations.
+pub fn sample(device: Device, seed: u64) -> OpenedConfig {
+    let refusal = |config: &Config| device.open(config.clone()).err();
+    let config = config::sample(&(device.schema)(), seed, &refusal);
+    device.open(config).sure()
 }
 
 /// The files of a configuration whose bench runs over so many points.
@@ -180,7 +187,7 @@ impl Emitted {
     /// # Panics
     /// Golden model and built-in simulator differ, or the design cannot be written.
     pub fn new(core: &Core, points: u64, seed: u64) -> Self {
-        let name = core.config.name.clone();
+        let name = core.config().name.clone();
         let files = core
             .vectors(points, seed)
             .and_then(|vectors| core.files(&format!("configs/{name}.toml"), vectors))

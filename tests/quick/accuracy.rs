@@ -16,7 +16,7 @@ use rand_chacha::rand_core::{RngCore, SeedableRng};
 use rayon::prelude::*;
 
 use crate::common::Sure;
-use crate::common::cores::parsed;
+use crate::common::cores::{parsed, sample};
 use crate::common::sample::sampled_for;
 
 /// The number of random configurations of each device.
@@ -108,8 +108,8 @@ fn random_configurations_of_every_device() {
             false => ("random configurations within their bounds", CONFIGURATIONS),
         };
         sampled_for(device.name, kind, 0..all).into_par_iter().for_each(|seed| {
-            let config = config::sample(&schema, seed);
-            let contract = (device.contract)(&config);
+            let opened = sample(*device, seed);
+            let (contract, config) = (opened.contract(), opened.config);
             let mut rng = ChaCha8Rng::seed_from_u64(seed);
             let what = config.to_toml(&schema);
             // Of a function the places are all there is.

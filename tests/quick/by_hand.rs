@@ -147,10 +147,11 @@ fn designs_and_golden_models_show_what_was_worked_out() {
             let mut groups = core[title.len()..].split("\n-- ");
             let keys = groups.next().unwrap_or_default();
             let (device, config) = configuration(&place, &format!("{common}\n{keys}\n"));
-            let design = device.sequential(&config).sure_of(&place);
+            let opened = device.open(config).sure_of(&place);
+            let design = opened.sequential().sure_of(&place);
             for group in groups {
                 let (head, rows) = group.split_once('\n').expect("rows");
-                let mut pair = Pair::new(&design, device.golden(&config), head);
+                let mut pair = Pair::new(&design, opened.golden(), head);
                 let mut is_first = false;
                 for row in rows.lines().map(|row| row.split('#').next().unwrap_or("").trim()) {
                     if !row.is_empty() {

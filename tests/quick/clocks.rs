@@ -44,13 +44,13 @@ fn assert_stated_clocks_are_right(core: &Core) {
     let taken = clocks_of_every_shift(core);
     let latest = *taken.last().expect("a clock");
     if taken.len() == 1 {
-        assert_eq!(stated.start_to_start, Some(latest), "{}", core.config.name);
+        assert_eq!(stated.start_to_start, Some(latest), "{}", core.config().name);
         assert_eq!(stated.start_to_done, Some(latest - 1));
         // The result comes in the last clock.
         assert_eq!(stated.start_to_valid, Some(latest - 1));
     } else {
         let fixed = [stated.start_to_valid, stated.start_to_done, stated.start_to_start];
-        assert_eq!(fixed, [None; 3], "{}: {taken:?}", core.config.name);
+        assert_eq!(fixed, [None; 3], "{}: {taken:?}", core.config().name);
         assert!(stated.start_to_done_at_most.expect("a bound") >= latest - 1);
     }
 }

@@ -11,6 +11,7 @@ use std::fs;
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::process::{Command, Output};
+use std::sync::Arc;
 
 use crate::common::cores::{configuration, configuration_with, device};
 use crate::common::files::{paths, read};
@@ -18,8 +19,9 @@ use crate::common::sample::sampled;
 use glint::config::Config;
 use glint::core::Core;
 use glint::cosim::exhaustive::{Clocks, Difference, Job, MOST_BITS, Proof, Shard, ShardState};
-use glint::golden::Model;
-use glint::registry::{Device, Registry};
+use glint::devices;
+use glint::golden::{self, Model};
+use glint::registry::{Device, KeyParts, Registry};
 use serde_json::Value;
 
 const NARROW: &str = "configs/reduced/quadratic.toml";
@@ -96,7 +98,7 @@ impl Model for Wrong {
 
 /// Returns the job of a configuration whose model is wrong.
 fn job(core: &Core, aim: Aim) -> Job<'_> {
-    let model = Wrong::new(core.device.golden(&core.config), aim);
+    let model = Wrong::new(core.opened.golden(), aim);
     let contract = core.contract.as_ref();
     let clocks = Clocks::new(&core.design, Box::new(model), contract).expect("they fit");
     Job::new(contract).with(clocks)
@@ -155,7 +157,7 @@ fn every_combination_of_every_device_agrees() {
             let proof = Proof::new(core.contract.as_ref(), state.f.peak, state.colours.peak);
             assert!(proof.failures.is_empty(), "{path}: {:?}", proof.failures);
         }
-        devices.insert(core.device.name);
+        devices.insert(core.device().name);
     }
     let catalogue = Registry::catalogue();
     let mut all: BTreeSet<&str> = catalogue.devices().iter().map(|device| device.name).collect();
@@ -248,10 +250,18 @@ fn the_first_difference_is_the_same_however_the_work_is_divided() {
 /// `quadratic` with a model that is wrong for some combinations.
 fn wrong_device() -> Device {
     fn model(config: &Config) -> Box<dyn Model> {
-        let inner = (device("quadratic").model)(config);
-        Box::new(Wrong::new(inner, &[("exponent", 13)]))
+        Box::new(Wrong::new(golden::quadratic::model(config), &[("exponent", 13)]))
     }
-    Device { model, ..device("quadratic") }
+    Device {
+        parts: |_| {
+            Ok(Arc::new(KeyParts {
+                describe: devices::quadratic::describe,
+                model,
+                contract: golden::quadratic::contract,
+            }))
+        },
+        ..device("quadratic")
+    }
 }
 
 /// Says to the test below that it is the command line of the wrong device, which it starts.

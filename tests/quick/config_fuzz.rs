@@ -134,7 +134,7 @@ proptest! {
             let defaults = Config::defaults(&lamp(), "lamp");
             uncommented(&commented(&lamp(), &defaults, &[]))
         } else {
-            sample(&lamp(), seed).to_toml(&lamp())
+            sample(&lamp(), seed, &|_| None).to_toml(&lamp())
         };
         let mut text: Vec<char> = text.chars().collect();
         for (place, removed, piece) in changes {

@@ -62,7 +62,7 @@ fn keys_that_every_device_shares() {
 #[test]
 fn samples_are_valid_and_read_back() {
     for seed in 0..500 {
-        let config = sample(&lamp(), seed);
+        let config = sample(&lamp(), seed, &|_| None);
         let text = config.to_toml(&lamp());
         let read = parse("x.toml", &text, &schemas());
         assert_eq!(read.expect("a sample is valid"), config, "{text}");
@@ -71,7 +71,7 @@ fn samples_are_valid_and_read_back() {
 
 #[test]
 fn samples_cover_ends_and_both_sides_of_every_choice() {
-    let configs: Vec<Config> = (0..500).map(|seed| sample(&lamp(), seed)).collect();
+    let configs: Vec<Config> = (0..500).map(|seed| sample(&lamp(), seed, &|_| None)).collect();
     let seen = |key: &str| -> BTreeSet<String> {
         configs.iter().map(|config| config.value(key).bare()).collect()
     };
@@ -93,7 +93,7 @@ fn samples_cover_ends_and_both_sides_of_every_choice() {
         .collect();
     assert_eq!(lengths, (1..=8).collect());
     // The same seed, the same configuration; and seeds differ.
-    assert_eq!(sample(&lamp(), 7), configs[7]);
+    assert_eq!(sample(&lamp(), 7, &|_| None), configs[7]);
     assert_ne!(configs[7].to_toml(&lamp()), configs[8].to_toml(&lamp()));
 }
 

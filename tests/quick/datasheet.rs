@@ -325,7 +325,7 @@ fn waves(wavedrom: &str) -> impl Fn(&str) -> String {
 }
 
 fn has_the_clocks_of_the_manifest(path: &str, wavedrom: &str, core: &Core) {
-    let name = &core.config.name;
+    let name = &core.config().name;
     let manifest = json(format!("rtl_out/{name}/{name}.json"));
     let wave = waves(wavedrom);
     assert!(wave("start").starts_with("10"), "{path}: {}", wave("start"));
@@ -393,7 +393,7 @@ fn every_pipeline_has_its_page() {
         is_accessible(&path, &document);
         assert!(is_sealed(made.page.as_bytes(), Seal::Markup), "{path}");
         assert!(!made.page.contains("<code>start</code>"), "{path}");
-        let name = &core.config.name;
+        let name = &core.config().name;
         let files = core.verilog().expect("Verilog");
         let (_, verilog) = files.iter().find(|it| it.0 == format!("{name}.v")).expect("a module");
         wires_are_clear(&path, &document);

@@ -4,6 +4,7 @@
 //! It also tests devices that Glint must refuse, for example a device that never shows its result.
 
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
 use glint::config::{Config, Schema};
 use glint::core::Core;
@@ -14,7 +15,7 @@ use glint::fixed::Format;
 use glint::golden::device::{self, Formula};
 use glint::golden::frame::{Frame, idle, step as execute};
 use glint::golden::{Bound, Bounds, Contract, Operand, Term};
-use glint::registry::Device;
+use glint::registry::{Device, KeyParts, PartsResult};
 use glint::verify::CheckVerdict;
 
 use crate::common::Sure;
@@ -253,6 +254,18 @@ fn sum_model(shows: bool) -> device::Device {
     frame.device([idle(), add, result.end()])
 }
 
+/// Describes a device that adds its operand to the operand of the computation before.
+fn describe_sum(d: &Designer, _: &Config) {
+    let x = d.operand("x", Format::unsigned(8, 0)).q();
+    let before = d.register("earlier", Format::unsigned(8, 0));
+    let sum = d.register("sum", Format::unsigned(9, 0));
+    sum.takes(d.add("both", before.q(), x));
+    before.takes(x);
+    d.output("sum_out", sum.q());
+    let add = step("add", [sum.load(), before.load()]);
+    d.microprogram([step("idle", []), add, step("result", [valid(), end()])]);
+}
+
 /// Every command builds the core first.
 #[test]
 fn results_that_depend_on_the_past_and_results_that_never_come_are_refused() {
@@ -260,21 +273,25 @@ fn results_that_depend_on_the_past_and_results_that_never_come_are_refused() {
         name: "sum",
         summary: "",
         schema: || without_keys("sum"),
-        describe: |d: &Designer, _| {
-            let x = d.operand("x", Format::unsigned(8, 0)).q();
-            let before = d.register("earlier", Format::unsigned(8, 0));
-            let sum = d.register("sum", Format::unsigned(9, 0));
-            sum.takes(d.add("both", before.q(), x));
-            before.takes(x);
-            d.output("sum_out", sum.q());
-            let add = step("add", [sum.load(), before.load()]);
-            d.microprogram([step("idle", []), add, step("result", [valid(), end()])]);
+        parts: |_| {
+            Ok(Arc::new(KeyParts {
+                describe: describe_sum,
+                model: |_| sum_model(true).model(),
+                contract: |_| sum_model(true).contract(Sum),
+            }))
         },
-        model: |_| sum_model(true).model(),
-        contract: |_| sum_model(true).contract(Sum),
         proved: false,
     };
-    let silent = Device { contract: |_| sum_model(false).contract(Sum), ..sum };
+    let silent = Device {
+        parts: |_| {
+            Ok(Arc::new(KeyParts {
+                describe: describe_sum,
+                model: |_| sum_model(true).model(),
+                contract: |_| sum_model(false).contract(Sum),
+            }))
+        },
+        ..sum
+    };
     for (device, expected) in [
         (
             sum,
@@ -319,6 +336,19 @@ fn copying() -> device::Device {
     frame.device([idle(), execute(move |s| s[copy] = s[x]), idle().valid().end()])
 }
 
+/// Returns the parts of a device that copies its operand, with this contract.
+fn copying_parts(contract: fn(&Config) -> Box<dyn Contract>) -> PartsResult {
+    fn describe(d: &Designer, _: &Config) {
+        let x = d.operand("x", Format::unsigned(4, 0)).q();
+        let copy = d.register("copy", Format::unsigned(4, 0));
+        copy.takes(x);
+        d.output("copy_out", copy.q());
+        let load = step("load", [copy.load()]);
+        d.microprogram([step("idle", []), load, step("result", [valid(), end()])]);
+    }
+    Ok(Arc::new(KeyParts { describe, model: |_| copying().model(), contract }))
+}
+
 /// No comparison of an error takes a reference that is no finite number for one that is met.
 #[test]
 fn a_reference_without_a_value_is_a_failure_everywhere() {
@@ -326,19 +356,13 @@ fn a_reference_without_a_value_is_a_failure_everywhere() {
         name: "copy",
         summary: "",
         schema: || without_keys("copy"),
-        describe: |d: &Designer, _| {
-            let x = d.operand("x", Format::unsigned(4, 0)).q();
-            let copy = d.register("copy", Format::unsigned(4, 0));
-            copy.takes(x);
-            d.output("copy_out", copy.q());
-            let load = step("load", [copy.load()]);
-            d.microprogram([step("idle", []), load, step("result", [valid(), end()])]);
-        },
-        model: |_| copying().model(),
-        contract: |_| copying().contract(Missing(f64::NAN)),
+        parts: |_| copying_parts(|_| copying().contract(Missing(f64::NAN))),
         proved: true,
     };
-    let infinite = Device { contract: |_| copying().contract(Missing(f64::INFINITY)), ..of_nan };
+    let infinite = Device {
+        parts: |_| copying_parts(|_| copying().contract(Missing(f64::INFINITY))),
+        ..of_nan
+    };
     let config = || Config::defaults(&(of_nan.schema)(), "copy");
     for device in [of_nan, infinite] {
         let core = Core::new(device, config()).expect("a device");
@@ -373,7 +397,7 @@ fn a_reference_without_a_value_is_a_failure_everywhere() {
             assert_eq!(finding(&core, id, EFFORT).verdict, CheckVerdict::Failed, "{id}");
         }
     }
-    let two = Device { contract: |_| copying().contract(Two), ..of_nan };
+    let two = Device { parts: |_| copying_parts(|_| copying().contract(Two)), ..of_nan };
     let error = Core::new(two, config()).err().expect("a value too many");
     assert!(format!("{error:#}").contains("2 values for 1 outputs"), "{error:#}");
     // A bound that is no number limits nothing.

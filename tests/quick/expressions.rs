@@ -5,13 +5,13 @@
 //! contract states. A user gets these results from `glint eval`, and the C model computes them.
 
 use std::collections::BTreeSet;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use crate::common::cores::{Emitted, assert_agrees, assert_results_as_stated, device, parsed};
 use crate::common::files::read;
-use glint::config::parse;
-
+use glint::config::{Config, Value, parse};
 use glint::core::Core;
-use glint::registry::Registry;
+use glint::registry::{Device, PartsResult, Registry};
 use regex::Regex;
 
 /// The operands x and y with four fraction bits, from 0 to 15/16.
@@ -198,4 +198,33 @@ fn names_in_the_files_are_operands_or_are_refused() {
                 .unwrap_or_else(|error| panic!("{name}: {error:#}"));
         }
     }
+}
+
+/// Counts how often the device below opened a configuration.
+static OPENED: AtomicUsize = AtomicUsize::new(0);
+
+/// Everything that is made of a configuration reads one plan: description, golden model, contract, files, vectors and checks.
+#[test]
+fn a_configuration_is_planned_once() {
+    fn counted(config: &Config) -> PartsResult {
+        OPENED.fetch_add(1, Ordering::Relaxed);
+        (device("expression").parts)(config)
+    }
+    let counting = Device { parts: counted, ..device("expression") };
+    let registry = Registry::empty().with(counting);
+    let text = format!(
+        "device = \"expression\"\n{SIGNED}\nresults.r = {{ formula = \"x * y\", fraction = 3 }}\n\
+         architecture = \"pipelined\""
+    );
+    let (opened, _) = registry.parse("core.toml", &text).expect("a sound configuration");
+    let core = Core::build_with_free_clock(opened).expect("a core");
+    let vectors = core.shipped_vectors().expect("vectors");
+    core.files("core.toml", vectors).expect("files");
+    core.lockstep(1).expect("the same signals").run(100, &|_| ()).expect("a run");
+    core.job().expect("the same signals");
+    let mut sequential = core.config().clone();
+    sequential.set("architecture", Value::Text("sequential".to_owned()));
+    sequential.reset_keys_without_effect(&(counting.schema)());
+    Core::build(core.opened.with_config(sequential).expect("the same keys")).expect("a core");
+    assert_eq!(OPENED.load(Ordering::Relaxed), 1);
 }

@@ -219,7 +219,7 @@ fn set_ups(count: usize) -> impl Iterator<Item = LineParameters> {
 /// unquantised formula.
 fn drift(core: &Core, line: &LineParameters, f: impl Fn(f64) -> f64) -> f64 {
     let highlight = core.contract.highlight().expect("a highlight");
-    let feed = Feed::new(core.device.name, core.contract.as_ref()).expect("operands of a line");
+    let feed = Feed::new(core.device().name, core.contract.as_ref()).expect("operands of a line");
     let operands = feed.line(line).expect("operands");
     let (amplitude, control) = operands.split_last().expect("an amplitude at the end");
     (0..=line.length)

@@ -20,7 +20,7 @@ fn names() -> Vec<(String, String)> {
         ["_pipelined", "_up5k_pipelined", ""].map(|kind| format!("configs/{core}{kind}.toml"))
     });
     let both = both.filter(|path| Path::new(path).exists());
-    both.map(|path| (configuration(&path).config.name.clone(), path)).collect()
+    both.map(|path| (configuration(&path).config().name.clone(), path)).collect()
 }
 
 #[test]

@@ -6,15 +6,18 @@
 
 use std::collections::BTreeSet;
 use std::path::Path;
+use std::sync::Arc;
 
 use crate::common::cores::{configuration, configurations};
 use crate::common::files::{json, paths, put, read, replaced};
 use crate::common::json::Json;
 use crate::common::sample::sampled_by_name;
+use glint::config::Config;
 use glint::core::Core;
 use glint::cosim::exhaustive::{Backing, Places, Proof, Record};
+use glint::devices;
 use glint::golden::{Bounds, Contract, Highlight, Operand, Output, Sweep, cosine_power};
-use glint::registry::{Device, Registry};
+use glint::registry::{Device, KeyParts, PartsResult, Registry};
 use serde_json::{Value, json};
 
 /// Places that are checked again of each proof, about.
@@ -124,15 +127,24 @@ impl Contract for Foreign {
     }
 }
 
+/// Returns the parts of `cosine-power` with another contract.
+fn foreign_parts(contract: fn(&Config) -> Box<dyn Contract>) -> PartsResult {
+    let (describe, model) = (devices::cosine_power::describe, cosine_power::model);
+    Ok(Arc::new(KeyParts { describe, model, contract }))
+}
+
 #[test]
 fn a_bound_is_proven_where_somebody_proved_it() {
     let own = configuration("configs/cosine_power.toml");
-    let foreign = |contract| {
-        let device = Device { contract, proved: false, ..own.device };
-        Core::new(device, own.config.clone()).expect("a design")
+    let foreign = |parts| {
+        let device = Device { parts, proved: false, ..*own.device() };
+        Core::new(device, own.config().clone()).expect("a design")
     };
-    let honest = foreign(|config| Box::new(Foreign(cosine_power::contract(config), 1.0)));
-    let wrong = foreign(|config| Box::new(Foreign(cosine_power::contract(config), 1.0 / 3.0)));
+    let honest =
+        foreign(|_| foreign_parts(|config| Box::new(Foreign(cosine_power::contract(config), 1.0))));
+    let wrong = foreign(|_| {
+        foreign_parts(|config| Box::new(Foreign(cosine_power::contract(config), 1.0 / 3.0)))
+    });
     let backing = |core: &Core, proofs: &Path| core.backing(proofs).expect("readable records");
     let record = Backing::Exhaustive("records/proofs/cosine_power.json".to_owned());
     assert_eq!(backing(&own, Path::new("nowhere")), Backing::Catalogue);

@@ -1,14 +1,17 @@
 //! Tests keys that add registers to a core, with devices that are defined in this file: names that collide in a register map,
 //! pipelines, and golden models that cannot predict the added registers.
 
-use glint::base::key_error::KeyError;
+use std::sync::Arc;
+
+use glint::base::config_error::ConfigError;
 use glint::config::{self, Config};
+use glint::devices;
 use glint::dsl::{Designer, end, step, valid};
 use glint::fixed::Format;
-use glint::golden::Model;
+use glint::golden::{self, Model};
 use glint::hdl::netlist::Design;
 use glint::package::{EmitInputs, Surroundings, emit};
-use glint::registry::{Device, Registry};
+use glint::registry::{Device, KeyParts, Registry};
 
 use crate::common::cores::{self, with_keys};
 
@@ -37,7 +40,7 @@ fn colliding_names_in_the_map_are_refused() {
     assert!(on_wishbone(&device("x", "y_out")).expect("registers") > 0);
     for name in ["status", "id", "interrupt_enable"] {
         let error = on_wishbone(&device(name, "y_out")).expect_err("two of that name");
-        let error: KeyError = error.downcast().expect("a key");
+        let error: ConfigError = error.downcast().expect("a key");
         assert_eq!(error.key, "interface.registers");
         assert_eq!(error.message, format!("two registers of `device` are named `{name}`"));
         assert!(error.remedy.contains("rename the operand or the result"), "{error}");
@@ -84,7 +87,16 @@ impl Model for ByHand {
 
 #[test]
 fn a_model_that_does_not_know_the_registers_is_refused() {
-    let by_hand = Device { model: |_| Box::new(ByHand), ..cores::device("threshold") };
+    let by_hand = Device {
+        parts: |_| {
+            Ok(Arc::new(KeyParts {
+                describe: devices::threshold::describe,
+                model: |_| Box::new(ByHand),
+                contract: golden::threshold::contract,
+            }))
+        },
+        ..cores::device("threshold")
+    };
     assert!(with_keys(by_hand, "").is_ok());
     for (key, toml) in KEYS {
         let error = with_keys(by_hand, toml).err().expect("no model").to_string();

@@ -14,7 +14,7 @@ fn every_core_becomes_a_model_in_c() {
     assert!(paths.len() >= 38, "{paths:?}");
     paths.into_par_iter().for_each(|path| {
         let core = configuration_with(&path, "\n[package]\nsoftware = true\n");
-        let (name, files) = (&core.config.name, Emitted::new(&core, 1, 1).files);
+        let (name, files) = (&core.config().name, Emitted::new(&core, 1, 1).files);
         let text = |path: &str| {
             let file = files.iter().find(|file| file.path == path);
             file.unwrap_or_else(|| panic!("{path}")).contents.as_str()

@@ -15,7 +15,7 @@ use glint::hdl::netlist::Design;
 const POINTS: u64 = 70_000;
 
 fn lockstep<'a>(core: &'a Core, design: &'a Design, seed: u64) -> Lockstep<'a> {
-    let model = core.device.golden(&core.config);
+    let model = core.opened.golden();
     Lockstep::new(design, model, core.contract.as_ref(), seed).expect("they fit")
 }
 

@@ -15,7 +15,7 @@ use glint::config::{Config, Value as ConfigValue};
 use glint::core::{Core, TEST_POINTS, TEST_SEED};
 use glint::evidence::comparison::{accuracy, clocks_per_point};
 use glint::hdl::netlist::Pipeline;
-use glint::keys::function::{found, schema};
+use glint::keys::function::{plan, schema};
 use glint::keys::presets;
 use glint::mutate::{GOAL_MEMORY, GOAL_TEXT};
 use glint::registry::Registry;
@@ -118,7 +118,7 @@ fn every_table_between_markers_is_blessed() {
 fn approximation(values: Vec<(String, ConfigValue)>) -> Arc<Piecewise> {
     let mut config = Config::defaults(&schema(), "f");
     values.iter().for_each(|(key, value)| config.set(key, value.clone()));
-    found(&config).unwrap_or_else(|refusal| panic!("{values:?}: {refusal:?}")).1
+    plan(&config).unwrap_or_else(|error| panic!("{values:?}: {error}")).polynomials
 }
 
 /// Writes bits of coefficients of a function by its name, with the reduction and without.
@@ -184,7 +184,7 @@ fn main_job(row: &mut Row) {
     let core = core(key(row));
     let clocks = core.timing().expect("clocks").clocks_per_point().expect("a number");
     let bound = core.contract.bounds().governing().units;
-    let device = format!("`{}`", core.device.name);
+    let device = format!("`{}`", core.device().name);
     let rom_bits = grouped(core.design.rom_bits());
     let lockstep = core.lockstep(TEST_SEED).expect("a simulation");
     let outcome = lockstep.run(TEST_POINTS, &|_| ()).expect("a run");
@@ -282,7 +282,7 @@ fn pipelines(rows: &mut Vec<Row>) {
         let pipeline = core.design.pipeline.as_ref();
         pipeline.is_some_and(|it| it.registered.is_empty() && it.interval == 1)
     });
-    assert_eq!(listed, inferred.map(|(_, core)| core.config.name).collect());
+    assert_eq!(listed, inferred.map(|(_, core)| core.config().name.clone()).collect());
 }
 
 /// All columns but the frequencies, which are of `benches/pipeline/ecp5.py`.

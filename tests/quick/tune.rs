@@ -126,7 +126,7 @@ fn the_formula_is_compared_where_it_lives() {
     let answer = tuned("quadratic", &goal(0.85, Target::Ecp5)).expect("an answer");
     assert!(!answer.free.contains(&"coefficient.scheme"), "{:?}", answer.free);
     let reference = |config: &Config| {
-        let contract = (device.contract)(config);
+        let contract = device.open(config.clone()).expect("keys that can be opened").contract();
         let raw = |name: &str, value: f64| {
             let operand =
                 contract.operands().iter().find(|it| it.name == name).expect("an operand");

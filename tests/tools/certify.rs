@@ -93,7 +93,8 @@ fn bounds_are_proved_and_smaller_ones_are_not() {
 
 fn of_user(device: Device) -> (Design, Box<dyn Contract>) {
     let config = Config::defaults(&(device.schema)(), "core");
-    (device.sequential(&config).expect("a design"), (device.contract)(&config))
+    let opened = device.open(config).expect("keys that can be opened");
+    (opened.sequential().expect("a design"), opened.contract())
 }
 
 #[test]

@@ -58,10 +58,10 @@ fn a_bench_of_a_line_with_buffers_passes() {
 
 fn assert_passes(what: &str, core: &Core) {
     let dir = dir(core);
-    let run = run(dir.path(), &core.config.name, &core.config.name);
+    let run = run(dir.path(), &core.config().name, &core.config().name);
     let passed = |test: &&str| run.output.contains(&format!("{test} passed"));
     let tests = tests(core);
-    let says = format!("PASS {}: {} tests, 0 failed", core.config.name, tests.len());
+    let says = format!("PASS {}: {} tests, 0 failed", core.config().name, tests.len());
     assert!(
         run.status.success() && tests.iter().all(passed) && run.output.contains(&says),
         "{what}:\n{}",
@@ -153,7 +153,7 @@ fn run(dir: &Path, module: &str, name: &str) -> Run {
 }
 
 fn assert_noticed(dir: &Path, core: &Core, test: &str, what: &str) {
-    let (name, count) = (&core.config.name, tests(core).len());
+    let (name, count) = (&core.config().name, tests(core).len());
     let run = run(dir, name, name);
     let says = |word: &str| run.output.lines().any(|line| line.starts_with(word));
     assert!(

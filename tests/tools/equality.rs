@@ -38,7 +38,7 @@ fn verdict(sequential: &Design, pipeline: &Design) -> Verdict {
 const UNDECIDED: &str = "configs/rough_up5k_pipelined.toml";
 
 fn sequential(core: &Core) -> Design {
-    core.device.sequential(&core.config).expect("a description")
+    core.opened.sequential().expect("a description")
 }
 
 #[test]
@@ -56,9 +56,9 @@ fn every_pipeline_is_proved_equal_to_its_sequential_core() {
 
 /// Returns the pipeline of a configuration with another interval, at the clock that it reaches with this interval.
 fn at_interval(path: &str, clocks: u64) -> Core {
-    let Core { device, mut config, .. } = configuration(path);
-    config.set("pipeline.interval", Value::Text(clocks.to_string()));
-    Core::with_free_clock(device, config).sure_of(path)
+    let mut opened = configuration(path).opened;
+    opened.config.set("pipeline.interval", Value::Text(clocks.to_string()));
+    Core::build_with_free_clock(opened).sure_of(path)
 }
 
 /// Returns the pipelines in `configs/` at intervals from 2 to 4 clocks, without the one that z3 does not decide.
@@ -220,7 +220,7 @@ fn of_text(core: &Core, limit: u64, change: impl Fn(&str) -> String) -> TextVerd
         let text = if file.kind.is_verilog() { change(text) } else { text.to_owned() };
         files.push((name.to_owned(), text));
     }
-    let text = elaborate(&yosys, &files, &core.config.name, limit).expect("a netlist");
+    let text = elaborate(&yosys, &files, &core.config().name, limit).expect("a netlist");
     compare_text(&core.design, &text, &z3, limit).expect("a verdict")
 }
 

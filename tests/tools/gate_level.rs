@@ -101,7 +101,7 @@ fn netlists_of_cells_pass_and_wrong_gates_fail() {
     let case = configuration_with("configs/threshold.toml", "\n[package]\nmemories = \"case\"\n");
     let of = |path: &str| configuration(&format!("configs/{path}.toml"));
     let cores = [of("cosine_power_pipelined"), of("lyon_pipelined"), of("cosine_power"), case];
-    let name_of = |core: &Core| core.config.name.clone();
+    let name_of = |core: &Core| core.config().name.clone();
     sampled_by_name("netlists of cells", cores, name_of).par_iter().for_each(|core| {
         let emitted = Emitted::new(core, POINTS, 1);
         let rtl = emitted.rtl();

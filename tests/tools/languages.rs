@@ -50,7 +50,7 @@ fn of_cores(
             &format!("configs/{name}.toml"),
             &format!("{interface}{PACKAGE}"),
         );
-        (core.config.name.clone(), core)
+        (core.config().name.clone(), core)
     })
 }
 
@@ -203,7 +203,7 @@ fn bytes(format: Format) -> usize {
 
 fn transfer(core: &Core, numbers: &[(String, Format)]) -> usize {
     let bytes: usize = numbers.iter().map(|(_, format)| bytes(*format)).sum();
-    let padded = core.config.choice("interface.data_width") == "power-of-two";
+    let padded = core.config().choice("interface.data_width") == "power-of-two";
     if padded { bytes.next_power_of_two() } else { bytes }
 }
 

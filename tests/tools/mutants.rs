@@ -42,7 +42,7 @@ fn pipelines() -> Vec<(String, Core)> {
 }
 
 fn record(core: &Core) -> Value {
-    json(format!("records/mutation/{}.json", core.config.name))
+    json(format!("records/mutation/{}.json", core.config().name))
 }
 
 /// Proofs are of the whole design; another test must not find what they exclude.
@@ -52,7 +52,7 @@ fn assert_unnoticed(path: &str, core: &Core, found: &[FaultResult]) {
     let step = (proved.len() / PROVED).max(1);
     for one in proved.into_iter().step_by(step) {
         let mutant = one.fault.planted(&core.design);
-        let model = core.device.golden(&core.config);
+        let model = core.opened.golden();
         let outcome = Lockstep::new(&mutant, model, core.contract.as_ref(), SEED)
             .and_then(|lockstep| lockstep.run(TEST_POINTS / 5, &|_| ()))
             .sure_of(format_args!("{path}: {}", one.fault.id));

@@ -6,11 +6,10 @@
 //! of its own. At most a tenth of the formulas may be refused without such a reason, because of the planner's limits.
 
 use crate::common::bench::Bench;
-use crate::common::cores::{Emitted, assert_agrees, assert_results_as_stated, device};
+use crate::common::cores::{Emitted, assert_agrees, assert_results_as_stated};
 use crate::common::netlist::POINTS;
 use crate::common::sample::sampled_by_name;
 use crate::common::tools::{EFFORT, finding};
-use glint::config;
 use glint::core::Core;
 use glint::cosim::Random;
 use glint::cosim::batch::{Engine, Golden, Points};
@@ -308,7 +307,7 @@ impl Configuration {
     fn assert_enclosed(&self, core: &Core, what: &str) {
         /// The most that the evaluation errs by, in units of the last place.
         const EVALUATION: f64 = 1e-6;
-        let plan = keys::expression::found(&core.config).expect("a plan");
+        let plan = keys::expression::plan(core.config()).expect("a plan");
         let mut points = Points::new(self.operands.len());
         let mut exact = Vec::new();
         let scale = (self.fraction as f64).exp2();
@@ -388,9 +387,8 @@ fn random_formulas_agree_or_are_refused_with_reason() {
         }
         let text = configuration.toml();
         let what = format!("seed {seed}\n{text}");
-        let config = config::parse("core.toml", &text, &Registry::shipped().schemas());
-        let config = match config {
-            Ok(config) => config,
+        let opened = match Registry::shipped().parse("core.toml", &text) {
+            Ok((opened, _)) => opened,
             Err(problems) => {
                 refused += 1;
                 let message = format!("{problems}");
@@ -411,8 +409,7 @@ fn random_formulas_agree_or_are_refused_with_reason() {
                 continue;
             }
         };
-        let core = Core::new(device("expression"), config)
-            .unwrap_or_else(|error| panic!("{error:#}\n{what}"));
+        let core = Core::build(opened).unwrap_or_else(|error| panic!("{error:#}\n{what}"));
         agreed += 1;
         assert_agrees(&core, 1000, seed, &what);
         assert_results_as_stated(&core, &what);

@@ -101,7 +101,7 @@ fn a_faulty_model_is_noticed() {
 fn values_become_operands_as_formats_say() {
     let model = Model::new("configs/quad_cosine.toml");
     let values = [-1e30, -3.7, -2.0, -1.5, -0.25, -1e-9, 0.0, 1e-8, 0.75, 1.0, 1.999, 2.0, 7e7];
-    let name = &model.core.config.name;
+    let name = &model.core.config().name;
     let mut text = format!("#include <stdio.h>\n#include \"{name}_model.h\"\nint main(void) {{\n");
     let mut expected = String::new();
     for operand in model.core.contract.operands() {
@@ -162,13 +162,13 @@ impl Model {
 
     fn assert_equal(&self, operands: &[Vec<i64>]) {
         let (found, expected) = (self.run(operands), self.expected(operands));
-        assert_eq!(found.len(), expected.len(), "{}: results", self.core.config.name);
+        assert_eq!(found.len(), expected.len(), "{}: results", self.core.config().name);
         let differs = found.iter().zip(&expected).position(|(found, expected)| found != expected);
         if let Some(at) = differs {
             let outputs = self.core.contract.outputs().len();
             panic!(
                 "{}: result {} is {}, not {}",
-                self.core.config.name,
+                self.core.config().name,
                 at / outputs,
                 found[at],
                 expected[at]
@@ -191,7 +191,7 @@ impl Model {
 
     /// Makes the program that [`Model::run`] runs.
     fn compile(&self) {
-        let (name, dir) = (&self.core.config.name, self.dir.path());
+        let (name, dir) = (&self.core.config().name, self.dir.path());
         fs::write(dir.join("driver.c"), self.driver()).expect("written");
         let model = format!("{name}_model.c");
         let arguments = FLAGS.split(' ').chain(["-fno-sanitize-recover=all", "-o", "driver"]);
@@ -213,7 +213,7 @@ impl Model {
 
     /// Returns a program that reads operands and writes results, 64 bits each in the contract's order.
     fn driver(&self) -> String {
-        let (name, contract) = (&self.core.config.name, self.core.contract.as_ref());
+        let (name, contract) = (&self.core.config().name, self.core.contract.as_ref());
         let ports = self.core.design.inputs();
         let operand = |port: &&Port| matches!(port.role, Role::Operand { .. } | Role::Point);
         let count = ports.filter(operand).count();
@@ -318,7 +318,7 @@ fn lines_are_set_up_in_c_and_python_as_by_glint() {
         let [in_c, in_python] = ["in_c", "in_python"].map(|file| read(dir.join(file)));
 
         let contract = model.core.contract.as_ref();
-        let feed = Feed::new(model.core.device.name, contract).expect("operands of a line");
+        let feed = Feed::new(model.core.device().name, contract).expect("operands of a line");
         let expected = lines.iter().map(|line| set_up(&feed, contract, line) + "\n");
         let expected: String = expected.collect();
         let refused = expected.matches("refused").count();

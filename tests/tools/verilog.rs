@@ -156,7 +156,7 @@ fn notices_every_output(core: &Core, emitted: &Emitted, bench: &Bench) {
 /// Returns one wrong bit in one word of a ROM, of each ROM in turn, fails the bench. Returns how many ROMs there are.
 fn notices_every_rom(core: &Core, emitted: &Emitted, bench: &Bench) -> usize {
     // Words in the Verilog have no file; `vendor` has wrong ones noticed.
-    if core.config.choice("package.memories") != "files" {
+    if core.config().choice("package.memories") != "files" {
         return 0;
     }
     let files = emitted.simulated();

@@ -96,8 +96,8 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
         if is_stated {
             one.contract()?;
         }
-        let out = arguments.out.as_ref().map(|out| out.join(&one.core.config.name));
-        let record = OwnFile::record(arguments.out.as_deref(), &one.core.config.name)?;
+        let out = arguments.out.as_ref().map(|out| out.join(&one.core.config().name));
+        let record = OwnFile::record(arguments.out.as_deref(), &one.core.config().name)?;
         let stated = if is_stated {
             statements(design, contract, limit)
                 .map(|stated| (stated, contract.bounds().governing().units))

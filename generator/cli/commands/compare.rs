@@ -265,7 +265,8 @@ fn synthesise(
         .map(|at| {
             let (one, family) = (at / COMPARED.len(), &COMPARED[at % COMPARED.len()]);
             let (label, core) = cores[one];
-            let usage = synthesis::synthesise(yosys, &files[one], &core.config.name, family, limit);
+            let usage =
+                synthesis::synthesise(yosys, &files[one], &core.config().name, family, limit);
             done();
             usage.map_err(|error| format!("{label}, {}: {error:#}", family.title))
         })

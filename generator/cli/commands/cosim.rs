@@ -272,9 +272,9 @@ pub fn as_json(
         anyhow::Ok(reproducer.json(mismatch))
     });
     Ok(json!({
-        "device": one.core.device.name,
+        "device": one.core.device().name,
         "config": one.path,
-        "name": one.core.config.name,
+        "name": one.core.config().name,
         "points": outcome.points,
         "clocks": outcome.clocks,
         "registers": outcome.registers,

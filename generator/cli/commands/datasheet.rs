@@ -128,7 +128,7 @@ fn path(arguments: &Arguments, one: &Loaded, single: bool) -> PathBuf {
     if single {
         arguments.out.clone()
     } else {
-        arguments.out.join(format!("{}.html", one.core.config.name))
+        arguments.out.join(format!("{}.html", one.core.config().name))
     }
 }
 
@@ -145,7 +145,7 @@ impl CommandReport for DatasheetFiles<'_> {
         for (one, path, written) in &self.files {
             files.push(json!({
                 "config": one.path,
-                "name": one.core.config.name,
+                "name": one.core.config().name,
                 "file": path,
                 "written": *written == Written::Replaced,
             }));

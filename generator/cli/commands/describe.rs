@@ -47,7 +47,7 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     for (at, one) in loaded.iter().enumerate() {
         let page = pages::of(&one.core, &one.path, Path::new(PROOFS));
         let page = page.with_context(|| format!("`{}`", one.path))?;
-        let name = &one.core.config.name;
+        let name = &one.core.config().name;
         let written = match &arguments.out {
             Some(out) => {
                 let written = store::write_sealed(
@@ -80,7 +80,7 @@ struct DescribedPage<'a> {
 
 impl CommandReport for DescribedPage<'_> {
     fn json(&self) -> Result<Value> {
-        let (config, name) = (&self.one.path, &self.one.core.config.name);
+        let (config, name) = (&self.one.path, &self.one.core.config().name);
         Ok(match self.written {
             Some(written) => json!({
                 "config": config,
@@ -95,7 +95,7 @@ impl CommandReport for DescribedPage<'_> {
     fn print(&self) -> Result<()> {
         match self.written {
             Some(written) => {
-                say!("{}: {}.md {written}", self.one.path, self.one.core.config.name);
+                say!("{}: {}.md {written}", self.one.path, self.one.core.config().name);
             }
             None => {
                 let gap = if self.is_first { "" } else { "\n" };

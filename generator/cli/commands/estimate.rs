@@ -89,7 +89,7 @@ fn rows(one: &Loaded) -> Vec<EstimateRow> {
 
 fn line(one: &Loaded, row: &EstimateRow) -> Vec<String> {
     vec![
-        one.core.config.name.clone(),
+        one.core.config().name.clone(),
         row.target.title().to_owned(),
         format!("{:.0}", row.cost.luts),
         row.cost.dsps.to_string(),
@@ -109,7 +109,7 @@ fn as_json(one: &Loaded, rows: &[EstimateRow]) -> Value {
     };
     json!({
         "config": one.path,
-        "name": one.core.config.name,
+        "name": one.core.config().name,
         "targets": rows.iter().map(row).collect::<Vec<Value>>(),
     })
 }

@@ -56,7 +56,7 @@ const LIMIT: u64 = 1 << 16;
 /// # Errors
 /// Fails if the configuration has problems, if an operand is unknown or has no valid value, or if the CSV file cannot be read.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
-    let one = load_one(registry, &registry.schemas(), &arguments.config)?;
+    let one = load_one(registry, &arguments.config)?;
     let given = operands::given(one.core.contract.operands(), &arguments.operands)
         .map_err(Failure::WrongUsage)?;
     match &arguments.batch {
@@ -170,9 +170,9 @@ impl CommandReport for EvaluatedPoint<'_> {
 /// formats come from the nets of the sequential core. Fails if the device never raises `valid`.
 fn signal_values(one: &Loaded, operands: &[Operand], raw: &[i64]) -> Result<Vec<SignalValue>> {
     let core = &one.core;
-    let mut signals = signals(core.device.golden(&core.config), operands, raw)?;
+    let mut signals = signals(core.opened.golden(), operands, raw)?;
     let sequential = match &core.design.pipeline {
-        Some(_) => Some(core.device.sequential(&core.config)?),
+        Some(_) => Some(core.opened.sequential()?),
         None => None,
     };
     if let Some(pipeline) = &core.design.pipeline {

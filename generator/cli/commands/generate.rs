@@ -102,7 +102,7 @@ impl CommandReport for GeneratedFiles<'_> {
         let paths: Vec<&str> = self.files.iter().map(|file| file.path.as_str()).collect();
         Ok(json!({
             "config": self.one.path,
-            "name": self.one.core.config.name,
+            "name": self.one.core.config().name,
             "written": self.written == Written::Replaced,
             "files": paths,
         }))
@@ -117,7 +117,7 @@ impl CommandReport for GeneratedFiles<'_> {
 /// Prints how to simulate the generated files. `with_bench` says whether test benches were generated.
 fn print_next_step(out: &Path, loaded: &[Loaded], with_bench: bool) {
     let (config, name) = match loaded {
-        [only] => (only.path.as_str(), only.core.config.name.as_str()),
+        [only] => (only.path.as_str(), only.core.config().name.as_str()),
         _ => ("CONFIG", "NAME"),
     };
     if !with_bench {
@@ -202,7 +202,7 @@ pub fn write(out: &Path, one: &Loaded, files: &OutputFiles, force: bool) -> Resu
     if path.is_file() {
         store::may_write(&path, Seal::Hash, force)?;
     }
-    let written = store::write(out, &one.core.config.name, files.as_slice(), force)
+    let written = store::write(out, &one.core.config().name, files.as_slice(), force)
         .with_context(|| format!("the files of `{}` were not written", one.path))?;
     store::write_sealed(&path, &driver.contents, Seal::Hash, force)?;
     Ok(written)
@@ -217,7 +217,7 @@ fn compare(output: OutputOptions, out: &Path, loaded: &[Loaded], made: &[Made]) 
         all.push(driver.path);
     }
     for (one, Made { files, .. }) in loaded.iter().zip(made) {
-        all.extend(store::differences(out, &one.core.config.name, files.as_slice())?);
+        all.extend(store::differences(out, &one.core.config().name, files.as_slice())?);
     }
     let is_equal = all.is_empty();
     output.report(&Differences(all))?;

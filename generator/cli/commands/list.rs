@@ -11,7 +11,6 @@ use super::{CONFIGS, paths};
 use crate::report::CommandReport;
 use crate::{OutputOptions, say, tables};
 use glint_base::program::Program;
-use glint_config::Config;
 use glint_core::registry::{Device, Registry};
 use glint_prove::synth::Target;
 use glint_prove::tune::architectures;
@@ -68,10 +67,9 @@ impl Inventory<'_> {
 /// Returns a row of the table: a device with the DSP blocks and rates, in million points per second, of its sequential core and
 /// of its pipeline with the longest interval. Returns `None` if the pipeline does not dominate.
 fn longest_interval(device: &Device) -> Option<Vec<String>> {
-    let schema = (device.schema)();
-    let config = Config::defaults(&schema, &schema.module());
-    let sequential = architectures::sequential(device, &config, Target::Ecp5).ok()?;
-    let pipeline = architectures::longest_interval(device, &sequential, Target::Ecp5)?;
+    let opened = device.open(device.defaults()).ok()?;
+    let sequential = architectures::sequential(&opened, Target::Ecp5).ok()?;
+    let pipeline = architectures::longest_interval(&sequential, Target::Ecp5)?;
     if !pipeline.dominates(&sequential) {
         return None;
     }

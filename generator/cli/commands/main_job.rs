@@ -121,7 +121,7 @@ fn print(loaded: &[Loaded], findings: &[MainJobResult], details: bool) -> Result
         };
         rows.push(vec![
             short(&one.path).to_owned(),
-            one.core.device.name.to_owned(),
+            one.core.device().name.to_owned(),
             clocks,
             text::grouped(finding.outcome.points),
             text::grouped(finding.outcome.clocks),

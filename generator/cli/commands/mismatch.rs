@@ -108,7 +108,7 @@ fn window(one: &Loaded, mismatch: &Mismatch) -> (PathBuf, u64) {
 
 /// Returns the path of the waveform file for a difference, in the working directory. For example, `rough_mismatch.vcd`.
 pub fn waveform_of(one: &Loaded) -> PathBuf {
-    PathBuf::from(format!("{}_mismatch.vcd", one.core.config.name))
+    PathBuf::from(format!("{}_mismatch.vcd", one.core.config().name))
 }
 
 /// Returns the first clock of a waveform that ends with clock `clock`: 64 clocks earlier, but at least 0. For example, the

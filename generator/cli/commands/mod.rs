@@ -40,10 +40,9 @@ use anyhow::{Context, Result, anyhow, bail};
 use super::failure::{self, Failure};
 use crate::wrong_usage;
 use glint_base::input;
-use glint_base::key_error::KeyError;
 use glint_base::program::Program;
 use glint_base::text;
-use glint_config::{self as config, Problems};
+use glint_config::{self as config, ConfigSource};
 use glint_core::core::Core;
 use glint_core::package::{OutputFiles, Vectors};
 use glint_core::registry::{CLOCK_MHZ, Registry};
@@ -59,8 +58,8 @@ pub struct Loaded {
     /// The path on the command line, with `/` as the separator. For example, `configs/rough.toml`.
     path: String,
     core: Core,
-    /// The locations of the keys in the file, in the form of an empty list of problems.
-    locations: Problems,
+    /// The text of the file, with the locations of its keys.
+    source: ConfigSource,
 }
 
 /// Returns the configuration files in `named`. If `named` is empty, returns all TOML files in `configs/`, sorted. Fails if this
@@ -98,24 +97,23 @@ fn load(registry: &Registry, named: &[PathBuf]) -> Result<Vec<Loaded>> {
     if named.iter().filter(|path| path.as_path() == Path::new(input::STDIN)).count() > 1 {
         wrong_usage!("standard input can be read only once: name `-` only once");
     }
-    let schemas = registry.schemas();
     let mut loaded: Vec<Loaded> = Vec::new();
     let mut failed: Vec<anyhow::Error> = Vec::new();
     for path in paths(named)? {
-        match load_one(registry, &schemas, &path) {
+        match load_one(registry, &path) {
             Ok(one) => loaded.push(one),
             Err(error) => failed.push(error),
         }
     }
     for (at, one) in loaded.iter().enumerate() {
         if let Some(other) =
-            loaded[..at].iter().find(|other| other.core.config.name == one.core.config.name)
+            loaded[..at].iter().find(|other| other.core.config().name == one.core.config().name)
         {
             failed.push(anyhow!(
                 "`{}` and `{}` both name their module `{}`; set another `name` in one of them",
                 other.path,
                 one.path,
-                one.core.config.name
+                one.core.config().name
             ));
         }
     }
@@ -137,7 +135,7 @@ fn load_sequential(registry: &Registry, named: &[PathBuf], command: &str) -> Res
     }
 }
 
-fn load_one(registry: &Registry, schemas: &[config::Schema], path: &Path) -> Result<Loaded> {
+fn load_one(registry: &Registry, path: &Path) -> Result<Loaded> {
     let name = path.display().to_string().replace('\\', "/");
     if name.contains(char::is_control) {
         bail!(
@@ -145,33 +143,25 @@ fn load_one(registry: &Registry, schemas: &[config::Schema], path: &Path) -> Res
              rename the file"
         );
     }
-    let (config, locations) = config::read_located(path, schemas).map_err(Failure::Problems)?;
-    let device = registry
-        .device(&config.device)
-        .with_context(|| format!("there is no device `{}`", config.device))?;
+    let (opened, source) = registry.read(path).map_err(Failure::Problems)?;
     // If the file does not state a clock, Glint may choose a lower one.
-    let core = if locations.gives(CLOCK_MHZ) {
-        Core::new(*device, config)
-    } else {
-        Core::with_free_clock(*device, config)
+    let core = match source.gives(CLOCK_MHZ) {
+        true => Core::build(opened),
+        false => Core::build_with_free_clock(opened),
     };
-    let core = core.map_err(|error| located(error, &name, &locations))?;
+    let core = core.map_err(|error| located(error, &name, &source))?;
     for warning in &core.design.warnings {
         let (code, place) = (warning.code, warning.location);
         failure::warn(&format!("{name}: {} ({code}, {place})", warning.message));
     }
-    Ok(Loaded { path: name, core, locations })
+    Ok(Loaded { path: name, core, source })
 }
 
 /// Returns an error with a location: for an error of a key, the location of the key in the file, and otherwise the name of the
-/// file. `locations` has the locations of the keys.
-fn located(error: anyhow::Error, file: &str, locations: &Problems) -> anyhow::Error {
-    match error.downcast::<KeyError>() {
-        Ok(key_error) => {
-            let mut problems = locations.clone();
-            problems.push_error(key_error);
-            Failure::Problems(problems).into()
-        }
+/// file. `source` has the locations of the keys.
+fn located(error: anyhow::Error, file: &str, source: &ConfigSource) -> anyhow::Error {
+    match source.located(error) {
+        Ok(problems) => Failure::Problems(problems).into(),
         Err(error) => error.context(format!("`{file}`")),
     }
 }
@@ -218,7 +208,7 @@ impl Loaded {
     /// location of the key in the file.
     fn files(&self, vectors: impl Into<Option<Vectors>>) -> Result<OutputFiles> {
         let files = self.core.files(&self.path, vectors);
-        files.map_err(|error| located(error, &self.path, &self.locations))
+        files.map_err(|error| located(error, &self.path, &self.source))
     }
 
     /// Does the same as [`Loaded::bound`], and warns about a module name with `__`. If the device's own keys are not all at
@@ -226,7 +216,7 @@ impl Loaded {
     /// catalogue has the remarks. Fails as [`Loaded::bound`] does.
     fn contract(&self) -> Result<()> {
         self.bound()?;
-        let config = &self.core.config;
+        let config = self.core.config();
         if config.name.contains("__") {
             failure::warn(&format!(
                 "{}: the module name `{}` has two underscores in a row, and Verilator's lint rejects such a \
@@ -234,7 +224,10 @@ impl Loaded {
                 self.path, config.name
             ));
         }
-        if (self.core.device.schema)().keys.iter().any(|key| *config.value(key.name) != key.default)
+        if (self.core.device().schema)()
+            .keys
+            .iter()
+            .any(|key| *config.value(key.name) != key.default)
         {
             for remark in self.core.contract.remarks() {
                 failure::warn(&format!("{}: {remark}", self.path));
@@ -254,7 +247,7 @@ impl Loaded {
                  configurations",
                 self.path
             );
-            if self.core.config.strict {
+            if self.core.config().strict {
                 bail!("{message}; `strict = true` makes this an error");
             }
             failure::warn(&message);
@@ -269,7 +262,7 @@ impl Loaded {
             let advice = match advice::of(&self.core) {
                 Some(advice) => {
                     let keys = advice.changes.iter();
-                    let places = keys.filter_map(|(key, ..)| self.locations.place(key));
+                    let places = keys.filter_map(|(key, ..)| self.source.position(key));
                     let places: Vec<String> = places
                         .map(|(line, column)| format!("{}:{line}:{column}", self.path))
                         .collect();
@@ -286,7 +279,7 @@ impl Loaded {
                 bound.words(),
                 bound.limit
             );
-            if self.core.config.strict {
+            if self.core.config().strict {
                 bail!("{message}; `strict = true` makes this an error");
             }
             failure::warn(&message);

@@ -124,7 +124,7 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     }
     let mut records: Vec<Option<OwnFile>> = Vec::new();
     for one in &loaded {
-        records.push(OwnFile::record(arguments.out.as_deref(), &one.core.config.name)?);
+        records.push(OwnFile::record(arguments.out.as_deref(), &one.core.config().name)?);
     }
     let bar = progress::bar(output, total as u64, "faults planted");
     let mut list = output.list();
@@ -142,7 +142,7 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
         let scored = Scored {
             glint: env!("CARGO_PKG_VERSION"),
             config: one.path.clone(),
-            device: one.core.device.name,
+            device: one.core.device().name,
             netlist,
             verilog,
         };
@@ -218,7 +218,7 @@ fn only(output: OutputOptions, one: &Loaded, id: &str) -> Result<bool> {
     if let MutantVerdict::Caught(_, SignalDifference { held, mismatch }) = verdict {
         let mutant = fault.planted(&one.core.design);
         let lockstep = one.core.lockstep_of(&mutant, mismatch.seed)?.holding(held);
-        let path = PathBuf::from(format!("{}_mutant.vcd", one.core.config.name));
+        let path = PathBuf::from(format!("{}_mutant.vcd", one.core.config().name));
         let from = first_clock(mismatch.clock);
         traced(one, &lockstep, Destination::open(&path)?, u64::MAX, from)?;
         waveform = Some((path, from, mismatch.clock));

@@ -12,8 +12,8 @@ use crate::report::CommandReport;
 use crate::{OutputOptions, number, tables, wrong_usage};
 use glint_base::program::Program;
 use glint_base::target::TIMING_NAMES;
-use glint_config::{self as config, Config, Problem, Schema};
-use glint_core::registry::{Device, Registry};
+use glint_config::{self as config, Problem, Schema, Value as ConfigValue};
+use glint_core::registry::{CLOCK_MHZ, DesignError, OpenedConfig, Registry};
 use glint_keys::presets;
 use glint_prove::synth::Target;
 use glint_prove::tune::architectures;
@@ -85,31 +85,58 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
             settings.push(KeyAssignment { key: key.clone(), value: value.toml() });
         }
     }
-    let config = configuration(&schema, &name, &settings)?;
+    let mut opened = opened(registry, &schema, &name, &settings)?;
+    if arguments.clock.is_some() && needs_registered_multipliers(&opened, &settings)? {
+        settings.push(KeyAssignment::word(MULTIPLIERS, REGISTERED));
+        opened.config.set(MULTIPLIERS, ConfigValue::Text(REGISTERED.to_owned()));
+    }
+    let config = &opened.config;
     let given: Vec<String> = settings.into_iter().map(|setting| setting.key).collect();
     let text = if arguments.all {
-        format!("{SCHEMA}{}", config::commented(&schema, &config, &given))
+        format!("{SCHEMA}{}", config::commented(&schema, config, &given))
     } else {
         let head = format!(
             "# A Glint configuration. Keys in comments have their defaults, which adjust to the keys that are set.\n\
              # `{Program} new {device} --all` explains every key; `{Program} generate FILE` writes the core.\n"
         );
-        let hint = hint(found, &config, &given).unwrap_or_default();
-        head + &hint + &config::brief(&schema, &config, &given)
+        let hint = hint(&opened, &given).unwrap_or_default();
+        head + &hint + &config::brief(&schema, config, &given)
     };
     output.report(&NewConfiguration { device, name, text })?;
     Ok(true)
 }
 
+/// The key that asks for registers inside the multipliers of a pipeline.
+const MULTIPLIERS: &str = "pipeline.multipliers";
+const REGISTERED: &str = "registered";
+
+/// Returns whether a pipeline reaches its clock only with registers inside its multipliers. Returns `false` if the user has chosen
+/// the multipliers, and for a sequential core.
+///
+/// # Errors
+/// Fails if the pipeline does not reach its clock with registers either, or if no netlist can be made.
+fn needs_registered_multipliers(opened: &OpenedConfig, settings: &[KeyAssignment]) -> Result<bool> {
+    let Err(DesignError::Key(error)) = opened.design() else { return Ok(false) };
+    let is_chosen = settings.iter().any(|setting| setting.key == MULTIPLIERS);
+    if error.key == CLOCK_MHZ && !is_chosen {
+        let mut registered = opened.config.clone();
+        registered.set(MULTIPLIERS, ConfigValue::Text(REGISTERED.to_owned()));
+        if opened.with_config(registered)?.design().is_ok() {
+            return Ok(true);
+        }
+    }
+    Err(Failure::WrongUsage(format!("{}; {}", error.message, error.remedy)).into())
+}
+
 /// Returns a comment about the pipeline with the longest interval, if it dominates the sequential core. The pipeline dominates
 /// if by the estimate it has no more DSP blocks and no lower rate, and an advantage in at least one of both. Returns `None` if
 /// it does not dominate, if the device cannot be a pipeline, or if the user has chosen an architecture.
-fn hint(device: &Device, config: &Config, given: &[String]) -> Option<String> {
+fn hint(opened: &OpenedConfig, given: &[String]) -> Option<String> {
     if given.iter().any(|key| key == "architecture") {
         return None;
     }
-    let sequential = architectures::sequential(device, config, Target::Ecp5).ok()?;
-    let pipeline = architectures::longest_interval(device, &sequential, Target::Ecp5)?;
+    let sequential = architectures::sequential(opened, Target::Ecp5).ok()?;
+    let pipeline = architectures::longest_interval(&sequential, Target::Ecp5)?;
     if !pipeline.dominates(&sequential) {
         return None;
     }
@@ -174,14 +201,20 @@ impl Arguments {
     }
 }
 
-/// Returns the configuration with these settings and the module name `name`.
+/// Opens the configuration of the device of `schema` with these settings and the module name `name`.
 ///
 /// # Errors
-/// Fails if the reader would refuse a file with the name and the settings.
-fn configuration(schema: &Schema, name: &str, settings: &[KeyAssignment]) -> Result<Config> {
+/// Fails if a file with the name and the settings would be refused.
+fn opened(
+    registry: &Registry,
+    schema: &Schema,
+    name: &str,
+    settings: &[KeyAssignment],
+) -> Result<OpenedConfig> {
     let head = [KeyAssignment::word("device", schema.device), KeyAssignment::word("name", name)];
     let text: String = head.iter().chain(settings).map(KeyAssignment::line).collect();
-    config::parse("<new>", &text, std::slice::from_ref(schema)).map_err(|problems| {
+    let opened = registry.parse("<new>", &text).map(|(opened, _)| opened);
+    opened.map_err(|problems| {
         let mut lines: Vec<String> = Vec::new();
         for Problem { error, .. } in problems.iter() {
             lines.push(format!("{}; {}", error.message, error.remedy));

@@ -172,7 +172,7 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
         bar.set_position(rows);
     })?;
     bar.finish_and_clear();
-    destination.write(rendered.whole(core.device.name).png()?)?;
+    destination.write(rendered.whole(core.device().name).png()?)?;
     let report = RenderedPicture::new(arguments, &name, &core, &scene, &settings, &rendered);
     output.report(&report)?;
     Ok(true)
@@ -182,7 +182,7 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
 /// defaults. Fails if the configuration has problems.
 fn core(registry: &Registry, config: Option<&Path>) -> Result<(String, Core)> {
     if let Some(path) = config {
-        let one = load_one(registry, &registry.schemas(), path)?;
+        let one = load_one(registry, path)?;
         return Ok((one.path, one.core));
     }
     let device = registry.devices().first();
@@ -198,7 +198,7 @@ fn settings(core: &Core, arguments: &Arguments) -> Result<Settings> {
     if !(least..=most).contains(&i64::from(exponent)) {
         wrong_usage!(
             "--exponent {exponent}: `{}` accepts exponents from {least} to {most}",
-            core.config.name
+            core.config().name
         );
     }
     Ok(Settings {
@@ -334,7 +334,7 @@ impl CommandReport for RenderedPicture<'_> {
         Ok(json!({
             "ok": true,
             "config": arguments.config.as_ref().map(|_| name),
-            "device": core.device.name,
+            "device": core.device().name,
             "out": self.path(),
             "through": self.through(),
             "width": width,

@@ -70,7 +70,7 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
         shown += 1;
         if let Some(directory) = &arguments.svg {
             let drawing = sealed(diagram::svg(&one.core.design)?, Seal::Markup);
-            let path = directory.join(format!("{}.svg", one.core.config.name));
+            let path = directory.join(format!("{}.svg", one.core.config().name));
             store::write_sealed(&path, &drawing, Seal::Markup, arguments.force)
                 .with_context(|| format!("the drawing of `{}` was not written", one.path))?;
         }
@@ -98,7 +98,7 @@ struct PassList<'a> {
 
 impl<'a> PassList<'a> {
     fn new(one: &'a Loaded) -> Result<Self> {
-        let results = one.core.device.pass_results(&one.core.config)?;
+        let results = one.core.opened.pass_results()?;
         Ok(Self { path: &one.path, results })
     }
 }
@@ -146,7 +146,7 @@ impl<'a> PassText<'a> {
     /// # Errors
     /// Fails if no pass that rewrites this computation has the name.
     fn new(one: &'a Loaded, pass: &'a str) -> Result<Self> {
-        let results = one.core.device.pass_results(&one.core.config)?;
+        let results = one.core.opened.pass_results()?;
         let Some(result) = results.iter().find(|result| result.name == pass) else {
             let names: Vec<&str> = results.iter().map(|result| result.name).collect();
             bail!("`{}` has no pass `{pass}`; its passes are: {}", one.path, names.join(", "));
@@ -271,7 +271,7 @@ fn as_json(one: &Loaded, pipeline: &Pipeline) -> Value {
     }
     json!({
         "config": one.path,
-        "name": one.core.config.name,
+        "name": one.core.config().name,
         "target": pipeline.target,
         "clock_mhz": pipeline.clock_mhz,
         "latency": pipeline.stages.len(),

@@ -123,7 +123,7 @@ struct SetUp {
 /// Fails if the configuration has problems, if an input is unknown, missing or not valid, if an operand would exceed its
 /// domain, or if the CSV file cannot be read. Fails also for a device without operands to set up, such as `shading`.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
-    let one = load_one(registry, &registry.schemas(), &arguments.config)?;
+    let one = load_one(registry, &arguments.config)?;
     let host = HostInputs::new(&one)?;
     let mut given = vec![[None; 3]; host.inputs.len()];
     for setting in &arguments.inputs {
@@ -195,12 +195,12 @@ impl CommandReport for BatchSetUp<'_> {
 impl<'a> HostInputs<'a> {
     fn new(one: &'a Loaded) -> Result<Self> {
         let contract = one.core.contract.as_ref();
-        let feed = Feed::new(one.core.device.name, contract)?;
+        let feed = Feed::new(one.core.device().name, contract)?;
         ensure!(
             !feed.shades(),
             "the operands of `{}` are themselves vectors and colours, so there is nothing to compute: give \
              them to `eval`",
-            one.core.device.name
+            one.core.device().name
         );
         let line = render::walks_lines(contract);
         let [vectors, numbers] = if line { OF_LINE } else { OF_POINT };
@@ -244,7 +244,7 @@ impl<'a> HostInputs<'a> {
                 names.push(input.name);
             }
         }
-        let device = self.one.core.device.name;
+        let device = self.one.core.device().name;
         Err(format!("there is no input `{name}` of `{device}`{}", none_of(name, "inputs", &names)))
     }
 

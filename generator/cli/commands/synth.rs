@@ -114,7 +114,7 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     let (flows, notes) = flows(arguments, &loaded)?;
     let mut records: Vec<Option<OwnFile>> = Vec::new();
     for one in &loaded {
-        records.push(OwnFile::record(arguments.out.as_deref(), &one.core.config.name)?);
+        records.push(OwnFile::record(arguments.out.as_deref(), &one.core.config().name)?);
     }
     let mut steps_of_each = 0;
     for flow in &flows {
@@ -203,7 +203,7 @@ fn measure<'a>(
     let clocks_per_point =
         comparison::clocks_per_point(&core.design, core.contract.as_ref(), comparison::EXPONENT)?;
     let figures = flows.par_iter().map(|flow| {
-        let name = &core.config.name;
+        let name = &core.config().name;
         let figures = figures(core, name, &one.path, flow, arguments, done)?;
         tell(one, &figures);
         Ok(figures)
@@ -264,8 +264,8 @@ impl Measurement<'_> {
         SynthesisRecord {
             glint: env!("CARGO_PKG_VERSION").to_owned(),
             config: self.one.path.clone(),
-            name: core.config.name.clone(),
-            device: core.device.name.to_owned(),
+            name: core.config().name.clone(),
+            device: core.device().name.to_owned(),
             core: core.core_digest(),
             clocks_per_point: self.clocks_per_point,
             targets: self.figures.iter().map(|figures| self.recorded(figures)).collect(),

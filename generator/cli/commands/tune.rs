@@ -204,9 +204,8 @@ fn base(registry: &Registry, arguments: &Arguments) -> Result<(Device, Config, V
         given_text += &setting.line();
         fixed.push(setting.key);
     }
-    let config =
-        config::parse("--set", &given_text, &registry.schemas()).map_err(Failure::Problems)?;
-    Ok((*device, config, fixed))
+    let (opened, _) = registry.parse("--set", &given_text).map_err(Failure::Problems)?;
+    Ok((*device, opened.config, fixed))
 }
 
 /// Returns a phrase about the origin of the error bounds, for example `proved`.

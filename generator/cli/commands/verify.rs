@@ -99,7 +99,7 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     let loaded = load(registry, &arguments.configs.paths)?;
     let mut files = Vec::new();
     for one in &loaded {
-        files.push(Files::new(&arguments.out, &one.core.config.name)?);
+        files.push(Files::new(&arguments.out, &one.core.config().name)?);
     }
     let mut list = output.list();
     let mut verified = true;

@@ -178,7 +178,7 @@ fn climbs(starts: u64) -> String {
 /// file, or if the file was edited, cannot be written or is no such record.
 fn record(one: &Loaded, arguments: &Arguments) -> Result<Option<(OwnFile, Option<LargestError>)>> {
     let Some(directory) = &arguments.out else { return Ok(None) };
-    let name = format!("{}.json", one.core.config.name);
+    let name = format!("{}.json", one.core.config().name);
     let file = OwnFile::new(directory, &name, Seal::Json)?;
     let before = read(&directory.join(&name))?;
     Ok(Some((file, before.filter(|before| before.contract == one.core.contract_digest()))))

@@ -8,8 +8,10 @@
 mod description;
 mod golden;
 
+use std::sync::Arc;
+
 use glint::config::{Key, Schema};
-use glint::registry::Device;
+use glint::registry::{Device, KeyParts};
 
 glint::keys! {
     /// The configuration keys, which the user of the device may set. The command `new` writes the keys and their descriptions
@@ -30,9 +32,13 @@ pub const DEVICE: Device = Device {
     name: "parabola",
     summary: "x^2 of a fraction",
     schema,
-    describe: description::describe,
-    model: golden::model,
-    contract: golden::contract,
+    parts: |_| {
+        Ok(Arc::new(KeyParts {
+            describe: description::describe,
+            model: golden::model,
+            contract: golden::contract,
+        }))
+    },
     // `true` would say that a record proves the bound of the contract.
     proved: false,
 };

@@ -76,7 +76,7 @@ mod tests {
         assert_eq!((outcome.mismatch, outcome.clocks), (None, 40 * 3 * most));
         assert!(outcome.points > 2 * 40 * 5, "{}", outcome.points);
 
-        let other = (device.model)(&config("truncate"));
+        let other = device.open(config("truncate")).unwrap().golden();
         let lockstep = Lockstep::new(&core.design, other, core.contract.as_ref(), 1).unwrap();
         let mismatch =
             lockstep.replay(&streams, 3 * most).unwrap().mismatch.expect("another model");

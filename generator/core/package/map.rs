@@ -9,8 +9,8 @@ use anyhow::{Result, bail};
 use serde::Deserialize;
 
 use super::inputs::EmitInputs;
+use glint_base::config_error::ConfigError;
 use glint_base::fixed::Format;
-use glint_base::key_error::KeyError;
 use glint_rtl::netlist::{Design, Port, Role};
 use glint_rtl::verilog::text::ascii;
 
@@ -197,7 +197,7 @@ impl Map {
     /// Checks that no two registers have the same name, because software refers to registers by their names.
     ///
     /// # Errors
-    /// Fails if two registers have the same name. The error is a [`KeyError`] of the key `interface.registers`.
+    /// Fails if two registers have the same name. The error is a [`ConfigError`] of the key `interface.registers`.
     fn check(&self, core: &str) -> Result<()> {
         let mut names = BTreeSet::new();
         for register in &self.registers {
@@ -214,8 +214,8 @@ impl Map {
 }
 
 /// Returns the error of the key that asks for registers on a bus.
-fn registers_error(message: String, remedy: &str) -> KeyError {
-    KeyError::new("interface.registers", message, remedy)
+fn registers_error(message: String, remedy: &str) -> ConfigError {
+    ConfigError::new("interface.registers", message, remedy)
 }
 
 fn last_place(ports: &[PortPlacement]) -> u32 {

@@ -4,7 +4,7 @@
 //! `package.rom_style` is an error if the core has no ROM that the key can affect.
 
 use super::bus::{BUSES, Bus};
-use glint_base::key_error::KeyError;
+use glint_base::config_error::ConfigError;
 use glint_config::{Config, Schema, Shared};
 use glint_rtl::netlist::{Design, Pipeline};
 use glint_rtl::verilog::naming::Style;
@@ -23,7 +23,7 @@ const ROM_STYLE: &str = "package.rom_style";
 ///
 /// # Errors
 /// Fails if `package.clock_mhz` is larger than the clock of the pipeline, both in MHz. The error names values that are valid.
-pub fn check_clock(config: &Config, pipeline: &Pipeline) -> Result<(), KeyError> {
+pub fn check_clock(config: &Config, pipeline: &Pipeline) -> Result<(), ConfigError> {
     let (asked, made_for) = (config.number(CLOCK), pipeline.clock_mhz);
     if asked <= made_for {
         return Ok(());
@@ -37,7 +37,7 @@ pub fn check_clock(config: &Config, pipeline: &Pipeline) -> Result<(), KeyError>
         }
     };
     let faster = if asked <= pipeline.most_mhz { format!("{faster}, or ") } else { String::new() };
-    Err(KeyError::new(
+    Err(ConfigError::new(
         CLOCK,
         format!("`{CLOCK}` = {asked:?} is above the {made_for} MHz that {made}"),
         format!("{faster}set {CLOCK} to {made_for} or less"),
@@ -49,7 +49,7 @@ pub fn check_clock(config: &Config, pipeline: &Pipeline) -> Result<(), KeyError>
 ///
 /// # Errors
 /// Fails if the core has no ROM that is read on the clock, or if `package.memories` writes ROMs as functions.
-pub fn check_rom_style(config: &Config, design: &Design) -> Result<(), KeyError> {
+pub fn check_rom_style(config: &Config, design: &Design) -> Result<(), ConfigError> {
     let style = config.choice(ROM_STYLE);
     if style == "auto" {
         return Ok(());
@@ -60,12 +60,12 @@ pub fn check_rom_style(config: &Config, design: &Design) -> Result<(), KeyError>
              Verilog function, which cannot have an attribute"
         );
         let remedy = "remove the key, or set package.memories = \"files\" or \"inline\"";
-        return Err(KeyError::new(ROM_STYLE, message, remedy));
+        return Err(ConfigError::new(ROM_STYLE, message, remedy));
     }
     if design.roms.iter().any(|rom| rom.synchronous) {
         return Ok(());
     }
-    Err(KeyError::new(
+    Err(ConfigError::new(
         ROM_STYLE,
         format!(
             "`{ROM_STYLE}` = \"{style}\" has no effect: `{}` has no ROM that is read at a clock edge",

@@ -2,8 +2,8 @@
 
 use std::fmt;
 
+use glint_base::config_error::ConfigError;
 use glint_base::diagnostic::Diagnostics;
-use glint_base::key_error::KeyError;
 
 /// The reason why no netlist can be built from a configuration.
 #[derive(Clone, Debug)]
@@ -11,7 +11,7 @@ pub enum DesignError {
     /// The hardware description has mistakes. Every architecture of the device has these mistakes.
     Description(Diagnostics),
     /// A pipeline with the values of the configuration cannot be made. The error names the key to change.
-    Key(KeyError),
+    Key(ConfigError),
 }
 
 impl fmt::Display for DesignError {
@@ -31,8 +31,8 @@ impl From<Diagnostics> for DesignError {
     }
 }
 
-impl From<KeyError> for DesignError {
-    fn from(error: KeyError) -> Self {
+impl From<ConfigError> for DesignError {
+    fn from(error: ConfigError) -> Self {
         Self::Key(error)
     }
 }

@@ -1,8 +1,8 @@
 //! Converts the configuration keys of a pipeline to options of the pipeline builder. If the builder fails, the module names the
 //! key that the user should change.
 
+use glint_base::config_error::ConfigError;
 use glint_base::diagnostic::Diagnostic;
-use glint_base::key_error::KeyError;
 use glint_base::target;
 use glint_config::{Config, Shared};
 use glint_rtl::netlist::Design;
@@ -16,7 +16,7 @@ pub const CLOCK_MHZ: &str = "pipeline.clock_mhz";
 ///
 /// # Errors
 /// Fails if the pipeline cannot be made. The error names the key that the user should change.
-pub fn pipelined(sequential: &Design, config: &Config) -> Result<Option<Design>, KeyError> {
+pub fn pipelined(sequential: &Design, config: &Config) -> Result<Option<Design>, ConfigError> {
     let keys = Shared::of(config);
     if keys.architecture != "pipelined" {
         return Ok(None);
@@ -35,7 +35,7 @@ pub fn pipelined(sequential: &Design, config: &Config) -> Result<Option<Design>,
 pub fn pass_results(
     sequential: &Design,
     config: &Config,
-) -> Result<Option<Vec<PassResult>>, KeyError> {
+) -> Result<Option<Vec<PassResult>>, ConfigError> {
     let keys = Shared::of(config);
     if keys.architecture != "pipelined" {
         return Ok(None);
@@ -70,11 +70,11 @@ fn options(keys: &Shared) -> pipeline::Options {
 /// Converts an error of the pipeline builder to an error of the key that the user should change. For example, a clock that is
 /// too fast is an error of `pipeline.clock_mhz`, with the fastest possible clock as the nearest value. `name` is the name of
 /// the module.
-fn key_error(error: &PipelineError, keys: &Shared, name: &str) -> KeyError {
+fn key_error(error: &PipelineError, keys: &Shared, name: &str) -> ConfigError {
     let diagnostic = &error.diagnostic;
     let of_key = |key: &str, remedy: String| {
         let message = with_location(&diagnostic.message, diagnostic);
-        KeyError::new(key, message, remedy)
+        ConfigError::new(key, message, remedy)
     };
     match error.kind {
         PipelineErrorKind::Microprogram => {
@@ -109,7 +109,7 @@ fn key_error(error: &PipelineError, keys: &Shared, name: &str) -> KeyError {
                  pipeline.rate"
             );
             let remedy = format!("set {CLOCK_MHZ} in place of pipeline.stages");
-            KeyError::new("pipeline.rate", with_location(&words, diagnostic), remedy)
+            ConfigError::new("pipeline.rate", with_location(&words, diagnostic), remedy)
         }
         PipelineErrorKind::Rate { most } => {
             let wanted = keys.rate;

@@ -101,7 +101,7 @@ pub(super) fn all(
     // Only one value of each colour is tried: a colour only multiplies f, and the register of f is compared.
     let colours = contract.operands().iter().filter(|it| it.colour);
     held.extend(colours.map(|it| (it.name.clone(), it.domain.1)));
-    let model = core.device.golden(&core.config);
+    let model = core.opened.golden();
     let clocks = Clocks::new(mutant, model, contract)?.holding(&held);
     if clocks.bits() > most_bits {
         return Ok(Tried::Nothing);

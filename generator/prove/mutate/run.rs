@@ -53,7 +53,7 @@ pub fn run<'f>(
         core,
         sound,
         beside,
-        model: core.device.golden(&core.config),
+        model: core.opened.golden(),
         prover: Prover::new(&core.design),
         tested: Coverage::of(&core.design, &lockstep, core::TEST_POINTS)?,
         beyond: OnceLock::new(),

@@ -179,7 +179,7 @@ impl VerilogText {
     /// cannot be made.
     pub fn of(core: &Core) -> Result<Self> {
         TOOLS.iter().try_for_each(|tool| Tool::find(tool).map(drop))?;
-        let name = &core.config.name;
+        let name = &core.config().name;
         let files = core.files(&format!("{name}.toml"), core.shipped_vectors()?)?;
         let vectors = Some(core.vectors(POINTS, TEST_SEED)?);
         let longer = package::emit(&core.design, &EmitInputs { vectors, ..EmitInputs::default() })?;
@@ -196,7 +196,7 @@ impl VerilogText {
     /// # Errors
     /// Fails if golden model and simulation differ, or if the files cannot be made.
     pub fn of_wrappers(core: &Core) -> Result<Self> {
-        let name = &core.config.name;
+        let name = &core.config().name;
         let files = core.files(&format!("{name}.toml"), core.shipped_vectors()?)?;
         let proofs = [FileKind::WrapperProof, FileKind::WrapperProofScript];
         let read = [FileKind::SIMULATED, &proofs].concat();
@@ -209,7 +209,7 @@ impl VerilogText {
         let mut text = Self {
             files: Vec::new(),
             longer: Vec::new(),
-            core: core.config.name.clone(),
+            core: core.config().name.clone(),
             is_pipeline: core.design.pipeline.is_some(),
             modules: Vec::new(),
         };

@@ -9,9 +9,9 @@ use rayon::prelude::*;
 
 use super::model::Cost;
 use crate::synth::Target;
-use glint_config::{Config, Shared, Value};
+use glint_config::{Shared, Value};
 use glint_core::core::Core;
-use glint_core::registry::Device;
+use glint_core::registry::OpenedConfig;
 use glint_rtl::netlist::{Design, Driver, Op};
 use glint_show::evidence::comparison::{EXPONENT, clocks_per_point};
 
@@ -88,23 +88,19 @@ fn multipliers(design: &Design) -> usize {
 ///
 /// # Errors
 /// Fails if the configuration makes no core.
-pub fn sequential(device: &Device, base: &Config, target: Target) -> Result<Architecture> {
-    let mut config = base.clone();
+pub fn sequential(base: &OpenedConfig, target: Target) -> Result<Architecture> {
+    let mut config = base.config.clone();
     config.set("architecture", Value::Text("sequential".to_owned()));
-    config.reset_keys_without_effect(&(device.schema)());
-    Architecture::new(Core::new(*device, config)?, target)
+    config.reset_keys_without_effect(&(base.device.schema)());
+    Architecture::new(Core::build(base.with_config(config)?)?, target)
 }
 
 /// Returns a configuration as a pipeline with the longest interval that can be built, at most the clocks of its sequential core
 /// and at most 64. `sequential` is the configuration as a sequential core. Returns `None` if the device cannot be a pipeline.
 /// For example, `cosine-power` has an interval of 8, the clocks of its sequential core.
-pub fn longest_interval(
-    device: &Device,
-    sequential: &Architecture,
-    target: Target,
-) -> Option<Architecture> {
-    let base = &sequential.core.config;
-    intervals(sequential).rev().find_map(|interval| pipeline(device, base, target, interval).ok())
+pub fn longest_interval(sequential: &Architecture, target: Target) -> Option<Architecture> {
+    let base = &sequential.core.opened;
+    intervals(sequential).rev().find_map(|interval| pipeline(base, target, interval).ok())
 }
 
 /// The largest value of `pipeline.interval`.
@@ -119,18 +115,18 @@ fn intervals(sequential: &Architecture) -> std::ops::RangeInclusive<u32> {
 /// Returns a configuration as a pipeline with an interval. If the configuration is sequential, the pipeline is scheduled for
 /// the target. If such a pipeline cannot reach the default clock, it is scheduled for the fastest clock that it can reach.
 /// Fails if the device cannot be a pipeline with this interval.
-fn pipeline(device: &Device, base: &Config, target: Target, interval: u32) -> Result<Architecture> {
-    let mut config = base.clone();
+fn pipeline(base: &OpenedConfig, target: Target, interval: u32) -> Result<Architecture> {
+    let mut config = base.config.clone();
     config.set("architecture", Value::Text("pipelined".to_owned()));
     config.set("pipeline.interval", Value::Text(interval.to_string()));
-    config.reset_keys_without_effect(&(device.schema)());
-    let core = if Shared::of(base).architecture == "pipelined" {
-        Core::new(*device, config)?
+    config.reset_keys_without_effect(&(base.device.schema)());
+    let core = if Shared::of(&base.config).architecture == "pipelined" {
+        Core::build(base.with_config(config)?)?
     } else {
         if let Some(family) = target.family() {
             config.set("pipeline.target", Value::Text(family.name().to_owned()));
         }
-        Core::with_free_clock(*device, config)?
+        Core::build_with_free_clock(base.with_config(config)?)?
     };
     Architecture::new(core, target)
 }
@@ -143,16 +139,11 @@ fn pipeline(device: &Device, base: &Config, target: Target, interval: u32) -> Re
 /// # Errors
 /// Fails if the configuration makes no sequential core, or no pipeline. The message then has the reason for the shortest
 /// interval.
-pub fn all(
-    device: &Device,
-    base: &Config,
-    kept: Option<u32>,
-    target: Target,
-) -> Result<Vec<Architecture>> {
-    let sequential = sequential(device, base, target)?;
+pub fn all(base: &OpenedConfig, kept: Option<u32>, target: Target) -> Result<Vec<Architecture>> {
+    let sequential = sequential(base, target)?;
     let intervals: Vec<u32> = intervals(&sequential).collect();
     let made: Vec<Result<Architecture>> =
-        intervals.par_iter().map(|&interval| pipeline(device, base, target, interval)).collect();
+        intervals.par_iter().map(|&interval| pipeline(base, target, interval)).collect();
     let mut pipelines: Vec<Architecture> = Vec::new();
     let mut fewest = usize::MAX;
     let mut refused = None;
@@ -170,7 +161,7 @@ pub fn all(
     }
     if pipelines.is_empty() {
         let reason = refused.context("no interval is possible")?;
-        return Err(reason.context(format!("`{}` cannot be a pipeline", device.name)));
+        return Err(reason.context(format!("`{}` cannot be a pipeline", base.device.name)));
     }
     pipelines.push(sequential);
     pipelines.reverse();

@@ -146,8 +146,9 @@ impl<'a> Search<'a> {
 
     /// Computes the candidate of a configuration, or `None` as [`Self::look`] does.
     fn compute(&self, config: &Config) -> Option<Candidate> {
-        let contract = (self.device.contract)(config);
-        let design = self.device.design(config).ok()?;
+        let opened = self.device.open(config.clone()).ok()?;
+        let contract = opened.contract();
+        let design = opened.design().ok()?;
         // A single free key never changes the interface, but two free keys together may.
         if !self.space.holds(&design, contract.as_ref()) {
             return None;

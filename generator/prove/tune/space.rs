@@ -44,8 +44,9 @@ impl SearchSpace {
     /// Fails if `base` makes no design.
     pub fn new(device: &Device, base: &Config, fixed: &[&str], slower: bool) -> Result<Self> {
         let schema = (device.schema)();
-        let design = device.design(base).context("no design can be made of this configuration")?;
-        let outside = CoreInterface::new(&design, (device.contract)(base).as_ref());
+        let opened = device.open(base.clone())?;
+        let design = opened.design().context("no design can be made of this configuration")?;
+        let outside = CoreInterface::new(&design, opened.contract().as_ref());
         let mut space = Self { schema, free: Vec::new(), outside, slower };
         let mut free = Vec::new();
         for key in &space.schema.keys {
@@ -72,9 +73,9 @@ impl SearchSpace {
         for value in values {
             // A value that is invalid together with the other values says nothing about the key.
             let Some(config) = self.with(base, &[(key.name, value)]) else { continue };
-            let contract = (device.contract)(&config);
-            let Ok(design) = device.design(&config) else { return false };
-            if !self.holds(&design, contract.as_ref()) {
+            let Ok(opened) = device.open(config) else { return false };
+            let Ok(design) = opened.design() else { return false };
+            if !self.holds(&design, opened.contract().as_ref()) {
                 return false;
             }
         }

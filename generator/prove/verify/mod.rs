@@ -409,8 +409,8 @@ impl VerificationRecord {
         Self {
             glint: env!("CARGO_PKG_VERSION"),
             config: input::label(subject.path),
-            name: subject.core.config.name.clone(),
-            device: subject.core.device.name,
+            name: subject.core.config().name.clone(),
+            device: subject.core.device().name,
             configuration: subject.core.digest(),
             files,
             full: subject.effort.full,

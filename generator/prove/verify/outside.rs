@@ -123,7 +123,7 @@ pub const EQUALITY: Check = Check {
             let why = "This core is the sequential core.";
             return Ok(Finding::without(CheckVerdict::NotApplicable, why));
         }
-        let sequential = core.device.sequential(&core.config)?;
+        let sequential = core.opened.sequential()?;
         let limit = if effort.full { effort.time_limit } else { EQUAL.min(effort.time_limit) };
         Ok(match equality::compare(&sequential, &core.design, &tools[0], limit)? {
             equality::Verdict::Equal(proof) => Finding::new(
@@ -166,7 +166,7 @@ pub const TEXT: Check = Check {
         }
         let limit = if effort.full { effort.time_limit } else { EQUAL.min(effort.time_limit) };
         let text =
-            elaborate(&tools[0], &subject.sources("")?, &core.config.name, effort.time_limit)?;
+            elaborate(&tools[0], &subject.sources("")?, &core.config().name, effort.time_limit)?;
         Ok(match equality::compare_text(&core.design, &text, &tools[1], limit)? {
             equality::TextVerdict::Equal(proof) => Finding::new(
                 CheckVerdict::Proved,
@@ -318,7 +318,7 @@ pub const SYNTHESIS: Check = Check {
     tools: &["yosys"],
     steps: |_| COMPARED.len() as u64,
     run: |subject, tools, progress| {
-        let (name, limit) = (&subject.core.config.name, subject.effort.time_limit);
+        let (name, limit) = (&subject.core.config().name, subject.effort.time_limit);
         let taken: Vec<String> = COMPARED
             .par_iter()
             .map(|family| {
@@ -450,7 +450,7 @@ pub const GATES: Check = Check {
     tools: &["yosys", "iverilog", "vvp"],
     steps: |_| simulated().count() as u64 + 1,
     run: |subject, tools, progress| {
-        let (name, limit) = (&subject.core.config.name, subject.effort.time_limit);
+        let (name, limit) = (&subject.core.config().name, subject.effort.time_limit);
         let vectors = subject.core.vectors(GATE_POINTS, BENCH_SEED)?;
         let clocks = vectors.inputs.len() as u64;
         let emitted = subject.core.files(subject.path, vectors)?;

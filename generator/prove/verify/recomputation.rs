@@ -13,9 +13,9 @@ use anyhow::{Context, Result, ensure};
 
 use super::outside::directory_of;
 use super::{Check, CheckSubject, CheckVerdict, Finding};
+use glint_base::config_error::ConfigError;
 use glint_base::input;
 use glint_base::interval;
-use glint_base::key_error::KeyError;
 use glint_base::program::Program;
 use glint_base::text::grouped;
 use glint_core::package::{FileKind, OutputFile};
@@ -46,7 +46,7 @@ pub const RECOMPUTATION: Check = Check {
         let files = match subject.core.recomputation() {
             Ok(files) => files,
             Err(error) => {
-                let KeyError { message, .. } = error.downcast()?;
+                let ConfigError { message, .. } = error.downcast()?;
                 let why = format!("The program cannot be written: {message}.");
                 return Ok(Finding::without(CheckVerdict::NotApplicable, why));
             }
@@ -127,7 +127,7 @@ fn run(subject: &CheckSubject<'_>, program: &OutputFile, dir: &Path) -> Result<F
     // A program that has no memory to check takes no argument.
     let mut arguments = Vec::new();
     if program.contents.contains("check_memories(argv") {
-        let name = &subject.core.config.name;
+        let name = &subject.core.config().name;
         arguments.push(format!("{}/{name}", FileKind::Memory.folder()));
     }
     let run = recompute.run(arguments, dir, subject.effort.time_limit)?;

@@ -52,17 +52,17 @@ struct Better {
 /// changes are enough to keep it, if at most 40 steps find such changes. Otherwise only one key changes: among the smallest
 /// steps that help any key, the key that reduces the bound most. Returns `None` if no step of one key reduces the bound.
 pub fn of(core: &Core) -> Option<Advice> {
-    let device = &core.device;
+    let device = core.device();
     let bound = core.contract.bounds().governing().clone();
-    let first = better(device, &core.config, &bound)?;
-    let single = advice(device, &core.config, &first);
+    let first = better(device, core.config(), &bound)?;
+    let single = advice(device, core.config(), &first);
     if bound.keeps() {
         return Some(single);
     }
     let mut here = first;
     for _ in 0..MOST {
         if here.bound.keeps() {
-            return Some(advice(device, &core.config, &needed(device, &core.config, here)));
+            return Some(advice(device, core.config(), &needed(device, core.config(), here)));
         }
         match better(device, &here.config, &here.bound) {
             Some(next) => here = next,
@@ -77,14 +77,17 @@ pub fn of(core: &Core) -> Option<Advice> {
 /// `domain` are never changed, because a narrower domain promises less.
 fn better(device: &Device, config: &Config, bound: &Bound) -> Option<Better> {
     let schema = (device.schema)();
+    // A smaller bound of outputs with other formats is in other units, and need not be a smaller error.
+    let formats = output_formats(contract_of(device, config)?.as_ref());
     for step in STEPS {
         let mut best: Option<Better> = None;
         for (key, value) in candidates(&schema, config, bound, step) {
             let Some(changed) = with(&schema, config, key, &value) else { continue };
-            if !has_same_units(device, config, &changed) {
+            let Some(contract) = contract_of(device, &changed) else { continue };
+            if output_formats(contract.as_ref()) != formats {
                 continue;
             }
-            let bound = (device.contract)(&changed).bounds().governing().clone();
+            let bound = contract.bounds().governing().clone();
             let is_best = match &best {
                 Some(best) => bound.units.total_cmp(&best.bound.units).is_lt(),
                 None => true,
@@ -102,11 +105,10 @@ fn better(device: &Device, config: &Config, bound: &Bound) -> Option<Better> {
     None
 }
 
-/// Returns whether the outputs of two configurations have the same formats. Otherwise their bounds are in different units, and a
-/// smaller number need not be a smaller error.
-fn has_same_units(device: &Device, config: &Config, other: &Config) -> bool {
-    output_formats((device.contract)(config).as_ref())
-        == output_formats((device.contract)(other).as_ref())
+/// Returns the contract of a configuration, or `None` if the device cannot have it.
+fn contract_of(device: &Device, config: &Config) -> Option<Box<dyn Contract>> {
+    let opened = device.open(config.clone()).ok()?;
+    Some(opened.contract())
 }
 
 fn output_formats(contract: &dyn Contract) -> Vec<Format> {
@@ -119,7 +121,8 @@ fn needed(device: &Device, config: &Config, mut kept: Better) -> Better {
     let schema = (device.schema)();
     for (key, ..) in changes(device, config, &kept.config) {
         if let Some(without) = with(&schema, &kept.config, key, config.value(key)) {
-            let bound = (device.contract)(&without).bounds().governing().clone();
+            let Some(contract) = contract_of(device, &without) else { continue };
+            let bound = contract.bounds().governing().clone();
             if bound.keeps() {
                 kept = Better { config: without, bound };
             }

@@ -77,8 +77,8 @@ struct AtAngle {
 
 /// Measures the error curves of a device in its default configuration. The function calls `done` after each of [`STEPS`] steps.
 pub fn device(device: &Device, done: &(dyn Fn() + Sync)) -> DeviceCurves {
-    let config = device.defaults();
-    let contract = (device.contract)(&config);
+    let opened = device.open(device.defaults()).expect("the defaults of a device can be opened");
+    let contract = opened.contract();
     configuration(device, contract.as_ref(), done)
 }
 

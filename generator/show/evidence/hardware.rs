@@ -47,7 +47,7 @@ pub fn usage(
     synthesis: &dyn Synthesis,
     done: &(dyn Fn() + Sync),
 ) -> Result<Vec<FamilyUsage>> {
-    let (files, top) = (core.verilog()?, &core.config.name);
+    let (files, top) = (core.verilog()?, &core.config().name);
     let families = COMPARED.par_iter().map(|family| {
         let usage = synthesis.usage(&files, top, family);
         done();

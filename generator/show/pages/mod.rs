@@ -33,8 +33,8 @@ pub fn of(core: &Core, config: &str, proofs: &Path) -> Result<String> {
     let line = core.line()?;
     let inputs = PageInputs {
         path: &input::label(config),
-        config: &core.config,
-        schema: &(core.device.schema)(),
+        config: core.config(),
+        schema: &(core.device().schema)(),
         contract: core.contract.as_ref(),
         backing: &core.backing(proofs)?,
         advice: advice::of(core),

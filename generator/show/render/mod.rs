@@ -133,7 +133,7 @@ pub fn usual_exponent(contract: &dyn Contract) -> u32 {
 /// Returns whether Glint can render a picture with a device, because it can compute all operands of the device from a scene.
 pub fn draws(core: &Core) -> bool {
     let contract = core.contract.as_ref();
-    Feed::new(core.device.name, contract).is_ok()
+    Feed::new(core.device().name, contract).is_ok()
 }
 
 /// Checks the settings and the scene before rendering.
@@ -194,11 +194,11 @@ pub fn render(
     let aspect = f64::from(width) / f64::from(height);
     let camera = Camera::new(&settings.view, aspect, middle, scene.balls())?;
     let contract = core.contract.as_ref();
-    let feed = Feed::with(core.device.name, contract, &settings.operands)?;
+    let feed = Feed::with(core.device().name, contract, &settings.operands)?;
     ensure!(
         feed.longest().is_none() || scene.relief.is_none(),
         "the device `{}` computes lines of points, and a height map cannot perturb lines",
-        core.device.name
+        core.device().name
     );
     let raster = Raster::new(width as usize * samples, height as usize * samples, &camera);
     let visibility = Visibility::new(scene, &camera, raster, radius);

@@ -356,7 +356,7 @@ fn constant_muxes_have_a_warning() {
 fn the_catalogue_has_no_warnings() {
     for device in Registry::catalogue().devices() {
         let config = Config::defaults(&(device.schema)(), "core");
-        let design = device.design(&config).sure();
+        let design = device.open(config).sure().design().sure();
         assert!(design.warnings.is_empty(), "{}: {:?}", device.name, design.warnings);
     }
 }

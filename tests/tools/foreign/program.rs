@@ -6,6 +6,7 @@
 mod fresnel;
 
 use std::process::ExitCode;
+use std::sync::Arc;
 
 use glint::config::{Config, Schema, Value};
 use glint::devices::function::describe as rsqrt;
@@ -15,8 +16,8 @@ use glint::golden::device::{self, Formula};
 use glint::golden::frame::{Frame, State};
 use glint::golden::narrow::Narrow;
 use glint::golden::{self, Contract, Model, Term};
-use glint::keys::function;
-use glint::registry::{Device, Registry};
+use glint::keys::function::{self, FunctionPlan};
+use glint::registry::{Device, DeviceParts, PartsResult, Registry};
 
 /// The format of the result, u1.14.
 const RESULT: Format = Format::unsigned(1, 14);
@@ -30,48 +31,65 @@ fn part() -> Config {
     Config::from_values(&function::schema(), "rsqrt", values.collect()).expect("sound keys")
 }
 
-fn operand() -> (Format, (i64, i64)) {
-    let (_, found) = function::found(&part()).expect("a function");
-    (found.operand, found.domain)
+/// The parts of the device `root`, with the plan of its inverse root.
+struct RootParts {
+    inverse: FunctionPlan,
 }
 
-/// √x = x·(1/√x).
-fn describe(d: &Designer, _: &Config) {
-    d.about(About {
-        device: "root".into(),
-        title: "The square root".into(),
-        formula: "sqrt(x)".into(),
-        source: "x * (1 / sqrt(x))".into(),
-        notes: Vec::new(),
-    });
-    let x = d.operand("x", operand().0).q();
-    let inverse = d.instance("rsqrt", |d| rsqrt(d, &part()), &[("x", x)]).out("result_out");
-    let product = d.mul("product", x, inverse);
-    d.output("root_out", d.narrow("r", product, RESULT, Rounding::Nearest, Overflow::Saturate));
-    d.dataflow();
+impl RootParts {
+    fn device(&self) -> device::Device {
+        let polynomials = &self.inverse.polynomials;
+        let (first, last) = polynomials.domain;
+        let model = golden::function::model(&self.inverse);
+        let mut frame = Frame::default();
+        let x = frame.operand("x", polynomials.operand);
+        let inverse = frame.part("rsqrt", &*model, [("x", move |s: &State| s[x])]).out("result_out");
+        let places = polynomials.operand.frac + polynomials.result.frac;
+        let rounded = Narrow::new(places as u32, RESULT, Rounding::Nearest);
+        frame.output("root_out", RESULT, move |s| rounded.apply(s[x] * s[inverse]));
+        frame.dataflow().domain("x", first, last)
+    }
 }
 
-fn device() -> device::Device {
-    let (format, (first, last)) = operand();
-    let model = golden::function::model(&part());
-    let mut frame = Frame::default();
-    let x = frame.operand("x", format);
-    let inverse = frame.part("rsqrt", &*model, [("x", move |s: &State| s[x])]).out("result_out");
-    let places = format.frac + golden::function::contract(&part()).outputs()[0].format.frac;
-    let rounded = Narrow::new(places as u32, RESULT, Rounding::Nearest);
-    frame.output("root_out", RESULT, move |s| rounded.apply(s[x] * s[inverse]));
-    frame.dataflow().domain("x", first, last)
+impl DeviceParts for RootParts {
+    /// √x = x·(1/√x).
+    fn describe(&self, d: &Designer, _: &Config) {
+        d.about(About {
+            device: "root".into(),
+            title: "The square root".into(),
+            formula: "sqrt(x)".into(),
+            source: "x * (1 / sqrt(x))".into(),
+            notes: Vec::new(),
+        });
+        let x = d.operand("x", self.inverse.polynomials.operand).q();
+        let describe = |d: &Designer| rsqrt(d, &part(), &self.inverse);
+        let inverse = d.instance("rsqrt", describe, &[("x", x)]).out("result_out");
+        let product = d.mul("product", x, inverse);
+        let rounded = d.narrow("r", product, RESULT, Rounding::Nearest, Overflow::Saturate);
+        d.output("root_out", rounded);
+        d.dataflow();
+    }
+
+    fn model(&self, _: &Config) -> Box<dyn Model> {
+        self.device().model()
+    }
+
+    fn contract(&self, _: &Config) -> Box<dyn Contract> {
+        let part = golden::function::contract(&self.inverse);
+        let error = part.bounds().governing().units * exp2(-part.outputs()[0].format.frac);
+        self.device().contract(Root { error })
+    }
 }
 
-fn model(_: &Config) -> Box<dyn Model> {
-    device().model()
+/// Plans the inverse root once, for the description, the golden model and the contract.
+fn parts(_: &Config) -> PartsResult {
+    Ok(Arc::new(RootParts { inverse: function::plan(&part())? }))
 }
 
-fn contract(_: &Config) -> Box<dyn Contract> {
-    device().contract(Root)
+/// The square root, and the largest error of the inverse root.
+struct Root {
+    error: f64,
 }
-
-struct Root;
 
 impl Formula for Root {
     fn exact(&self, x: &[f64]) -> Vec<f64> {
@@ -80,9 +98,7 @@ impl Formula for Root {
 
     /// Returns the part's error grows by x, which is at most 2.
     fn terms(&self, _output: usize) -> Vec<Term> {
-        let part = golden::function::contract(&part());
-        let error = part.bounds().governing().units * exp2(-part.outputs()[0].format.frac);
-        let units = 2.0 * error * exp2(RESULT.frac);
+        let units = 2.0 * self.error * exp2(RESULT.frac);
         let rounding = Term { key: "root", what: "rounding of the result", units: 0.5 };
         vec![Term { key: "root", what: "the inverse root", units }, rounding]
     }
@@ -92,9 +108,7 @@ const ROOT: Device = Device {
     name: "root",
     summary: "sqrt(x), of the inverse root",
     schema: || Schema { device: "root", keys: Vec::new(), check: |_, _| {} },
-    describe,
-    model,
-    contract,
+    parts,
     proved: false,
 };
 

@@ -120,7 +120,7 @@ fn proof(name: &str, keys: &str) -> tempfile::TempDir {
 fn streams_carry_every_point() {
     with_streams().par_iter().for_each(|(path, core)| {
         let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/tools/wrappers/stream.py");
-        assert_all_pass(path, core, &[script, &core.config.name], 6);
+        assert_all_pass(path, core, &[script, &core.config().name], 6);
     });
 }
 
@@ -128,7 +128,7 @@ fn streams_carry_every_point() {
 fn assert_all_pass(path: &str, core: &Core, arguments: &[&str], tests: usize) {
     let dir = Emitted::new(core, 1, 1).tree();
     let run = tool("python").run(arguments, dir.path(), LIMIT).sure();
-    let says = format!("PASS {}: {tests} tests, 0 failed", core.config.name);
+    let says = format!("PASS {}: {tests} tests, 0 failed", core.config().name);
     assert!(run.status.success() && run.output.contains(&says), "{path}:\n{}", run.output);
 }
 
@@ -212,7 +212,7 @@ fn faults_break_the_proofs_of_registers() {
 fn registers_start_cores_and_give_their_results() {
     on_buses().par_iter().for_each(|(path, core, bus)| {
         let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/tools/wrappers/registers.py");
-        assert_all_pass(path, core, &[script, &core.config.name, bus], 8);
+        assert_all_pass(path, core, &[script, &core.config().name, bus], 8);
     });
 }
 

@@ -298,7 +298,7 @@ fn csv_row(
     measured: bool,
 ) -> Vec<String> {
     let mut row =
-        vec![entry.label.clone(), entry.core.device.name.to_owned(), exponent.to_string()];
+        vec![entry.label.clone(), entry.core.device().name.to_owned(), exponent.to_string()];
     match &entry.figures.accuracy {
         None => row.extend(vec![String::new(); 8]),
         Some(accuracy) => row.extend(errors(accuracy).iter().map(f64::to_string)),
@@ -355,13 +355,13 @@ fn as_json(
 
 fn entry_json(entry: &ComparisonEntry) -> Value {
     let core = &entry.core;
-    let schema = (core.device.schema)();
+    let schema = (core.device().schema)();
     let multipliers: Vec<_> =
         entry.figures.multipliers.iter().map(|size| [size.first, size.second]).collect();
     let mut value = json!({
         "name": entry.label,
-        "device": core.device.name,
-        "toml": core.config.to_toml(&schema),
+        "device": core.device().name,
+        "toml": core.config().to_toml(&schema),
         "bound_units": core.contract.bounds().governing().units,
         "clocks_per_point": entry.figures.clocks_per_point,
         "rom_bits": core.design.rom_bits(),

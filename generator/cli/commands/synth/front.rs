@@ -57,7 +57,7 @@ pub fn run(output: OutputOptions, arguments: &Arguments, loaded: &[Loaded]) -> R
     let search = std::env::var_os("PATH").unwrap_or_default();
     let flow = Flow::find(target, &search, &arguments.liberty)?;
     let own = one.core.design.pipeline.as_ref().map(|pipeline| pipeline.interval as u32);
-    let made = architectures::all(&one.core.device, &one.core.config, own, target)?;
+    let made = architectures::all(&one.core.opened, own, target)?;
     let steps = Flow::steps(target, arguments.seeds) * made.len() as u64;
     let bar = progress::bar(output, steps, "synthesis");
     bar.tick();
@@ -111,8 +111,8 @@ fn measure(
 ) -> Result<MeasuredArchitecture> {
     let core = &architecture.core;
     let name = match architecture.interval {
-        None => format!("{}.sequential", core.config.name),
-        Some(interval) => format!("{}.interval{interval}", core.config.name),
+        None => format!("{}.sequential", core.config().name),
+        Some(interval) => format!("{}.interval{interval}", core.config().name),
     };
     let figures = figures(core, &name, path, flow, arguments, done)?;
     // A core that does not fit the chip has no frequency, and therefore no rate.
@@ -156,7 +156,7 @@ fn chosen(measured: &[MeasuredArchitecture], rate: Option<f64>, own: Option<u32>
 
 impl ArchitectureFront<'_> {
     fn plot(&self) -> Result<String> {
-        let name = &self.measured[0].architecture.core.config.name;
+        let name = &self.measured[0].architecture.core.config().name;
         let chosen = self.measured[self.chosen].architecture.interval;
         // An architecture that does not fit the chip has no rate, so the plot cannot show it.
         let mut shown: Vec<&MeasuredArchitecture> =

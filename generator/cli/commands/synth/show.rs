@@ -50,7 +50,7 @@ fn print(measured: &[Measurement], notes: &[String]) {
     );
     for one in measured {
         for figures in &one.figures {
-            let about = format!("{}, {}", one.one.core.config.name, figures.device);
+            let about = format!("{}, {}", one.one.core.config().name, figures.device);
             if !figures.critical_path.is_empty() {
                 say!("{about}: {}", figures.path_in_words());
             }
@@ -113,7 +113,7 @@ fn row(one: &Measurement, figures: &Figures) -> Vec<String> {
         per_dsp = rate.per_dsp;
     }
     vec![
-        one.one.core.config.name.clone(),
+        one.one.core.config().name.clone(),
         figures.target.to_string(),
         count(area.luts),
         count(area.dsps),
@@ -150,8 +150,8 @@ fn as_json(measured: &[Measurement], notes: &[String]) -> Value {
         }
         all.push(json!({
             "config": one.one.path,
-            "name": one.one.core.config.name,
-            "device": one.one.core.device.name,
+            "name": one.one.core.config().name,
+            "device": one.one.core.device().name,
             "clocks_per_point": one.clocks_per_point,
             "targets": targets,
         }));

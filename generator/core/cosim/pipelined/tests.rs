@@ -1,20 +1,21 @@
 use crate::cosim::{Lockstep, Outcome};
-use crate::registry::{Device, Registry};
+use crate::registry::{Device, OpenedConfig, Registry};
 use glint_config::{Config, Value};
 
 /// Returns the default configuration of a device as a pipeline, but with these keys.
-fn pipelined(device: &Device, keys: &[(&str, Value)]) -> Config {
+fn pipelined(device: &Device, keys: &[(&str, Value)]) -> OpenedConfig {
     let mut values = vec![("architecture".to_owned(), Value::Text("pipelined".to_owned()))];
     values.extend(keys.iter().map(|(name, value)| ((*name).to_owned(), value.clone())));
-    Config::from_values(&(device.schema)(), "device", values).expect("keys that there are")
+    let config = Config::from_values(&(device.schema)(), "device", values);
+    device.open(config.expect("keys that there are")).expect("keys that can be opened")
 }
 
 /// Compares `points` results of the pipeline of a device with its golden model, in a configuration with these keys.
 fn outcome(device: &Device, keys: &[(&str, Value)], points: u64) -> Outcome {
-    let config = pipelined(device, keys);
-    let design = device.design(&config).unwrap_or_else(|wrong| panic!("{wrong}"));
-    let contract = (device.contract)(&config);
-    let lockstep = Lockstep::new(&design, (device.model)(&config), contract.as_ref(), 1).unwrap();
+    let opened = pipelined(device, keys);
+    let design = opened.design().unwrap_or_else(|wrong| panic!("{wrong}"));
+    let contract = opened.contract();
+    let lockstep = Lockstep::new(&design, opened.golden(), contract.as_ref(), 1).unwrap();
     lockstep.run_alone(points).unwrap()
 }
 
@@ -76,16 +77,16 @@ fn a_pipeline_with_a_side_channel_or_without_stalls_is_what_its_golden_model_say
 fn a_wrong_side_value_is_noticed() {
     let registry = Registry::catalogue();
     let device = registry.device("cosine-power").expect("a device");
-    let config = pipelined(device, &[("pipeline.side", Value::Integer(8))]);
-    let mut design = device.design(&config).unwrap_or_else(|wrong| panic!("{wrong}"));
+    let opened = pipelined(device, &[("pipeline.side", Value::Integer(8))]);
+    let mut design = opened.design().unwrap_or_else(|wrong| panic!("{wrong}"));
     let [before, q] = design.pipeline.as_ref().expect("a pipeline").side_values[..2] else {
         panic!("two stages")
     };
     let next = design.registers.iter().find(|it| it.data == Some(q)).expect("a stage more").q;
     let wrong = design.registers.iter_mut().find(|it| it.q == next).expect("it");
     wrong.data = Some(before);
-    let contract = (device.contract)(&config);
-    let lockstep = Lockstep::new(&design, (device.model)(&config), contract.as_ref(), 1).unwrap();
+    let contract = opened.contract();
+    let lockstep = Lockstep::new(&design, opened.golden(), contract.as_ref(), 1).unwrap();
     let mismatch = lockstep.run_alone(500).unwrap().mismatch.expect("a difference");
     assert_eq!(mismatch.signal, "side_out");
 }
@@ -96,10 +97,10 @@ fn a_wrong_side_value_is_noticed() {
 fn a_recording_goes_through_every_point_of_a_list() {
     let registry = Registry::catalogue();
     let device = registry.device("cosine-power").expect("a device");
-    let config = pipelined(device, &[]);
-    let design = device.design(&config).unwrap_or_else(|wrong| panic!("{wrong}"));
-    let contract = (device.contract)(&config);
-    let lockstep = Lockstep::new(&design, (device.model)(&config), contract.as_ref(), 1).unwrap();
+    let opened = pipelined(device, &[]);
+    let design = opened.design().unwrap_or_else(|wrong| panic!("{wrong}"));
+    let contract = opened.contract();
+    let lockstep = Lockstep::new(&design, opened.golden(), contract.as_ref(), 1).unwrap();
     // Colours count upward, so that each differs from the one before.
     let point = |number: i64| -> Vec<i64> {
         let operands = contract.operands().iter();

@@ -15,7 +15,7 @@ use crate::package::emit_job::EmitJob;
 use crate::package::file_kind::FileKind;
 use crate::package::output_files::OutputFiles;
 use crate::package::tops::{Face, Top, TopPort};
-use glint_base::key_error::KeyError;
+use glint_base::config_error::ConfigError;
 use glint_rtl::netlist::{Design, Role};
 use glint_rtl::verilog::text::ascii;
 
@@ -73,7 +73,7 @@ pub fn file(job: &EmitJob, tops: &[Top], files: &mut OutputFiles) -> Result<()> 
     };
     if core.is_none() && stream.is_none() {
         let what = if is_line { "computes lines" } else { "is a pipeline" };
-        bail!(KeyError::new(
+        bail!(ConfigError::new(
             "package.litex",
             format!(
                 "`{name}` {what}, and registers of LiteX cannot drive such a core: the LiteX module needs a \

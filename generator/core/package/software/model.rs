@@ -14,8 +14,8 @@ use crate::observation::WorkedExample;
 use crate::package::emit_job::EmitJob;
 use crate::package::file_kind::FileKind;
 use crate::package::output_files::OutputFiles;
+use glint_base::config_error::ConfigError;
 use glint_base::fixed::{Format, mask};
-use glint_base::key_error::KeyError;
 use glint_rtl::netlist::{Design, Port, Role, RomId};
 use glint_rtl::pipeline::{
     Cell, Cycle, Graph, NodeId, StateValues, Unrolled, any_cycle, unroll_in_powers,
@@ -144,7 +144,7 @@ pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<Vec<RomId>> {
     let (body, read) = if line { of_line(design, &names) } else { of_point(design, &names) }
         .map_err(|error| {
             let message = format!("no model in C can be written for `{name}`: {error:#}");
-            KeyError::new("package.software", message, "remove package.software")
+            ConfigError::new("package.software", message, "remove package.software")
         })?;
     let regenerate = job.regenerate();
     let [title, formula] =

@@ -16,10 +16,10 @@ use crate::observation::ContractFacts;
 use crate::package::emit_job::EmitJob;
 use crate::package::file_kind::FileKind;
 use crate::package::output_files::OutputFiles;
+use glint_base::config_error::ConfigError;
 use glint_base::fill;
 use glint_base::fixed::exp2;
 use glint_base::interval;
-use glint_base::key_error::KeyError;
 use glint_formula::{CArithmetic, Comparison, Expression, parse};
 use glint_rtl::netlist::{Design, RomId};
 use glint_rtl::verilog::naming::Naming;
@@ -49,7 +49,7 @@ struct RecomputedFormula<'f> {
 }
 
 impl<'f> RecomputedContract<'f> {
-    fn new(name: &str, facts: &'f ContractFacts) -> Result<Self, KeyError> {
+    fn new(name: &str, facts: &'f ContractFacts) -> Result<Self, ConfigError> {
         if facts.wraps {
             return Err(recomputation_error(
                 name,
@@ -83,9 +83,9 @@ impl<'f> RecomputedContract<'f> {
 }
 
 /// Returns the error of the key `package.recomputation`: nothing recomputes the core `name`, for the reason `why`.
-fn recomputation_error(name: &str, why: &str) -> KeyError {
+fn recomputation_error(name: &str, why: &str) -> ConfigError {
     let message = format!("no program can recompute `{name}`: {why}");
-    KeyError::new("package.recomputation", message, "remove package.recomputation")
+    ConfigError::new("package.recomputation", message, "remove package.recomputation")
 }
 
 /// Checks that the program can be written for a core.
@@ -93,7 +93,7 @@ fn recomputation_error(name: &str, why: &str) -> KeyError {
 /// # Errors
 /// Fails if a result wraps, or if the operands of an expression have more than 2^32 combinations. Fails if the contract is
 /// neither one formula of one operand nor the formulas of an expression.
-pub fn check(name: &str, facts: &ContractFacts) -> Result<(), KeyError> {
+pub fn check(name: &str, facts: &ContractFacts) -> Result<(), ConfigError> {
     RecomputedContract::new(name, facts).map(drop)
 }
 
@@ -151,7 +151,7 @@ impl CheckedMemories {
 }
 
 /// Returns the port `port` as a member of the C model's structures. Fails if the design has no such port.
-fn field(name: &str, design: &Design, port: &str) -> Result<CField, KeyError> {
+fn field(name: &str, design: &Design, port: &str) -> Result<CField, ConfigError> {
     let mut ports = design.ports.iter();
     let found = ports.find(|found| design.net(found.net).name == port);
     found.map(|found| CField::new(design, found)).ok_or_else(|| {

@@ -108,7 +108,7 @@ pub fn datasheet(subject: &Subject, done: &(dyn Fn() + Sync)) -> Result<Datashee
     let pictures = || -> Result<_> {
         let highlight = render::draws(core).then(|| highlight(core)).transpose()?;
         done();
-        Ok((highlight, curves::configuration(&core.device, contract, done)))
+        Ok((highlight, curves::configuration(core.device(), contract, done)))
     };
     let (synthesis, pictures) = rayon::join(synthesis, pictures);
     let (highlight, curves) = pictures?;
@@ -159,7 +159,7 @@ fn highlight(core: &Core) -> Result<HighlightPicture> {
     let rendered = render::render(core, &mut engine, &scene, &settings, &mut |_| ())?;
     let difference = rendered.comparison.as_ref().map(|comparison| &comparison.difference);
     Ok(HighlightPicture {
-        png: rendered.whole(core.device.name).png()?,
+        png: rendered.whole(core.device().name).png()?,
         ball: rendered.picture.png()?,
         exponent,
         psnr: difference.and_then(|difference| difference.psnr),

@@ -125,11 +125,11 @@ pub fn page(subject: &Subject, measured: &DatasheetResults) -> Result<String> {
     let design = &core.design;
     let about = &design.about;
     let contract = core.contract.as_ref();
-    let schema = (core.device.schema)();
+    let schema = (core.device().schema)();
     let bound = contract.bounds();
     let inputs = PageInputs {
         path,
-        config: &core.config,
+        config: core.config(),
         schema: &schema,
         contract,
         backing: &subject.backing,
@@ -157,7 +157,7 @@ pub fn page(subject: &Subject, measured: &DatasheetResults) -> Result<String> {
         example: TableView::new("A worked example", &account::example(contract, &measured.example)),
         program: ControlSection::new(design),
         roms: (!design.roms.is_empty())
-            .then(|| TableView::new("ROMs", &account::roms(design, &core.config))),
+            .then(|| TableView::new("ROMs", &account::roms(design, core.config()))),
         clocks: TableView::new(
             "Clocks",
             &match &design.pipeline {
@@ -200,8 +200,8 @@ pub fn page(subject: &Subject, measured: &DatasheetResults) -> Result<String> {
         record: subject.figures.as_ref().map(|record| RecordView::new(record, target(design))),
         synthesis: measured.synthesis.as_ref(),
         instances: core.instances()?,
-        keys: TableView::new("Keys of the configuration", &account::keys(&schema, &core.config)),
-        toml: core.config.to_toml(&schema),
+        keys: TableView::new("Keys of the configuration", &account::keys(&schema, core.config())),
+        toml: core.config().to_toml(&schema),
     };
     let mut text = page.render()?;
     text.push('\n');

@@ -148,7 +148,7 @@ fn as_json(
         .collect();
     let mut value = json!({
         "config": one.path,
-        "device": one.core.device.name,
+        "device": one.core.device().name,
         "configuration": one.core.contract_digest(),
         "axes": axes,
         "not_covered": places.sweep().omits,

@@ -1,0 +1,75 @@
+//! Defines the reason why a search found no polynomials for a function, or why a bound of polynomials cannot be proved.
+
+use std::ops::Range;
+
+/// The reason why no polynomials with a proved bound were found.
+///
+/// The reason knows no configuration keys. A device that states the function tells its user which of its keys to change.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Refusal {
+    /// The kind of the reason. A device chooses the key and the remedy by it.
+    pub kind: RefusalKind,
+    /// The range of bytes in the formula's text to which the reason applies, or `None` if the reason applies to no particular
+    /// part.
+    pub place: Option<Range<usize>>,
+    /// The reason, as text for the user.
+    pub message: String,
+}
+
+/// The kinds of reasons.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum RefusalKind {
+    /// The formula has no value at an operand.
+    NoValue,
+    /// The raw operands of the domain have too many bits. The search works with at most `most` fraction bits of the operand.
+    OperandBits {
+        /// The largest number of fraction bits of the operand. It can be negative.
+        most: i32,
+    },
+    /// The function is a curve through samples, and its domain has too many operands to compute each of them.
+    ManyOperandsOfSamples,
+    /// A result or a partial sum has too many bits.
+    ResultBits,
+    /// No polynomials keep the allowed error.
+    Error {
+        /// An error that polynomials keep, in units of the result's last bit; `None` if none was found.
+        reached: Option<f64>,
+    },
+    /// At an operand, the error of the polynomials is not below the allowed error.
+    ErrorExceeded,
+    /// The domain has so many operands that the bound cannot be proved.
+    Unproved,
+    /// The range reduction does not suit the function.
+    Reduction(UnsuitedReduction),
+}
+
+/// The reasons why a range reduction does not suit a function.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum UnsuitedReduction {
+    /// The function has no range reduction at all, as a curve through samples.
+    NoReduction,
+    /// The identity does not hold for the formula.
+    NoIdentity,
+    /// The domain is on one side of 0, and the identity concerns both sides.
+    OneSide,
+    /// The domain begins at 0, which belongs to no octave.
+    FromZero,
+    /// The domain is not one period with a power of two as the number of operands.
+    NoPeriod,
+    /// A number of the reduction would have too few or too many bits.
+    Bits,
+    /// The domain has too many operands to compute each of them.
+    ManyOperands,
+}
+
+impl Refusal {
+    /// Makes a refusal that concerns no particular part of the formula.
+    pub(super) fn new(kind: RefusalKind, message: impl Into<String>) -> Self {
+        Self { kind, place: None, message: message.into() }
+    }
+
+    /// Makes the refusal of a range reduction.
+    pub(super) fn of_reduction(why: UnsuitedReduction, message: impl Into<String>) -> Self {
+        Self::new(RefusalKind::Reduction(why), message)
+    }
+}

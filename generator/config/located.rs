@@ -1,0 +1,36 @@
+//! Turns errors that are found after a configuration was read into problems with locations in its file.
+
+use glint_base::config_error::ConfigError;
+
+use super::problems::Problems;
+use super::schema::Schema;
+use super::source::ConfigSource;
+use super::validate::of_default;
+use super::values::Config;
+
+impl ConfigSource {
+    /// Returns the problem of a configuration that was read from this file, and that the device of `schema` refuses with `error`. If
+    /// the file does not set the key of the error, the message says that the key has its default.
+    pub fn refusal(&self, schema: &Schema, config: &Config, error: ConfigError) -> Problems {
+        let defaulted = schema.key(&error.key).filter(|key| !self.gives(key.name));
+        let message = match defaulted {
+            Some(key) => of_default(key, config, &error.message),
+            None => error.message,
+        };
+        self.problems(ConfigError { message, ..error })
+    }
+
+    /// Returns the problem that an error of a key is in this file.
+    ///
+    /// # Errors
+    /// Fails with the error itself if it is no [`ConfigError`].
+    pub fn located(&self, error: anyhow::Error) -> Result<Problems, anyhow::Error> {
+        error.downcast::<ConfigError>().map(|error| self.problems(error))
+    }
+
+    fn problems(&self, error: ConfigError) -> Problems {
+        let mut problems = Problems::of_source(self.clone());
+        problems.push_error(error);
+        problems
+    }
+}

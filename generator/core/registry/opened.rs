@@ -1,0 +1,246 @@
+//! Defines [`DeviceParts`], the description, golden model and contract of a device, and [`OpenedConfig`], a configuration for which
+//! Glint has them.
+//!
+//! Opening does once what takes long and what can fail: for example, the device `expression` plans its formulas and proves their
+//! error bounds. Everything that is made of a configuration afterwards reads what was found.
+
+use std::sync::Arc;
+
+use anyhow::{Result, ensure};
+
+use glint_base::codes;
+use glint_base::config_error::ConfigError;
+use glint_base::diagnostic::Diagnostics;
+use glint_config::{Config, Shared, Value};
+use glint_golden::{Contract, Model};
+use glint_rtl::dsl::Designer;
+use glint_rtl::netlist::Design;
+use glint_rtl::pipeline::{self, PassResult};
+
+use super::{CLOCK_MHZ, DesignError, Device, pipeline_keys};
+
+/// The key that asks for registers behind the results.
+const OUTPUT_REGISTERED: &str = "output.registered";
+
+/// The key that asks for buffers in front of the operand registers.
+const OPERANDS_BUFFERED: &str = "operands.buffered";
+
+/// The hardware description, the golden model and the contract of a device, for the values of the device's own keys with which the
+/// device was opened.
+///
+/// Callers must pass only configurations with these values. The keys that all devices share may differ: for example, the core and
+/// the pipeline of a formula share its plan.
+pub trait DeviceParts: Send + Sync {
+    /// Describes the hardware: adds blocks and a microprogram to a designer, whose name is the name of the module. The function
+    /// must not call `finish`.
+    fn describe(&self, designer: &Designer, config: &Config);
+
+    /// Returns the golden model.
+    fn model(&self, config: &Config) -> Box<dyn Model>;
+
+    /// Returns the accuracy contract.
+    fn contract(&self, config: &Config) -> Box<dyn Contract>;
+}
+
+/// The parts of a device whose functions read all that they need from the configuration.
+pub struct KeyParts {
+    /// Describes the hardware, as [`DeviceParts::describe`] does.
+    pub describe: fn(&Designer, &Config),
+    /// Returns the golden model.
+    pub model: fn(&Config) -> Box<dyn Model>,
+    /// Returns the accuracy contract.
+    pub contract: fn(&Config) -> Box<dyn Contract>,
+}
+
+impl DeviceParts for KeyParts {
+    fn describe(&self, designer: &Designer, config: &Config) {
+        (self.describe)(designer, config);
+    }
+
+    fn model(&self, config: &Config) -> Box<dyn Model> {
+        (self.model)(config)
+    }
+
+    fn contract(&self, config: &Config) -> Box<dyn Contract> {
+        (self.contract)(config)
+    }
+}
+
+/// A configuration of a device, with the parts that the device made for it.
+#[derive(Clone)]
+pub struct OpenedConfig {
+    /// The device that the configuration names.
+    pub device: Device,
+    /// The configuration: a value for each key of the device.
+    pub config: Config,
+    parts: Arc<dyn DeviceParts>,
+}
+
+impl Device {
+    /// Opens a configuration that the schema accepts.
+    ///
+    /// # Errors
+    /// Fails if the device cannot have the values of the keys together, for example because a formula has no plan with the allowed
+    /// error. The error names the key to change.
+    pub fn open(&self, config: Config) -> Result<OpenedConfig, ConfigError> {
+        let parts = (self.parts)(&config)?;
+        Ok(OpenedConfig { device: *self, config, parts })
+    }
+}
+
+impl OpenedConfig {
+    /// Returns another configuration of the same device. The parts are taken over if the device's own keys have the same values;
+    /// otherwise the other configuration is opened.
+    ///
+    /// # Errors
+    /// Fails as [`Device::open`] does.
+    pub fn with_config(&self, config: Config) -> Result<Self, ConfigError> {
+        let schema = (self.device.schema)();
+        let mut own_keys = schema.keys.iter();
+        if own_keys.all(|key| self.config.value(key.name) == config.value(key.name)) {
+            return Ok(Self { device: self.device, config, parts: self.parts.clone() });
+        }
+        self.device.open(config)
+    }
+
+    /// Returns the accuracy contract.
+    pub fn contract(&self) -> Box<dyn Contract> {
+        self.parts.contract(&self.config)
+    }
+
+    /// Returns the netlist: with a microprogram, or as a pipeline if the configuration asks for a pipeline.
+    ///
+    /// # Errors
+    /// Fails if the description has mistakes, or if the pipeline cannot be made. The error lists the mistakes, or names the key
+    /// to change.
+    pub fn design(&self) -> Result<Design, DesignError> {
+        let sequential = self.sequential()?;
+        let pipelined = pipeline_keys::pipelined(&sequential, &self.config)?;
+        Ok(pipelined.unwrap_or(sequential))
+    }
+
+    /// Returns the netlist of a configuration that does not set a clock frequency. If a pipeline cannot reach the default of
+    /// [`CLOCK_MHZ`], the function sets this key to the fastest clock that the pipeline can reach.
+    ///
+    /// # Errors
+    /// Fails if the description has mistakes, or if the pipeline cannot be made with that clock either.
+    pub fn design_with_free_clock(&mut self) -> Result<Design, DesignError> {
+        let sequential = self.sequential()?;
+        let mut pipelined = pipeline_keys::pipelined(&sequential, &self.config);
+        if let Err(error) = &pipelined
+            && error.key == CLOCK_MHZ
+            && let Some(nearest) = error.nearest
+        {
+            self.config.set(CLOCK_MHZ, Value::Number(nearest));
+            pipelined = pipeline_keys::pipelined(&sequential, &self.config);
+        }
+        Ok(pipelined?.unwrap_or(sequential))
+    }
+
+    /// Returns the computation of a pipeline before the passes that rewrite it, and after each pass. Returns an empty list if
+    /// the configuration has a sequential architecture.
+    ///
+    /// # Errors
+    /// Fails if the description has mistakes, or if the microprogram cannot be unrolled.
+    pub fn pass_results(&self) -> Result<Vec<PassResult>, DesignError> {
+        let sequential = self.sequential()?;
+        let results = pipeline_keys::pass_results(&sequential, &self.config)?;
+        Ok(results.unwrap_or_default())
+    }
+
+    /// Returns the sequential netlist, which executes a microprogram. [`OpenedConfig::design`] makes pipelines from this netlist.
+    ///
+    /// # Errors
+    /// Fails if the description has mistakes. The error lists them.
+    pub fn sequential(&self) -> Result<Design, Diagnostics> {
+        let designer = Designer::new(&self.config.name);
+        let keys = Shared::of(&self.config);
+        if keys.operands_buffered {
+            designer.buffer_operands();
+        }
+        self.parts.describe(&designer, &self.config);
+        if keys.output_registered {
+            designer.register_outputs();
+        }
+        if keys.operands_logic == "combinational" {
+            designer.keep_operand_logic();
+        }
+        designer.finish().map_err(|mistakes| with_key_remedies(mistakes, &keys))
+    }
+
+    /// Returns the golden model of the sequential netlist, with output registers and operand buffers if the configuration asks
+    /// for them and the model supports them.
+    pub fn golden(&self) -> Box<dyn Model> {
+        let mut model = self.parts.model(&self.config);
+        // A model that lacks the registers or buffers differs from the design, and the comparison reports the difference.
+        if self.config.flag(OUTPUT_REGISTERED) {
+            model = model.with_output_registers().unwrap_or(model);
+        }
+        if self.config.flag(OPERANDS_BUFFERED) {
+            model = model.with_operand_buffers().unwrap_or(model);
+        }
+        model
+    }
+
+    /// Checks whether the golden model supports the keys of the configuration.
+    ///
+    /// # Errors
+    /// Fails if the configuration asks for output registers or operand buffers, and the golden model does not model them.
+    pub fn check_golden(&self) -> Result<()> {
+        let model = self.parts.model(&self.config);
+        ensure!(
+            !self.config.flag(OUTPUT_REGISTERED) || model.with_output_registers().is_some(),
+            "the golden model of `{}` does not model output registers (`Model::with_output_registers`): \
+             remove {OUTPUT_REGISTERED}",
+            self.device.name
+        );
+        ensure!(
+            !self.config.flag(OPERANDS_BUFFERED) || model.with_operand_buffers().is_some(),
+            "the golden model of `{}` does not model operand buffers (`Model::with_operand_buffers`): remove \
+             {OPERANDS_BUFFERED}",
+            self.device.name
+        );
+        Ok(())
+    }
+
+    /// Checks that the contract can describe the results of the device.
+    ///
+    /// # Errors
+    /// Fails if [`Contract::check`] fails, for example because the golden model never shows a result, or because the formula
+    /// gives too few values. Fails also if results depend on values that an earlier computation left.
+    pub fn check_contract(&self, design: &Design, contract: &dyn Contract) -> Result<()> {
+        contract.check().map_err(anyhow::Error::msg)?;
+        let carried = if design.pipeline.is_some() {
+            // The design is a pipeline, and no pipeline can be made from a description that carries values over.
+            None
+        } else if self.config.flag(OPERANDS_BUFFERED) {
+            // The value in a buffer is an operand, and not a value that an earlier computation left.
+            let designer = Designer::new(&self.config.name);
+            self.parts.describe(&designer, &self.config);
+            pipeline::carried(&designer.finish()?)
+        } else {
+            pipeline::carried(design)
+        };
+        match carried {
+            None => Ok(()),
+            Some(carried) => Err(anyhow::Error::new(Diagnostics(vec![carried])).context(format!(
+                "the results of `{}` must depend only on the operands of their own point, because the \
+                 contract states them so",
+                self.device.name
+            ))),
+        }
+    }
+}
+
+/// Completes the messages about mistakes that come from a key of the configuration: the user can also leave out this key.
+fn with_key_remedies(mut mistakes: Diagnostics, keys: &Shared) -> Diagnostics {
+    for mistake in &mut mistakes.0 {
+        if mistake.code == codes::OUTPUT_REGISTER && keys.output_registered {
+            mistake.message += &format!(", or remove {OUTPUT_REGISTERED} from the configuration");
+        }
+        if mistake.code == codes::BUFFER && keys.operands_buffered {
+            mistake.message += &format!(": remove {OPERANDS_BUFFERED} from the configuration");
+        }
+    }
+    mistakes
+}
