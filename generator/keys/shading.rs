@@ -100,7 +100,7 @@ pub enum HighlightPart {
     /// The configuration of a highlight device that has the exponent n as an operand, such as `blinn`.
     OfExponent(Config),
     /// The configuration of the device `function` for the formula of the highlight, with the plan of the formula.
-    OfFormula(Config, FunctionPlan),
+    OfFormula(Config, Box<FunctionPlan>),
 }
 
 /// Makes the parts of a configuration of `shading`, and plans the formula of the highlight.
@@ -280,6 +280,6 @@ impl Keys {
         let planned = function::plan(&config).map_err(|error| {
             of_formula(error, "change the formula, because the cosine x is from 0 to 1")
         })?;
-        Ok(HighlightPart::OfFormula(config, planned))
+        Ok(HighlightPart::OfFormula(config, Box::new(planned)))
     }
 }
