@@ -6,6 +6,7 @@
 //! range of bytes in the text, so that a message can point at a mistake.
 
 mod arithmetic;
+mod condition;
 mod enclosure;
 mod evaluate;
 mod exact;
@@ -26,7 +27,7 @@ use std::sync::Arc;
 pub use dashu_ratio::RBig;
 pub use enclosure::Enclosure;
 pub use literal::Literal;
-pub use parse::{FUNCTIONS, parse};
+pub use parse::{FUNCTIONS, parse, parse_condition};
 pub use print::CArithmetic;
 
 /// A formula, or a part of a formula, as a tree. Two formulas are equal if their kinds are equal, even if they have different

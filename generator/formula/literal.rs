@@ -25,6 +25,11 @@ impl PartialEq for Literal {
 }
 
 impl Literal {
+    /// Returns the number 1.
+    pub(super) fn one() -> Self {
+        Self::read("1").expect("digits")
+    }
+
     /// Parses digits with an optional decimal point and an optional power of ten, such as `3`, `.5` or `1.52587890625e-05`.
     ///
     /// Returns `None` if the text is no such number, if its power of ten is beyond ±400, or if it has more than 400 digits

@@ -3,6 +3,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
+use super::condition::Condition;
 use super::{Comparison, Expression, Fault, Function, Kind, Literal, Operator, TextSpan};
 
 /// The functions of one number that a formula may call, with their names.
@@ -136,6 +137,19 @@ pub fn parse(text: &str) -> Result<Expression, Fault> {
     }
 }
 
+/// Parses a condition, such as `x < y`, `0 < x <= 2`, or `x > 0 and y != 0`, and returns a single comparison that is equivalent.
+///
+/// # Errors
+/// Fails at the first mistake. The error has the location of the mistake.
+pub fn parse_condition(text: &str) -> Result<Comparison, Fault> {
+    let mut parser = Parser { text, tokens: tokens(text)?, at: 0, depth: 0 };
+    let condition = parser.condition()?;
+    match parser.tokens.get(parser.at) {
+        None => Ok(condition.comparison()),
+        Some(rest) => Err(Fault::new(rest.clone(), "this does not belong here")),
+    }
+}
+
 /// Returns the ranges of bytes of all names, numbers and signs. For example, `2*x` gives 0..1, 1..2 and 2..3. Fails at a
 /// character that no formula can have.
 fn tokens(text: &str) -> Result<Vec<Range<usize>>, Fault> {
@@ -148,9 +162,14 @@ fn tokens(text: &str) -> Result<Vec<Range<usize>>, Fault> {
         let length = match first {
             'a'..='z' | 'A'..='Z' | '_' => run(&|c| c.is_ascii_alphanumeric() || c == '_'),
             '0'..='9' | '.' => number(rest),
-            _ if ["**", "<=", ">=", "==", "!="].iter().any(|two| rest.starts_with(two)) => 2,
+            _ if ["**", "<=", ">=", "==", "!=", "&&", "||"]
+                .iter()
+                .any(|two| rest.starts_with(two)) =>
+            {
+                2
+            }
             '+' | '-' | '*' | '/' | '%' | '^' | '(' | ')' | '[' | ']' | ',' | '<' | '>' | '?'
-            | ':' => 1,
+            | ':' | '!' => 1,
             '−' | '·' | '×' | 'π' => first.len_utf8(),
             _ if first.is_ascii_whitespace() => {
                 at += first.len_utf8();
@@ -172,8 +191,8 @@ fn tokens(text: &str) -> Result<Vec<Range<usize>>, Fault> {
 /// Returns an advice about the notation that replaces a sign. Returns `None` for a sign without a known replacement.
 fn instead_of_sign(sign: char) -> Option<&'static str> {
     Some(match sign {
-        '=' | '!' => "compare with `<`, `>`, `<=`, `>=`, `==` or `!=`",
-        '&' => "for two conditions, write `if(a < b, if(c < d, x, y), y)`",
+        '=' => "compare with `<`, `>`, `<=`, `>=`, `==` or `!=`",
+        '&' => "two conditions are joined by `and` or `&&`",
         '²' => "a square is written `x^2`",
         '³' => "a cube is written `x^3`",
         '⁰' | '¹' | '⁴'..='⁹' | '⁻' | 'ⁿ' => "a power is written `x^4`",
@@ -182,7 +201,7 @@ fn instead_of_sign(sign: char) -> Option<&'static str> {
         '÷' | '∕' | '⁄' => "a quotient is written `a / b`",
         '∗' | '⋅' | '∙' => "a product is written `a * b`",
         '|' => {
-            "an absolute value is written `abs(x)`; for one of two conditions, write `if(a < b, x, if(c < d, x, y))`"
+            "an absolute value is written `abs(x)`; one of two conditions is written with `or` or `||`"
         }
         '≤' => "write `<=`",
         '≥' => "write `>=`",
@@ -212,6 +231,12 @@ fn number(text: &str) -> usize {
     let power = digits(end + 1 + sign, '0');
     // If the constant e directly follows a number, the parser reports the mistake.
     if power > end + 1 + sign { power } else { end }
+}
+
+/// Returns whether a number can end with this token.
+fn ends_number(token: &str) -> bool {
+    let last = token.chars().last();
+    last.is_some_and(|last| last.is_alphanumeric() || matches!(last, '_' | ')' | ']' | '.'))
 }
 
 struct Parser<'t> {
@@ -247,7 +272,12 @@ impl Parser<'_> {
 
     /// Makes a part from the tokens from number `from` to the last token that was read.
     fn made(&self, from: usize, kind: Kind) -> Expression {
-        Expression::new(kind, self.tokens[from].start..self.tokens[self.at - 1].end)
+        Expression::new(kind, self.span(from))
+    }
+
+    /// Returns the range of bytes of the tokens from number `from` to the last token that was read.
+    fn span(&self, from: usize) -> Range<usize> {
+        self.tokens[from].start..self.tokens[self.at - 1].end
     }
 
     fn choice(&mut self) -> Result<Expression, Fault> {
@@ -256,44 +286,142 @@ impl Parser<'_> {
         }
         self.depth += 1;
         let from = self.at;
-        let mut choice = self.sum()?;
+        let mut choice = if self.begins_condition() {
+            // `(a < b) && (c < d) ? x : y`, as in C.
+            let condition = self.condition()?;
+            self.cases_in_c(from, &condition)?
+        } else {
+            self.sum()?
+        };
         if SIGNS_OF_COMPARISONS.contains(&self.peek()) {
             // `a < b ? x : y`, as in C.
-            let comparison = self.comparison_of(choice)?;
-            self.expect("?")?;
-            let yes = self.choice()?;
-            self.expect(":")?;
-            let kind = Kind::If(comparison, Arc::new(yes), Arc::new(self.choice()?));
-            choice = self.made(from, kind);
+            let condition = self.condition_of(choice)?;
+            choice = self.cases_in_c(from, &condition)?;
         } else if self.taken(&["if"]) {
-            let comparison = self.comparison()?;
+            let condition = self.condition()?;
             self.expect("else")?;
-            let other = self.choice()?;
-            let kind = Kind::If(comparison, Arc::new(choice), Arc::new(other));
-            choice = self.made(from, kind);
+            let other = Arc::new(self.choice()?);
+            choice = condition.choice(Arc::new(choice), other, self.span(from));
         }
         self.depth -= 1;
         Ok(choice)
     }
 
-    fn comparison(&mut self) -> Result<Comparison, Fault> {
-        let first = self.sum()?;
-        self.comparison_of(first)
+    /// Parses `? x : y` after a condition, which begins at token number `from`. Fails at the first mistake.
+    fn cases_in_c(&mut self, from: usize, condition: &Condition) -> Result<Expression, Fault> {
+        self.expect("?")?;
+        let yes = Arc::new(self.choice()?);
+        self.expect(":")?;
+        let no = Arc::new(self.choice()?);
+        Ok(condition.choice(yes, no, self.span(from)))
     }
 
-    /// Parses the sign and the right side of a comparison whose left side is `first`. Fails at the first mistake.
-    fn comparison_of(&mut self, first: Expression) -> Result<Comparison, Fault> {
-        let first = Arc::new(first);
-        let sign = self.peek().to_owned();
-        if !self.taken(&SIGNS_OF_COMPARISONS) {
-            return self.fault("a comparison sign is missing: `<`, `>`, `<=`, `>=`, `==` or `!=`");
+    /// Parses a condition: comparisons joined by `and`, `or` and `not`. Fails at the first mistake.
+    fn condition(&mut self) -> Result<Condition, Fault> {
+        if self.depth == DEEPEST {
+            return self.fault(format!("the formula is nested more than {DEEPEST} deep"));
         }
-        let second = Arc::new(self.sum()?);
+        self.depth += 1;
+        let first = self.single_condition()?;
+        let condition = self.joined(first);
+        self.depth -= 1;
+        condition
+    }
+
+    /// Parses the rest of a condition whose first number is `first`. Fails at the first mistake.
+    fn condition_of(&mut self, first: Expression) -> Result<Condition, Fault> {
+        let comparison = self.comparisons(first)?;
+        self.joined(comparison)
+    }
+
+    /// Parses the conditions that `and` and `or` join to `first`; `and` binds closer. Fails at the first mistake.
+    fn joined(&mut self, first: Condition) -> Result<Condition, Fault> {
+        let mut either = self.all_of(first)?;
+        while self.taken(&["or", "||"]) {
+            let next = self.single_condition()?;
+            either = Condition::Either(Box::new(either), Box::new(self.all_of(next)?));
+        }
+        Ok(either)
+    }
+
+    /// Parses the conditions that `and` joins to `first`. Fails at the first mistake.
+    fn all_of(&mut self, first: Condition) -> Result<Condition, Fault> {
+        let mut both = first;
+        while self.taken(&["and", "&&"]) {
+            both = Condition::Both(Box::new(both), Box::new(self.single_condition()?));
+        }
+        Ok(both)
+    }
+
+    /// Parses a condition that neither `and` nor `or` divides. Fails at the first mistake.
+    fn single_condition(&mut self) -> Result<Condition, Fault> {
+        if self.taken(&["not", "!"]) {
+            return Ok(self.single_condition()?.negated());
+        }
+        if self.begins_condition() {
+            self.expect("(")?;
+            let inner = self.condition()?;
+            self.expect(")")?;
+            return Ok(inner);
+        }
+        let first = self.sum()?;
+        self.comparisons(first)
+    }
+
+    /// Returns whether the next tokens are a condition in parentheses: they have a comparison between these parentheses, and no
+    /// choice that makes a number of it.
+    fn begins_condition(&self) -> bool {
+        if self.peek() != "(" {
+            return false;
+        }
+        let mut depth = 0;
+        let mut has_comparison = false;
+        let mut before = "";
+        for token in &self.tokens[self.at..] {
+            let token = &self.text[token.clone()];
+            match token {
+                "(" | "[" => depth += 1,
+                ")" | "]" => depth -= 1,
+                "?" if depth == 1 => return false,
+                // The choice of Python follows a number; the function `if` follows a sign.
+                "if" if depth == 1 && ends_number(before) => return false,
+                "and" | "&&" | "or" | "||" | "not" | "!" => has_comparison |= depth == 1,
+                sign => has_comparison |= depth == 1 && SIGNS_OF_COMPARISONS.contains(&sign),
+            }
+            if depth == 0 {
+                break;
+            }
+            before = token;
+        }
+        has_comparison
+    }
+
+    /// Parses the comparisons that follow a number, for example `< x <= 2`. Fails at the first mistake.
+    fn comparisons(&mut self, first: Expression) -> Result<Condition, Fault> {
+        let mut first = Arc::new(first);
+        let mut all: Option<Condition> = None;
+        loop {
+            let sign = self.peek().to_owned();
+            if !self.taken(&SIGNS_OF_COMPARISONS) {
+                let missing = "a comparison sign is missing: `<`, `>`, `<=`, `>=`, `==` or `!=`";
+                return all.map_or_else(|| self.fault(missing), Ok);
+            }
+            let second = Arc::new(self.sum()?);
+            let comparison = Condition::Is(self.compared(first, &sign, second.clone()));
+            all = Some(match all {
+                None => comparison,
+                Some(before) => Condition::Both(Box::new(before), Box::new(comparison)),
+            });
+            first = second;
+        }
+    }
+
+    fn compared(&self, first: Arc<Expression>, sign: &str, second: Arc<Expression>) -> Comparison {
         if sign == "==" || sign == "!=" {
-            return Ok(self.equality(first, second, sign == "=="));
+            return self.equality(first, second, sign == "==");
         }
         let (left, right) = if sign.starts_with('>') { (first, second) } else { (second, first) };
-        Ok(Comparison { left, right, or_equal: sign.len() == 2 })
+        Comparison { left, right, or_equal: sign.len() == 2 }
     }
 
     /// Returns the comparison that holds if two numbers are equal, or if they differ: whether the distance of the numbers is 0, or
@@ -424,13 +552,13 @@ impl Parser<'_> {
     /// function, or at the first mistake in an argument.
     fn call(&mut self, from: usize, name: &str) -> Result<Expression, Fault> {
         if name == "if" {
-            let comparison = self.comparison()?;
+            let condition = self.condition()?;
             self.expect(",")?;
             let yes = Arc::new(self.choice()?);
             self.expect(",")?;
             let no = Arc::new(self.choice()?);
             self.expect(")")?;
-            return Ok(self.made(from, Kind::If(comparison, yes, no)));
+            return Ok(condition.choice(yes, no, self.span(from)));
         }
         let operator = named(&FUNCTIONS_OF_TWO, name);
         let function = named(&FUNCTIONS, name);

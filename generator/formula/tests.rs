@@ -1,6 +1,6 @@
 //! Tests that formulas are parsed, evaluated and printed.
 
-use super::{CArithmetic, Enclosure, RBig, parse};
+use super::{CArithmetic, Enclosure, RBig, parse, parse_condition};
 
 fn value(text: &str, x: f64) -> Enclosure {
     let formula = parse(text).unwrap_or_else(|fault| panic!("{}", fault.under(text)));
@@ -330,8 +330,8 @@ fn signs_of_other_alphabets_are_named() {
         ("x ÷ 2", "  ^ `÷` cannot be a part of a formula: a quotient is written `a / b`"),
         (
             "|x|",
-            "^ `|` cannot be a part of a formula: an absolute value is written `abs(x)`; for one of two conditions, write \
-             `if(a < b, x, if(c < d, x, y))`",
+            "^ `|` cannot be a part of a formula: an absolute value is written `abs(x)`; one of two conditions is \
+             written with `or` or `||`",
         ),
         ("x – 1", "  ^ `–` cannot be a part of a formula: a minus sign is written `-`"),
     ] {
@@ -411,5 +411,49 @@ fn functions_of_other_languages_have_their_values() {
         let value = formula.enclose(&operands).expect(text);
         assert!(value.low <= expected && expected <= value.high, "{text} at {x}: {value:?}");
         assert!(value.high - value.low < 1e-9, "{text} at {x}: {value:?}");
+    }
+}
+
+/// Conditions of x and y, each with a function that decides it.
+type KnownCondition = (&'static str, fn(f64, f64) -> bool);
+
+#[test]
+fn conditions_join_comparisons() {
+    let known: [KnownCondition; 12] = [
+        ("0 < x < y", |x, y| 0.0 < x && x < y),
+        ("0 <= x < y", |x, y| 0.0 <= x && x < y),
+        ("x > 0 and y > 0", |x, y| x > 0.0 && y > 0.0),
+        ("x > 0 && y >= 0", |x, y| x > 0.0 && y >= 0.0),
+        ("x > 0 or y > 1", |x, y| x > 0.0 || y > 1.0),
+        ("x >= 1 || y > 1", |x, y| x >= 1.0 || y > 1.0),
+        ("x != y", |x, y| x != y),
+        ("not (x < y)", |x, y| x >= y),
+        ("!(x == y) and x <= 1", |x, y| x != y && x <= 1.0),
+        ("x > 1 or x < y and y > 0", |x, y| x > 1.0 || x < y && y > 0.0),
+        ("(x > 1 or x < y) and (y) > (0)", |x, y| (x > 1.0 || x < y) && y > 0.0),
+        ("(x + 1) * (y - 1) < 0 or (x > y ? x : y) > 1", |x, y| {
+            (x + 1.0) * (y - 1.0) < 0.0 || x.max(y) > 1.0
+        }),
+    ];
+    for (text, holds) in known {
+        let comparison = parse_condition(text).unwrap();
+        let choices = [
+            format!("if({text}, 5, 7)"),
+            format!("({text}) ? 5 : 7"),
+            format!("5 if {text} else 7"),
+        ];
+        for (x, y) in (-2..=2).flat_map(|x| (-2..=2).map(move |y| (f64::from(x), f64::from(y)))) {
+            let operands = [("x", Enclosure::exactly(x)), ("y", Enclosure::exactly(y))];
+            let expected = holds(x, y);
+            assert_eq!(comparison.holds(&operands), Ok(Some(expected)), "{text} at {x}, {y}");
+            for choice in &choices {
+                let value = parse(choice).unwrap().enclose(&operands).unwrap();
+                let case = if expected { 5.0 } else { 7.0 };
+                assert_eq!(value, Enclosure::exactly(case), "{choice} at {x}, {y}");
+            }
+        }
+    }
+    for wrong in ["x", "x <", "x < y z", "x and y", "not", "(x < y", "x < y and", "x ? y : 1"] {
+        assert!(parse_condition(wrong).is_err(), "{wrong}");
     }
 }

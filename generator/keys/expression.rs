@@ -4,14 +4,15 @@
 //! the results with their formulas. For example, the result `r` may have the formula `sqrt(x^2 + y^2)`. A plan is a list of
 //! fixed-point operations that computes the formulas ([`glint_plan`]).
 
-use std::ops::Range;
 use std::sync::Arc;
 
 use glint_approximate::Outside;
 use glint_base::config_error::ConfigError;
 use glint_base::fixed::{Format, MAX_WIDTH, exp2};
 use glint_config::{Config, Key, Problems, Schema, TableEntries, TableEntry, TextPattern, Value};
-use glint_formula::{Comparison, Expression, Fault, Kind, Operator, TextSpan, parse};
+use glint_formula::{
+    Comparison, Expression, Fault, Kind, Operator, TextSpan, parse, parse_condition,
+};
 use glint_plan::{
     ExpressionStatement, Operation, PlanRefusal, ProvedPlan, StatedOperand, StatedOverflow,
     StatedResult, StatedWidth, find, least_size,
@@ -544,27 +545,18 @@ fn resolved(
     Ok(formula.with_operands(&of_part))
 }
 
-/// Parses the comparison of two formulas, for example `x < y`, and replaces named parts by their formulas.
+/// Parses a condition, for example `x < y` or `0 < x < y`, and replaces named parts by their formulas. Returns an equivalent
+/// comparison.
 ///
 /// # Errors
-/// Fails if the text is not a comparison, or if it has an unknown name. The error's place counts from the start of `text`.
+/// Fails if the text is not a condition, or if it has an unknown name.
 fn promise(text: &str, key: &str, keys: &Keys, parts: &Parts) -> Result<Comparison, ConfigError> {
-    const BEFORE: &str = "if(";
-    let moved = |span: Range<usize>| {
-        let start = span.start.saturating_sub(BEFORE.len()).min(text.len());
-        start..span.end.saturating_sub(BEFORE.len()).clamp(start, text.len())
-    };
-    let choice = parse(&format!("{BEFORE}{text}, 1, 0)")).map_err(|fault| {
-        let remedy = "give a comparison of two formulas, for example `x < y` or `s > 0`";
-        ConfigError::new(key, fault.message, remedy).at(moved(fault.span.bytes))
+    let comparison = parse_condition(text).map_err(|fault| {
+        let remedy = "give a condition, for example `x < y` or `s > 0 and x != 0`";
+        ConfigError::new(key, fault.message, remedy).at(fault.span.bytes)
     })?;
-    let choice = resolved(&choice, key, keys, parts)
-        .map_err(|error| ConfigError { place: error.place.map(moved), ..error })?;
-    match choice.kind {
-        Kind::If(comparison, ..) => Ok(comparison),
-        _ => {
-            let message = format!("`{text}` is not a comparison");
-            Err(ConfigError::new(key.to_owned(), message, "give a comparison, for example `x < y`"))
-        }
-    }
+    let Comparison { left, right, or_equal } = comparison;
+    let left = Arc::new(resolved(&left, key, keys, parts)?);
+    let right = Arc::new(resolved(&right, key, keys, parts)?);
+    Ok(Comparison { left, right, or_equal })
 }

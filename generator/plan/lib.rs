@@ -43,6 +43,7 @@ mod curve;
 mod describe;
 mod evaluate;
 mod exhaust;
+mod facts;
 mod find;
 mod lower;
 mod node;

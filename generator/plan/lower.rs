@@ -21,6 +21,7 @@ use glint_base::fixed::{Format, Rounding, exp2, nearest, shifted_left};
 use glint_formula::{Comparison, Enclosure, Expression, Function, Kind, Operator, RBig};
 
 use super::boxes::ResultProof;
+use super::facts::has_fact;
 use super::node::{Approximation, NodeId, Operation};
 use super::plan::ExpressionPlan;
 use super::range::{LIMIT_THE_OPERANDS, RangeMemo};
@@ -110,6 +111,8 @@ struct KnownPart {
     node: NodeId,
     /// The uses for which the node has the right value.
     uses: PartUses,
+    /// Whether the node has limits that follow from the conditions of these uses alone.
+    is_limited: bool,
 }
 
 /// The state of the rewriting of formulas as a plan.
@@ -174,7 +177,8 @@ pub(super) fn lowered(
         let node = lowering.plan.operand(number, &operand.name, operand.format, operand.domain)?;
         let uses =
             PartUses { readers: vec![true; statement.results.len()], conditions: Vec::new() };
-        lowering.known.push(KnownPart { part: Expression::operand(&operand.name), node, uses });
+        let part = Expression::operand(&operand.name);
+        lowering.known.push(KnownPart { part, node, uses, is_limited: false });
     }
     for number in 0..statement.results.len() {
         let of_result = |refusal: PlanRefusal| refusal.of_result(number);
@@ -269,13 +273,19 @@ impl<'s> Lowering<'s> {
     }
 
     /// Returns the uses of `part` as a part of the one that is being rewritten. Without a condition, other results whose formulas
-    /// read `part` for all operands count too, so that they can share its node.
+    /// read `part` for all operands count too, so that they can share its node, unless the part then loses limits that the
+    /// condition of the present result states.
     fn uses_of(&self, part: &Expression) -> PartUses {
         let mut uses = self.uses.clone();
-        if uses.conditions.is_empty() {
-            for (reads, result) in uses.readers.iter_mut().zip(&self.statement.results) {
-                *reads |= reads_always(&result.formula, part);
-            }
+        if !uses.conditions.is_empty() {
+            return uses;
+        }
+        for (reads, result) in uses.readers.iter_mut().zip(&self.statement.results) {
+            *reads |= reads_always(&result.formula, part);
+        }
+        let has_fact = |uses: &PartUses| has_fact(self.statement, uses, part);
+        if uses != self.uses && has_fact(&self.uses) && !has_fact(&uses) {
+            return self.uses.clone();
         }
         uses
     }
@@ -315,17 +325,58 @@ impl<'s> Lowering<'s> {
     /// Returns the node of a part of a formula. Adds the node and all nodes that it reads if the part has no node. Fails if a
     /// part has too many bits, no finite values, or no rule. The refusal has the location of the part.
     fn part(&mut self, part: &Expression) -> Result<NodeId, PlanRefusal> {
-        let is_for_all = |known: &&KnownPart| known.part == *part && known.uses.contain(&self.uses);
-        if let Some(known) = self.known.iter().find(is_for_all) {
+        let is_limited = has_fact(self.statement, &self.uses_of(part), part);
+        let same = self.known_part(part, is_limited).or_else(|| self.known_part(part, false));
+        if let Some(known) = same
+            && known.is_limited == is_limited
+        {
             return Ok(known.node);
         }
+        let unlimited = same.map(|known| known.node);
         let uses = self.uses_of(part);
         let outer = mem::replace(&mut self.uses, uses);
-        let node = self.new_part(part).map_err(|refusal| refusal.at(&part.span));
+        let node = match unlimited {
+            Some(node) => Ok(node),
+            None => self.new_part(part),
+        };
+        let node = node.and_then(|node| match is_limited {
+            true => self.limited_by_facts(part, node),
+            false => Ok(node),
+        });
         let uses = mem::replace(&mut self.uses, outer);
-        let node = node?;
-        self.known.push(KnownPart { part: part.clone(), node, uses });
+        let node = node.map_err(|refusal| refusal.at(&part.span))?;
+        self.known.push(KnownPart { part: part.clone(), node, uses, is_limited });
         Ok(node)
+    }
+
+    /// Returns the known node of a part that has the right value for the present uses, and that has limits or none.
+    fn known_part(&self, part: &Expression, is_limited: bool) -> Option<&KnownPart> {
+        self.known.iter().find(|known| {
+            known.is_limited == is_limited && known.part == *part && known.uses.contain(&self.uses)
+        })
+    }
+
+    /// Returns a node with the value of `node`, which is the node of `part`, within the limits that follow from the conditions of
+    /// its uses. Returns `node` itself if it is rounded. Fails if the part has no finite values.
+    fn limited_by_facts(&mut self, part: &Expression, node: NodeId) -> Result<NodeId, PlanRefusal> {
+        if !self.is_exact(node) {
+            return Ok(node);
+        }
+        let limits = self.range(part)?;
+        if self.is_promised_alone() && !self.plan.is_narrower(node, limits) {
+            self.plan.nodes[node.0].limits = limits;
+            return Ok(node);
+        }
+        let name = format!("{}_guarded", self.plan.node(node).name);
+        self.plan.limited(&name, node, limits)
+    }
+
+    /// Returns whether all results have the same condition, and no choice limits the present uses. The value of every node then
+    /// matters only for operands that satisfy this condition.
+    fn is_promised_alone(&self) -> bool {
+        let mut promises = self.statement.results.iter().map(|result| &result.promise);
+        let first = promises.next();
+        self.uses.conditions.is_empty() && promises.all(|promise| Some(promise) == first)
     }
 
     fn new_part(&mut self, part: &Expression) -> Result<NodeId, PlanRefusal> {
@@ -382,6 +433,13 @@ impl<'s> Lowering<'s> {
         let node = self.part(core)?;
         let range = self.range(core)?;
         let format = self.plan.node(node).format;
+        if let Kind::Binary(Operator::Div, a, b) = &part.kind
+            && b.varies()
+            && function_range(&function, format, self.raw_domain(node, range, 0.0)).is_none()
+        {
+            // A condition excludes the divisor 0 between the smallest and the largest divisor.
+            return self.quotient(a, b, part);
+        }
         let node = self.rounding(format.frac.min(self.finest), |own, frac| {
             if format.width() <= WIDEST_OPERAND {
                 return Ok(node);

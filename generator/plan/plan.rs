@@ -1,6 +1,6 @@
 //! Defines the plan of an expression. Its methods append nodes, and compute the formats of their results.
 
-use glint_base::fixed::{Format, MAX_WIDTH, Rounding, shifted_left};
+use glint_base::fixed::{Format, MAX_WIDTH, Rounding, exp2, shifted_left};
 use glint_base::interval::{self, Interval};
 use glint_formula::Enclosure;
 
@@ -179,6 +179,7 @@ impl ExpressionPlan {
         let wanted = operation.identity()?;
         let is_same = |node: &PlanNode| {
             node.source.is_none()
+                && node.limits == ANYTHING
                 && node.format == format
                 && node.operation.identity().as_ref() == Some(&wanted)
         };
@@ -415,6 +416,39 @@ impl ExpressionPlan {
     pub(super) fn copy(&mut self, name: &str, a: NodeId) -> Result<NodeId, PlanRefusal> {
         let PlanNode { format, range, .. } = *self.node(a);
         self.insert(name, Operation::Scale(a), format, range)
+    }
+
+    /// Returns the format of the values of the exact node `a` within limits.
+    fn format_within(&self, a: NodeId, limits: Enclosure) -> Format {
+        let PlanNode { format, range, .. } = *self.node(a);
+        let unit = exp2(format.frac);
+        let low = range.0.max((limits.low * unit).ceil() as i128);
+        let high = range.1.min((limits.high * unit).floor() as i128);
+        Format::holding(low.min(high), high.max(low), format.frac)
+    }
+
+    /// Returns whether the values of the exact node `a` within limits need fewer bits than the node has.
+    pub(super) fn is_narrower(&self, a: NodeId, limits: Enclosure) -> bool {
+        self.format_within(a, limits).width() < self.node(a).format.width()
+    }
+
+    /// Adds a node for the values of the exact node `a` within limits, and returns it. The caller must know that the limits
+    /// contain the value wherever the new node's value matters. For other values, high bits are dropped. Fails if the node has
+    /// more than 64 bits.
+    pub(super) fn limited(
+        &mut self,
+        name: &str,
+        a: NodeId,
+        limits: Enclosure,
+    ) -> Result<NodeId, PlanRefusal> {
+        let node = if self.is_narrower(a, limits) {
+            self.narrow(name, a, self.format_within(a, limits), Rounding::Truncate)?
+        } else {
+            let copy = PlanNode { name: name.to_owned(), ..self.node(a).clone() };
+            self.push_copy(&copy, Operation::Scale(a))
+        };
+        self.nodes[node.0].limits = limits;
+        Ok(node)
     }
 
     /// Adds the node `a` converted to `format` with the given rounding, and returns the new node. Returns `a` itself if it

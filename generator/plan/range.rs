@@ -9,6 +9,7 @@ use std::sync::Arc;
 use glint_formula::{Comparison, Enclosure, Expression, Function, Kind, Operator};
 
 use super::boxes::{BoxScore, OperandBox, best_halves};
+use super::facts::GuardedFormula;
 use super::refusal::PlanRefusal;
 use super::statement::{ExpressionStatement, StatedResult};
 use super::uses::PartUses;
@@ -178,6 +179,7 @@ fn range_of(
     uses: &PartUses,
     formula: &Expression,
 ) -> Result<Enclosure, NoRange> {
+    let guarded = GuardedFormula::new(statement, uses, formula);
     let values_in = |limits: &OperandBox| {
         let operands = statement.enclosed_operands(limits);
         let may_be_promised = |(result, reads): (&StatedResult, &bool)| {
@@ -192,9 +194,7 @@ fn range_of(
         if uses.conditions.iter().any(is_excluded) {
             return None;
         }
-        let values = formula
-            .enclose(&operands)
-            .unwrap_or(Enclosure::between(f64::NEG_INFINITY, f64::INFINITY));
+        let values = guarded.values(&operands)?;
         Some(BoxValues { limits: limits.clone(), values })
     };
     let mut finite = Vec::new();

@@ -28,7 +28,7 @@ const TINY: &str =
 operands.c = { bits = 3, fraction = 40 }\noperands.d = { bits = 3, fraction = 40 }";
 
 /// Operands, and results that other results read or that need no operation.
-const CASES: [(&str, &str); 19] = [
+const CASES: [(&str, &str); 25] = [
     (
         // The exponential function has a table over an octave, and its results need no shift.
         "operands.y = { from = \"-9 / 4\", to = \"15 / 4\", to_included = true, fraction = 2, outside = \"anything\" }",
@@ -101,6 +101,38 @@ results.b = { formula = \"y * log2(x)\", fraction = 6, where = \"x > 0.9\" }",
     (
         "operands.x = { bits = 12, fraction = 12 }",
         "results.t = { formula = \"1/(1/298.15 + ln(x/(1 - x))/3950)\", fraction = 4, where = \"x >= 0.05\" }",
+    ),
+    (
+        // The condition of a result or of a choice limits a difference of operands.
+        SIGNED,
+        "results.r = { formula = \"if(x > y, sqrt(x - y), 0)\", fraction = 5 }
+results.s = { formula = \"(x - y) * x\", fraction = 5 }
+results.t = { formula = \"ln(x - y)\", fraction = 5, where = \"x - y >= 1/2\" }",
+    ),
+    (
+        SIGNED,
+        "results.q = { formula = \"x / (y - x)\", fraction = 4, where = \"y > x\" }
+results.c = { formula = \"if(x > y, (x - y) / (x - y + 1), if(y > x, x / (y - x), 0))\", fraction = 4 }",
+    ),
+    (
+        UNSIGNED,
+        "results.leg = { formula = \"sqrt(x^2 - y^2)\", fraction = 5, where = \"x >= y\" }
+results.part = { formula = \"x / y\", fraction = 5, where = \"0 < x < y\" }",
+    ),
+    (
+        "operands.a = { bits = 4, fraction = 4 }\noperands.b = { bits = 4, fraction = 4 }
+operands.x = { bits = 4, fraction = 4 }",
+        "results.t = { formula = \"smoothstep(a, b, x)\", fraction = 4, where = \"b - a >= 1/8\" }",
+    ),
+    (
+        SIGNED,
+        "results.w = { formula = \"if(x != y and x != 0, y / (x * (x - y)), if(y == 0 or x > 0, 1, 1 / y))\", fraction = 3 }
+results.c = { formula = \"(x > y && !(y < 0.5)) || x == -1 ? x : y\", fraction = 3 }",
+    ),
+    (
+        SIGNED,
+        "results.a = { formula = \"atan2(x - y, x + y)\", fraction = 5, where = \"not (x == 0 and y == 0)\" }
+results.l = { formula = \"ln(x - y)\", fraction = 4, where = \"x > y and (y >= 0 or x < 0.5)\" }",
     ),
     (
         "operands.x = { from = -0.3, to = 0.4, fraction = 6 }\noperands.y = { from = 0.25, to = 0.5, fraction = 6 }",

@@ -9,9 +9,9 @@ use glint_formula::{Enclosure, Expression};
 
 use super::root::{FEW_OCTAVES, Octave, holding};
 use super::{Lowering, WIDEST_FACTOR, WIDEST_OPERAND, number};
+use crate::facts::promises_less;
 use crate::node::NodeId;
 use crate::refusal::PlanRefusal;
-use crate::statement::StatedResult;
 
 impl Lowering<'_> {
     /// Returns the node of the quotient a / b. `part` must be this quotient as a formula. Fails if a part has too many bits, no
@@ -55,11 +55,8 @@ impl Lowering<'_> {
     /// then at most 1.
     fn is_proper(&self, a: &Expression, b: &Expression) -> bool {
         let is_not_negative = self.range(a).is_ok_and(|values| values.low >= 0.0);
-        let promises_it = |result: &StatedResult| {
-            let promise = result.promise.as_ref();
-            promise.is_some_and(|it| *it.left == *b && *it.right == *a)
-        };
-        is_not_negative && self.statement.results.iter().all(promises_it)
+        let mut results = self.statement.results.iter();
+        is_not_negative && results.all(|result| promises_less(self.statement, result, a, b))
     }
 
     /// Returns the node of a dividend divided by a divisor, which is given as a normalised word in `octave`. `largest` must be

@@ -1,0 +1,547 @@
+//! What conditions on operands say about parts of formulas. For example, `hi > lo` says that `hi - lo` is at least the smallest
+//! difference that the operands can have, so that `1 / (hi - lo)` has a limit.
+//!
+//! A fact is a polynomial of operands that is not below a number. A part that is a multiple of this polynomial plus a rest gets
+//! limits from it: `c^2 - a^2` is `(c - a) * (c + a)`, so that it is not below 0 where `c >= a` and both are not negative.
+
+use std::collections::{BTreeMap, HashMap};
+use std::ptr;
+use std::sync::Arc;
+
+use glint_formula::{Comparison, Enclosure, Expression, Function, Kind, Operator, RBig};
+
+use super::statement::{ExpressionStatement, StatedResult};
+use super::uses::PartUses;
+
+/// The most parts of a formula that is written as a polynomial.
+const MOST_PARTS: u32 = 200;
+
+/// The most terms of a polynomial.
+const MOST_TERMS: usize = 32;
+
+/// The largest exponent in a formula that is written as a polynomial.
+const LARGEST_EXPONENT: u32 = 8;
+
+/// The most cases of choices in a formula whose conditions are read as facts.
+const MOST_CASES: usize = 64;
+
+/// The exponents of all operands in a product of powers, in the order of the statement.
+type Exponents = Vec<u32>;
+
+/// A polynomial of the operands of a statement, with exact coefficients other than 0.
+#[derive(Clone, Debug, PartialEq)]
+struct Polynomial(BTreeMap<Exponents, RBig>);
+
+impl Polynomial {
+    fn zero() -> Self {
+        Self(BTreeMap::new())
+    }
+
+    fn term(exponents: Exponents, coefficient: RBig) -> Self {
+        let mut sum = Self::zero();
+        sum.add_term(exponents, coefficient);
+        sum
+    }
+
+    fn add_term(&mut self, exponents: Exponents, coefficient: RBig) {
+        let before = self.0.remove(&exponents).unwrap_or(RBig::ZERO);
+        let sum = before + coefficient;
+        if sum != RBig::ZERO {
+            self.0.insert(exponents, sum);
+        }
+    }
+
+    /// Writes a formula as a polynomial. Returns `None` for a formula that is none, or that has too many terms.
+    fn of(formula: &Expression, statement: &ExpressionStatement) -> Option<Self> {
+        if formula.size() > MOST_PARTS {
+            return None;
+        }
+        let count = statement.operands.len();
+        if !formula.varies() {
+            return Some(Self::term(vec![0; count], formula.rational()?));
+        }
+        let of = |part: &Expression| Self::of(part, statement);
+        let polynomial = match &formula.kind {
+            Kind::Operand(name) => {
+                let number = statement.operands.iter().position(|it| it.name == *name)?;
+                let mut exponents = vec![0; count];
+                exponents[number] = 1;
+                Self::term(exponents, RBig::ONE)
+            }
+            Kind::Unary(Function::Negate, a) => of(a)?.times_number(&RBig::from(-1)),
+            Kind::Binary(Operator::Add, a, b) => of(a)?.plus(&of(b)?),
+            Kind::Binary(Operator::Sub, a, b) => of(a)?.minus(&of(b)?),
+            Kind::Binary(Operator::Mul, a, b) => of(a)?.times(&of(b)?)?,
+            Kind::Binary(Operator::Div, a, b) if !b.varies() => {
+                let divisor = b.rational().filter(|divisor| *divisor != RBig::ZERO)?;
+                of(a)?.times_number(&(RBig::ONE / divisor))
+            }
+            Kind::Binary(Operator::Power, a, b) if !b.varies() => {
+                let exponent = b.rational().filter(RBig::is_int)?;
+                let exponent = u32::try_from(exponent.numerator().clone()).ok()?;
+                if exponent > LARGEST_EXPONENT {
+                    return None;
+                }
+                let base = of(a)?;
+                let mut power = Self::term(vec![0; count], RBig::ONE);
+                for _ in 0..exponent {
+                    power = power.times(&base)?;
+                }
+                power
+            }
+            _ => return None,
+        };
+        (polynomial.0.len() <= MOST_TERMS).then_some(polynomial)
+    }
+
+    fn plus(&self, other: &Self) -> Self {
+        let mut sum = self.clone();
+        for (exponents, coefficient) in &other.0 {
+            sum.add_term(exponents.clone(), coefficient.clone());
+        }
+        sum
+    }
+
+    fn minus(&self, other: &Self) -> Self {
+        self.plus(&other.times_number(&RBig::from(-1)))
+    }
+
+    fn times_number(&self, factor: &RBig) -> Self {
+        let terms = self.0.iter();
+        Self(terms.map(|(exponents, it)| (exponents.clone(), it.clone() * factor)).collect())
+    }
+
+    /// Returns the product, or `None` if it has too many terms.
+    fn times(&self, other: &Self) -> Option<Self> {
+        let mut product = Self::zero();
+        for (left, a) in &self.0 {
+            for (right, b) in &other.0 {
+                let exponents = left.iter().zip(right).map(|(a, b)| a + b).collect();
+                product.add_term(exponents, a.clone() * b);
+            }
+        }
+        (product.0.len() <= MOST_TERMS).then_some(product)
+    }
+
+    /// Returns whether the polynomial depends on no operand.
+    fn is_number(&self) -> bool {
+        self.0.keys().all(|exponents| is_constant(exponents))
+    }
+
+    /// Returns a polynomial m and a rest r with `self` = m · `divisor` + r. First tries a number m with which the rest is a number
+    /// too, and then a division by an operand that `divisor` has only to the first power and without another operand. Returns
+    /// `None` if neither is possible, or if m is 0.
+    fn divided_by(&self, divisor: &Self) -> Option<(Self, Self)> {
+        let (exponents, leading) =
+            divisor.0.iter().find(|(exponents, _)| !is_constant(exponents))?;
+        if let Some(own) = self.0.get(exponents) {
+            let factor = own.clone() / leading;
+            let rest = self.minus(&divisor.times_number(&factor));
+            if rest.is_number() {
+                return Some((Self::term(vec![0; exponents.len()], factor), rest));
+            }
+        }
+        let operand = (0..exponents.len()).find(|operand| divisor.is_linear_in(*operand))?;
+        let mut unit = vec![0; exponents.len()];
+        unit[operand] = 1;
+        let slope = divisor.0.get(&unit)?;
+        let (mut factor, mut rest) = (Self::zero(), self.clone());
+        while let Some((highest, coefficient)) = rest.highest_in(operand) {
+            let mut lower = highest;
+            lower[operand] -= 1;
+            let step = Self::term(lower, coefficient / slope);
+            rest = rest.minus(&step.times(divisor)?);
+            factor = factor.plus(&step);
+        }
+        (factor != Self::zero()).then_some((factor, rest))
+    }
+
+    /// Returns whether exactly one term has the operand, to the first power and without another operand.
+    fn is_linear_in(&self, operand: usize) -> bool {
+        let mut terms = self.0.keys().filter(|exponents| exponents[operand] > 0);
+        let only = terms.next().is_some_and(|exponents| exponents.iter().sum::<u32>() == 1);
+        only && terms.next().is_none()
+    }
+
+    /// Returns the exponents and the coefficient of a term with the largest exponent of the operand; `None` if no term has it.
+    fn highest_in(&self, operand: usize) -> Option<(Exponents, RBig)> {
+        let terms = self.0.iter().filter(|(exponents, _)| exponents[operand] > 0);
+        let highest = terms.max_by_key(|(exponents, _)| exponents[operand])?;
+        Some((highest.0.clone(), highest.1.clone()))
+    }
+
+    /// Returns a number of which every value of the polynomial is a multiple, for operands of the statement.
+    fn step(&self, statement: &ExpressionStatement) -> RBig {
+        let mut step = RBig::ZERO;
+        for (exponents, coefficient) in &self.0 {
+            let mut bits = 0;
+            for (operand, exponent) in statement.operands.iter().zip(exponents) {
+                bits += operand.format.frac as isize * *exponent as isize;
+            }
+            step = common_divisor(step, coefficient.clone() * RBig::from(2).pow(-bits));
+        }
+        step
+    }
+}
+
+fn is_constant(exponents: &[u32]) -> bool {
+    exponents.iter().all(|exponent| *exponent == 0)
+}
+
+/// Returns the largest number of which both numbers are multiples. For example, 3/4 and 1/2 give 1/4.
+fn common_divisor(a: RBig, b: RBig) -> RBig {
+    let (mut a, mut b) = (size_of(a), size_of(b));
+    while b != RBig::ZERO {
+        let rest = a.clone() - (a.clone() / &b).floor() * &b;
+        (a, b) = (b, rest);
+    }
+    a
+}
+
+fn size_of(value: RBig) -> RBig {
+    if value < RBig::ZERO { -value } else { value }
+}
+
+/// A polynomial of operands that is not below a number.
+#[derive(Clone, Debug, PartialEq)]
+struct Fact {
+    polynomial: Polynomial,
+    least: RBig,
+}
+
+impl Fact {
+    /// Returns the fact that a comparison with the outcome `outcome` states. Returns `None` if the difference of both sides is no
+    /// polynomial. For example, `x > y` for integers gives x − y ≥ 1, and if it does not hold, y − x ≥ 0.
+    fn of(comparison: &Comparison, outcome: bool, statement: &ExpressionStatement) -> Option<Self> {
+        let left = Polynomial::of(&comparison.left, statement)?;
+        let right = Polynomial::of(&comparison.right, statement)?;
+        let polynomial = if outcome { left.minus(&right) } else { right.minus(&left) };
+        if polynomial.is_number() {
+            return None;
+        }
+        let is_strict = comparison.or_equal != outcome;
+        let least = if is_strict { polynomial.step(statement) } else { RBig::ZERO };
+        Some(Self { polynomial, least })
+    }
+
+    /// Returns the facts that a comparison with the outcome `outcome` states, if it combines several comparisons.
+    fn all_of(
+        comparison: &Comparison,
+        outcome: bool,
+        statement: &ExpressionStatement,
+    ) -> Vec<Self> {
+        let mut facts = Vec::new();
+        for (comparison, outcome) in single_comparisons(comparison, outcome) {
+            facts.extend(Self::of(&comparison, outcome, statement));
+        }
+        facts
+    }
+}
+
+/// Returns comparisons with their outcomes, all of which hold where `comparison` has the outcome `outcome`. For example, `min(x, y)
+/// > 0` gives `x > 0` and `y > 0`. A condition of several comparisons is written so.
+fn single_comparisons(comparison: &Comparison, outcome: bool) -> Vec<(Comparison, bool)> {
+    let Comparison { left, right, or_equal } = comparison;
+    let beside = |left: &Arc<Expression>, right: &Arc<Expression>| {
+        let (left, right) = (left.clone(), right.clone());
+        single_comparisons(&Comparison { left, right, or_equal: *or_equal }, outcome)
+    };
+    match (&left.kind, &right.kind, outcome) {
+        (Kind::Binary(Operator::Min, a, b), _, true)
+        | (Kind::Binary(Operator::Max, a, b), _, false) => {
+            [beside(a, right), beside(b, right)].concat()
+        }
+        (_, Kind::Binary(Operator::Max, a, b), true)
+        | (_, Kind::Binary(Operator::Min, a, b), false) => {
+            [beside(left, a), beside(left, b)].concat()
+        }
+        (Kind::If(condition, yes, no), _, true) => {
+            let without =
+                Comparison { left: no.clone(), right: right.clone(), or_equal: *or_equal };
+            // The other case never satisfies the comparison.
+            match without.holds(&[]) {
+                Ok(Some(false)) => {
+                    [single_comparisons(condition, true), beside(yes, right)].concat()
+                }
+                _ => vec![(comparison.clone(), outcome)],
+            }
+        }
+        _ => vec![(comparison.clone(), outcome)],
+    }
+}
+
+/// Returns whether a result is promised only where `a` is below `b`.
+pub(super) fn promises_less(
+    statement: &ExpressionStatement,
+    result: &StatedResult,
+    a: &Expression,
+    b: &Expression,
+) -> bool {
+    let Some(promise) = &result.promise else { return false };
+    let difference =
+        Polynomial::of(b, statement).and_then(|b| Some(b.minus(&Polynomial::of(a, statement)?)));
+    single_comparisons(promise, true).iter().any(|(comparison, outcome)| {
+        let is_same = *comparison.left == *b && *comparison.right == *a && *outcome;
+        let fact = Fact::of(comparison, *outcome, statement);
+        is_same || fact.is_some_and(|it| it.least > RBig::ZERO && Some(it.polynomial) == difference)
+    })
+}
+
+/// Returns what holds for all operands for which a part with these uses matters.
+fn facts_of(statement: &ExpressionStatement, uses: &PartUses) -> Vec<Fact> {
+    let mut facts = Vec::new();
+    for (comparison, outcome) in &uses.conditions {
+        facts.extend(Fact::all_of(comparison, *outcome, statement));
+    }
+    let mut promises = statement.results.iter().zip(&uses.readers).filter(|(_, reads)| **reads);
+    if let Some((first, _)) = promises.next()
+        && let Some(promise) = &first.promise
+        && promises.all(|(result, _)| result.promise.as_ref() == Some(promise))
+    {
+        facts.extend(Fact::all_of(promise, true, statement));
+    }
+    facts
+}
+
+/// A polynomial whose coefficients are intervals in `f64`.
+struct EnclosedPolynomial(Vec<(Exponents, Enclosure)>);
+
+impl EnclosedPolynomial {
+    fn new(polynomial: &Polynomial) -> Self {
+        let terms = polynomial.0.iter();
+        Self(terms.map(|(exponents, it)| (exponents.clone(), enclosed(it))).collect())
+    }
+
+    /// Returns an interval that contains all values for operands within limits, which are in the order of the statement.
+    fn values(&self, operands: &[(&str, Enclosure)]) -> Enclosure {
+        let mut sum = Enclosure::exactly(0.0);
+        for (exponents, coefficient) in &self.0 {
+            let mut product = *coefficient;
+            for ((_, operand), exponent) in operands.iter().zip(exponents) {
+                product = product * power(*operand, *exponent);
+            }
+            sum = sum + product;
+        }
+        sum
+    }
+}
+
+/// Returns an interval that contains a rational number.
+fn enclosed(value: &RBig) -> Enclosure {
+    let near = value.to_f64().value();
+    match RBig::try_from(near) {
+        Ok(exact) if exact == *value => Enclosure::exactly(near),
+        _ => Enclosure::between(near.next_down(), near.next_up()),
+    }
+}
+
+/// Returns an interval that contains the powers of all values within limits.
+fn power(base: Enclosure, exponent: u32) -> Enclosure {
+    let mut power = Enclosure::exactly(1.0);
+    for _ in 0..exponent {
+        power = power * base;
+    }
+    if exponent % 2 == 0 { Enclosure::between(power.low.max(0.0), power.high) } else { power }
+}
+
+/// A part that is a multiple of a fact's polynomial plus a rest.
+struct LimitedPart {
+    factor: EnclosedPolynomial,
+    rest: EnclosedPolynomial,
+    least: Enclosure,
+}
+
+impl LimitedPart {
+    /// Returns the limits of the part that follow from the fact, for operands within limits.
+    fn limits(&self, operands: &[(&str, Enclosure)]) -> Enclosure {
+        let (factor, rest) = (self.factor.values(operands), self.rest.values(operands));
+        let mut limits = ANYTHING;
+        if factor.low >= 0.0 {
+            limits.low = (Enclosure::exactly(factor.low) * self.least + rest).low;
+        }
+        if factor.high <= 0.0 {
+            limits.high = (Enclosure::exactly(factor.high) * self.least + rest).high;
+        }
+        limits
+    }
+}
+
+/// A part of a formula with facts about it, and the name of the operand that stands for it.
+struct GuardedPart {
+    name: String,
+    part: Expression,
+    facts: Vec<LimitedPart>,
+    /// Whether the facts hold wherever the formula matters, and not only in a case of a choice.
+    is_always: bool,
+}
+
+impl GuardedPart {
+    /// Returns an interval that contains the values of the part, wherever its facts hold. Returns `None` if the formula matters for
+    /// none of the operands within the limits.
+    fn values(&self, operands: &[(&str, Enclosure)]) -> Option<Enclosure> {
+        let Enclosure { mut low, mut high } = self.part.enclose(operands).unwrap_or(ANYTHING);
+        for fact in &self.facts {
+            let limits = fact.limits(operands);
+            low = low.max(limits.low);
+            high = high.min(limits.high);
+        }
+        match (low <= high, self.is_always) {
+            (true, _) => Some(Enclosure::between(low, high)),
+            (false, true) => None,
+            // The case with the part is taken for none of these operands, so that any value will do.
+            (false, false) => Some(Enclosure::exactly(if low.is_finite() { low } else { high })),
+        }
+    }
+}
+
+const ANYTHING: Enclosure = Enclosure::between(f64::NEG_INFINITY, f64::INFINITY);
+
+/// A formula whose value matters only under some conditions, in which an operand stands for each part with a fact about it.
+pub(super) struct GuardedFormula {
+    formula: Arc<Expression>,
+    parts: Vec<GuardedPart>,
+}
+
+impl GuardedFormula {
+    /// Finds the parts of a formula about which the conditions of its uses, or choices within the formula, state a fact.
+    pub(super) fn new(
+        statement: &ExpressionStatement,
+        uses: &PartUses,
+        formula: &Expression,
+    ) -> Self {
+        let facts = facts_of(statement, uses);
+        let is_plain = facts.is_empty() && !formula.has(&|kind| matches!(kind, Kind::If(..)));
+        if is_plain {
+            return Self { formula: Arc::new(formula.clone()), parts: Vec::new() };
+        }
+        let mut rewriting = GuardRewriting { statement, parts: Vec::new(), cases: 0 };
+        let formula = rewriting.rewritten(formula, &facts, false, &mut HashMap::new());
+        Self { formula, parts: rewriting.parts }
+    }
+
+    /// Returns an interval that contains the values of the formula for operands within limits, under the conditions. Returns `None`
+    /// if the conditions hold for none of these operands.
+    pub(super) fn values(&self, operands: &[(&str, Enclosure)]) -> Option<Enclosure> {
+        let mut all = operands.to_vec();
+        for part in &self.parts {
+            all.push((&part.name, part.values(operands)?));
+        }
+        Some(self.formula.enclose(&all).unwrap_or(ANYTHING))
+    }
+}
+
+/// The parts of a formula that were rewritten under the same facts, by their addresses.
+type RewrittenParts = HashMap<*const Expression, Arc<Expression>>;
+
+/// The rewriting of a formula, in which operands replace the parts with facts.
+struct GuardRewriting<'s> {
+    statement: &'s ExpressionStatement,
+    parts: Vec<GuardedPart>,
+    /// The number of cases of choices so far.
+    cases: usize,
+}
+
+impl GuardRewriting<'_> {
+    /// Returns a part in which operands replace the parts with facts. `is_case` says whether the facts hold only in a case of a
+    /// choice. `known` has the parts that were rewritten under the same facts.
+    fn rewritten(
+        &mut self,
+        part: &Expression,
+        facts: &[Fact],
+        is_case: bool,
+        known: &mut RewrittenParts,
+    ) -> Arc<Expression> {
+        if let Some(known) = known.get(&ptr::from_ref(part)) {
+            return known.clone();
+        }
+        let rewritten = self.newly_rewritten(part, facts, is_case, known);
+        known.insert(ptr::from_ref(part), rewritten.clone());
+        rewritten
+    }
+
+    fn newly_rewritten(
+        &mut self,
+        part: &Expression,
+        facts: &[Fact],
+        is_case: bool,
+        known: &mut RewrittenParts,
+    ) -> Arc<Expression> {
+        let limits = limited(self.statement, facts, part);
+        if !limits.is_empty() {
+            // No operand of a user has such a name.
+            let name = format!("part {}", self.parts.len());
+            let operand = Arc::new(Expression::operand(&name));
+            let is_always = !is_case;
+            self.parts.push(GuardedPart { name, part: part.clone(), facts: limits, is_always });
+            return operand;
+        }
+        let kind = match &part.kind {
+            Kind::Number(_) | Kind::Constant(..) | Kind::Operand(_) | Kind::Word(..) => {
+                return Arc::new(part.clone());
+            }
+            Kind::Unary(function, a) => {
+                Kind::Unary(*function, self.rewritten(a, facts, is_case, known))
+            }
+            Kind::Binary(operator, a, b) => {
+                let a = self.rewritten(a, facts, is_case, known);
+                Kind::Binary(*operator, a, self.rewritten(b, facts, is_case, known))
+            }
+            Kind::If(comparison, yes, no) => {
+                let left = self.rewritten(&comparison.left, facts, is_case, known);
+                let right = self.rewritten(&comparison.right, facts, is_case, known);
+                let yes = self.case(yes, facts, (comparison, true), is_case, known);
+                let no = self.case(no, facts, (comparison, false), is_case, known);
+                let or_equal = comparison.or_equal;
+                Kind::If(Comparison { left, right, or_equal }, yes, no)
+            }
+        };
+        Arc::new(Expression::new(kind, part.span.clone()))
+    }
+
+    /// Returns a case of a choice, in which the facts of the comparison's outcome hold too. The facts of further cases are left out
+    /// after [`MOST_CASES`] cases.
+    fn case(
+        &mut self,
+        case: &Expression,
+        facts: &[Fact],
+        (comparison, outcome): (&Comparison, bool),
+        is_case: bool,
+        known: &mut RewrittenParts,
+    ) -> Arc<Expression> {
+        let own = Fact::all_of(comparison, outcome, self.statement);
+        if own.is_empty() || self.cases == MOST_CASES {
+            return self.rewritten(case, facts, is_case, known);
+        }
+        self.cases += 1;
+        let all = [facts, &own].concat();
+        self.rewritten(case, &all, true, &mut HashMap::new())
+    }
+}
+
+/// Returns whether the conditions of the uses of a part state a fact about the part itself.
+pub(super) fn has_fact(
+    statement: &ExpressionStatement,
+    uses: &PartUses,
+    part: &Expression,
+) -> bool {
+    !limited(statement, &facts_of(statement, uses), part).is_empty()
+}
+
+/// Returns the limits of a part that follow from facts. An operand has none: boxes of operands show its values.
+fn limited(statement: &ExpressionStatement, facts: &[Fact], part: &Expression) -> Vec<LimitedPart> {
+    let mut limits = Vec::new();
+    if facts.is_empty() || matches!(part.kind, Kind::Operand(_)) || !part.varies() {
+        return limits;
+    }
+    let Some(polynomial) = Polynomial::of(part, statement) else { return limits };
+    for fact in facts {
+        if let Some((factor, rest)) = polynomial.divided_by(&fact.polynomial) {
+            limits.push(LimitedPart {
+                factor: EnclosedPolynomial::new(&factor),
+                rest: EnclosedPolynomial::new(&rest),
+                least: enclosed(&fact.least),
+            });
+        }
+    }
+    limits
+}
