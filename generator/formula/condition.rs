@@ -8,7 +8,7 @@ use super::{Comparison, Expression, Function, Kind, Operator, TextSpan};
 
 /// A condition: a comparison, or two conditions of which both or at least one must hold.
 #[derive(Clone)]
-pub(super) enum Condition {
+pub(super) enum JoinedCondition {
     /// The comparison holds.
     Is(Comparison),
     /// Both conditions hold.
@@ -17,13 +17,30 @@ pub(super) enum Condition {
     Either(Box<Self>, Box<Self>),
 }
 
-impl Condition {
+impl Comparison {
+    /// Returns the comparison that holds where this one does not. For example, `x > y` gives `y >= x`.
+    #[must_use]
+    pub fn negated(&self) -> Self {
+        let Self { left, right, or_equal } = self.clone();
+        Self { left: right, right: left, or_equal: !or_equal }
+    }
+
+    /// Returns a comparison that holds where this one and `other` hold. For example, `x > 0` and `y > 0` give `min(x, y) > 0`.
+    #[must_use]
+    pub fn and(self, other: Self) -> Self {
+        JoinedCondition::Both(
+            Box::new(JoinedCondition::Is(self)),
+            Box::new(JoinedCondition::Is(other)),
+        )
+        .comparison()
+    }
+}
+
+impl JoinedCondition {
     /// Returns the condition that holds where this one does not.
     pub(super) fn negated(self) -> Self {
         match self {
-            Self::Is(Comparison { left, right, or_equal }) => {
-                Self::Is(Comparison { left: right, right: left, or_equal: !or_equal })
-            }
+            Self::Is(comparison) => Self::Is(comparison.negated()),
             Self::Both(a, b) => Self::Either(Box::new(a.negated()), Box::new(b.negated())),
             Self::Either(a, b) => Self::Both(Box::new(a.negated()), Box::new(b.negated())),
         }

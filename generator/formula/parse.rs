@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::condition::Condition;
+use super::condition::JoinedCondition;
 use super::{Comparison, Expression, Fault, Function, Kind, Literal, Operator, TextSpan};
 
 /// The functions of one number that a formula may call, with their names.
@@ -308,7 +308,11 @@ impl Parser<'_> {
     }
 
     /// Parses `? x : y` after a condition, which begins at token number `from`. Fails at the first mistake.
-    fn cases_in_c(&mut self, from: usize, condition: &Condition) -> Result<Expression, Fault> {
+    fn cases_in_c(
+        &mut self,
+        from: usize,
+        condition: &JoinedCondition,
+    ) -> Result<Expression, Fault> {
         self.expect("?")?;
         let yes = Arc::new(self.choice()?);
         self.expect(":")?;
@@ -317,7 +321,7 @@ impl Parser<'_> {
     }
 
     /// Parses a condition: comparisons joined by `and`, `or` and `not`. Fails at the first mistake.
-    fn condition(&mut self) -> Result<Condition, Fault> {
+    fn condition(&mut self) -> Result<JoinedCondition, Fault> {
         if self.depth == DEEPEST {
             return self.fault(format!("the formula is nested more than {DEEPEST} deep"));
         }
@@ -329,32 +333,32 @@ impl Parser<'_> {
     }
 
     /// Parses the rest of a condition whose first number is `first`. Fails at the first mistake.
-    fn condition_of(&mut self, first: Expression) -> Result<Condition, Fault> {
+    fn condition_of(&mut self, first: Expression) -> Result<JoinedCondition, Fault> {
         let comparison = self.comparisons(first)?;
         self.joined(comparison)
     }
 
     /// Parses the conditions that `and` and `or` join to `first`; `and` binds closer. Fails at the first mistake.
-    fn joined(&mut self, first: Condition) -> Result<Condition, Fault> {
+    fn joined(&mut self, first: JoinedCondition) -> Result<JoinedCondition, Fault> {
         let mut either = self.all_of(first)?;
         while self.taken(&["or", "||"]) {
             let next = self.single_condition()?;
-            either = Condition::Either(Box::new(either), Box::new(self.all_of(next)?));
+            either = JoinedCondition::Either(Box::new(either), Box::new(self.all_of(next)?));
         }
         Ok(either)
     }
 
     /// Parses the conditions that `and` joins to `first`. Fails at the first mistake.
-    fn all_of(&mut self, first: Condition) -> Result<Condition, Fault> {
+    fn all_of(&mut self, first: JoinedCondition) -> Result<JoinedCondition, Fault> {
         let mut both = first;
         while self.taken(&["and", "&&"]) {
-            both = Condition::Both(Box::new(both), Box::new(self.single_condition()?));
+            both = JoinedCondition::Both(Box::new(both), Box::new(self.single_condition()?));
         }
         Ok(both)
     }
 
     /// Parses a condition that neither `and` nor `or` divides. Fails at the first mistake.
-    fn single_condition(&mut self) -> Result<Condition, Fault> {
+    fn single_condition(&mut self) -> Result<JoinedCondition, Fault> {
         if self.taken(&["not", "!"]) {
             return Ok(self.single_condition()?.negated());
         }
@@ -397,9 +401,9 @@ impl Parser<'_> {
     }
 
     /// Parses the comparisons that follow a number, for example `< x <= 2`. Fails at the first mistake.
-    fn comparisons(&mut self, first: Expression) -> Result<Condition, Fault> {
+    fn comparisons(&mut self, first: Expression) -> Result<JoinedCondition, Fault> {
         let mut first = Arc::new(first);
-        let mut all: Option<Condition> = None;
+        let mut all: Option<JoinedCondition> = None;
         loop {
             let sign = self.peek().to_owned();
             if !self.taken(&SIGNS_OF_COMPARISONS) {
@@ -407,10 +411,10 @@ impl Parser<'_> {
                 return all.map_or_else(|| self.fault(missing), Ok);
             }
             let second = Arc::new(self.sum()?);
-            let comparison = Condition::Is(self.compared(first, &sign, second.clone()));
+            let comparison = JoinedCondition::Is(self.compared(first, &sign, second.clone()));
             all = Some(match all {
                 None => comparison,
-                Some(before) => Condition::Both(Box::new(before), Box::new(comparison)),
+                Some(before) => JoinedCondition::Both(Box::new(before), Box::new(comparison)),
             });
             first = second;
         }

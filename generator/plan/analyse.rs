@@ -120,7 +120,7 @@ impl ErrorAnalysis<'_> {
             let is_unknown = |input: &NodeId| !known.values[input.0].is_limited();
             if !self.needed[id.0] {
                 known.values.push(NodeError::exactly(NOTHING));
-            } else if !is_choice && inputs.iter().any(is_unknown) {
+            } else if node.exact.is_none() && !is_choice && inputs.iter().any(is_unknown) {
                 known.values.push(NodeError::UNKNOWN);
             } else if let Operation::Normalise { word, by_pairs } = node.operation {
                 return self.each_shift(word, by_pairs, &known, operands, visit);
@@ -273,6 +273,11 @@ impl ErrorAnalysis<'_> {
         operands: &[(&str, Enclosure)],
     ) -> Result<NodeError, Undecided> {
         let node = self.plan.node(id);
+        if let Some(formula) = &node.exact {
+            let value = formula.enclose(operands).ok().filter(|value| value.is_finite());
+            let what = "its value has no limit";
+            return value.map(NodeError::exactly).ok_or(Undecided { node: id, what });
+        }
         let input = |id: NodeId| values[id.0];
         let own_errors = node.source.is_none() || self.only.is_none() || self.only == node.source;
         let value = match &node.operation {

@@ -30,9 +30,9 @@ type Exponents = Vec<u32>;
 
 /// A polynomial of the operands of a statement, with exact coefficients other than 0.
 #[derive(Clone, Debug, PartialEq)]
-struct Polynomial(BTreeMap<Exponents, RBig>);
+struct OperandPolynomial(BTreeMap<Exponents, RBig>);
 
-impl Polynomial {
+impl OperandPolynomial {
     fn zero() -> Self {
         Self(BTreeMap::new())
     }
@@ -205,7 +205,7 @@ fn size_of(value: RBig) -> RBig {
 /// A polynomial of operands that is not below a number.
 #[derive(Clone, Debug, PartialEq)]
 struct Fact {
-    polynomial: Polynomial,
+    polynomial: OperandPolynomial,
     least: RBig,
 }
 
@@ -213,8 +213,8 @@ impl Fact {
     /// Returns the fact that a comparison with the outcome `outcome` states. Returns `None` if the difference of both sides is no
     /// polynomial. For example, `x > y` for integers gives x − y ≥ 1, and if it does not hold, y − x ≥ 0.
     fn of(comparison: &Comparison, outcome: bool, statement: &ExpressionStatement) -> Option<Self> {
-        let left = Polynomial::of(&comparison.left, statement)?;
-        let right = Polynomial::of(&comparison.right, statement)?;
+        let left = OperandPolynomial::of(&comparison.left, statement)?;
+        let right = OperandPolynomial::of(&comparison.right, statement)?;
         let polynomial = if outcome { left.minus(&right) } else { right.minus(&left) };
         if polynomial.is_number() {
             return None;
@@ -278,8 +278,8 @@ pub(super) fn promises_less(
     b: &Expression,
 ) -> bool {
     let Some(promise) = &result.promise else { return false };
-    let difference =
-        Polynomial::of(b, statement).and_then(|b| Some(b.minus(&Polynomial::of(a, statement)?)));
+    let difference = OperandPolynomial::of(b, statement)
+        .and_then(|b| Some(b.minus(&OperandPolynomial::of(a, statement)?)));
     single_comparisons(promise, true).iter().any(|(comparison, outcome)| {
         let is_same = *comparison.left == *b && *comparison.right == *a && *outcome;
         let fact = Fact::of(comparison, *outcome, statement);
@@ -307,7 +307,7 @@ fn facts_of(statement: &ExpressionStatement, uses: &PartUses) -> Vec<Fact> {
 struct EnclosedPolynomial(Vec<(Exponents, Enclosure)>);
 
 impl EnclosedPolynomial {
-    fn new(polynomial: &Polynomial) -> Self {
+    fn new(polynomial: &OperandPolynomial) -> Self {
         let terms = polynomial.0.iter();
         Self(terms.map(|(exponents, it)| (exponents.clone(), enclosed(it))).collect())
     }
@@ -533,7 +533,7 @@ fn limited(statement: &ExpressionStatement, facts: &[Fact], part: &Expression) -
     if facts.is_empty() || matches!(part.kind, Kind::Operand(_)) || !part.varies() {
         return limits;
     }
-    let Some(polynomial) = Polynomial::of(part, statement) else { return limits };
+    let Some(polynomial) = OperandPolynomial::of(part, statement) else { return limits };
     for fact in facts {
         if let Some((factor, rest)) = polynomial.divided_by(&fact.polynomial) {
             limits.push(LimitedPart {

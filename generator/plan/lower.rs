@@ -6,6 +6,7 @@
 //! become separate operations.
 
 mod direction;
+mod division;
 mod exponential;
 mod quotient;
 mod root;
@@ -131,6 +132,8 @@ pub(super) struct Lowering<'s> {
     octants: Vec<wave::OctantWaves>,
     /// The number of rounding operations so far.
     sources: usize,
+    /// The guard bits of roundings within a computation whose result is corrected, so that the planner does not choose them.
+    fixed_guard: Option<i32>,
     /// The largest number of fraction bits among the results.
     finest: i32,
 }
@@ -171,6 +174,7 @@ pub(super) fn lowered(
         uses: PartUses::default(),
         octants: Vec::new(),
         sources: 0,
+        fixed_guard: None,
         finest: finest.unwrap_or(0),
     };
     for (number, operand) in statement.operands.iter().enumerate() {
@@ -272,6 +276,13 @@ impl<'s> Lowering<'s> {
         range.map_err(|error| error.refusal(self.statement, part))
     }
 
+    /// Returns an interval that contains the values of a part, for all operands for which the part that is being rewritten matters.
+    /// Other readers of the part do not count, unlike in [`Self::range`]. Fails if the values have no finite limits.
+    fn range_here(&self, part: &Expression) -> Result<Enclosure, PlanRefusal> {
+        let range = self.ranges.range_of(self.statement, &self.uses, part);
+        range.map_err(|error| error.refusal(self.statement, part))
+    }
+
     /// Returns the uses of `part` as a part of the one that is being rewritten. Without a condition, other results whose formulas
     /// read `part` for all operands count too, so that they can share its node, unless the part then loses limits that the
     /// condition of the present result states.
@@ -311,6 +322,9 @@ impl<'s> Lowering<'s> {
         frac: i32,
         make: impl FnOnce(&mut Self, i32) -> Result<NodeId, PlanRefusal>,
     ) -> Result<NodeId, PlanRefusal> {
+        if let Some(guard) = self.fixed_guard {
+            return make(self, frac + guard);
+        }
         let source = self.sources;
         self.sources += 1;
         let guard = self.guards.bits.get(source).copied().unwrap_or(self.first_guard);
@@ -389,6 +403,11 @@ impl<'s> Lowering<'s> {
             return self.operation(part);
         }
         let core = core.clone();
+        let has_remainder = part.has(&|kind| matches!(kind, Kind::Binary(Operator::Mod, ..)));
+        if has_remainder && division::quotient_of(&core).is_some() {
+            // The integer part of a quotient is exact; a table would read a rounded quotient.
+            return self.operation(part);
+        }
         if self.can_be_one_table(part, &core)? {
             return self.function_of(part, &core);
         }
@@ -545,10 +564,10 @@ impl<'s> Lowering<'s> {
                 let [_, fraction] = self.division(a, modulus_exponent(b).unwrap_or(0))?;
                 Ok(fraction)
             }
-            Operator::Mod => Err(PlanRefusal::new(
-                "Glint cannot compute a remainder with a divisor that varies",
-                "use a constant divisor, for example x % 1",
-            )),
+            Operator::Mod => {
+                let [_, remainder] = self.whole_quotient(a, b, &part.span)?;
+                Ok(remainder)
+            }
             Operator::Mul | Operator::Div => {
                 let factor = [a, b].into_iter().find(|it| !it.varies());
                 let exponent = factor.and_then(|factor| power_of_two(factor, operator));
@@ -561,9 +580,24 @@ impl<'s> Lowering<'s> {
                 let b = self.factor(b)?;
                 self.plan.multiply("product", a, b)
             }
+            Operator::Add
+                if let Some(division::QuotientParts { dividend, divisor }) =
+                    division::ceiling_of(a, b) =>
+            {
+                // The ceiling of x is minus the floor of −x.
+                let [whole, _] = self.whole_quotient(&dividend, &divisor, &part.span)?;
+                self.plan.negate("ceiling", whole)
+            }
             Operator::Add => {
                 let (a, b) = (self.part(a)?, self.part(b)?);
                 self.plan.add("sum", a, b)
+            }
+            Operator::Sub
+                if let Some(division::QuotientParts { dividend, divisor }) =
+                    division::floor_of(a, b) =>
+            {
+                let [whole, _] = self.whole_quotient(&dividend, &divisor, &part.span)?;
+                Ok(whole)
             }
             Operator::Sub if let Some(exponent) = floor_of(a, b) => {
                 let [whole, _] = self.division(a, exponent)?;
@@ -628,6 +662,9 @@ impl<'s> Lowering<'s> {
         if let Ok(Some(outcome)) = comparison.holds(&operands) {
             // No operand takes the other case.
             return self.part(if outcome { yes } else { no });
+        }
+        if let Some(comparison) = self.without_quotients(comparison) {
+            return self.choice(&comparison, yes, no);
         }
         let (first, second) = (&*comparison.left, &*comparison.right);
         let (left, right) = (self.part(first)?, self.part(second)?);
@@ -735,25 +772,41 @@ impl<'s> Lowering<'s> {
     }
 
     /// Returns an upper bound of the error of a node in units of its last bit, rounded up, over all operands for which a result is
-    /// promised. Returns the units of an error of 1 if no bound was found.
+    /// promised and that satisfy the conditions of the present uses. Returns the units of an error of 1 if no bound was found.
     fn largest_error(&self, node: NodeId) -> f64 {
+        let unit = exp2(-self.plan.node(node).format.frac);
+        let errors = self.errors_by_result(node);
+        // The promise of a result that does not depend on the node can allow operands for which the node has no value.
+        let finite = errors.into_iter().filter(|units| units.is_finite());
+        finite.reduce(f64::max).unwrap_or_else(|| (1.0 / unit).ceil())
+    }
+
+    /// Returns for each result an upper bound of the error of a node in units of its last bit, rounded up, over all operands for
+    /// which the result is promised and that satisfy the conditions of the present uses. A bound is infinite if none was found.
+    fn errors_by_result(&self, node: NodeId) -> Vec<f64> {
         let unit = exp2(-self.plan.node(node).format.frac);
         let mut plan = self.plan.clone();
         plan.results = vec![node];
         plan.proved = vec![node];
-        let mut largest: Option<f64> = None;
+        let mut errors = Vec::new();
         for result in &self.statement.results {
             let mut statement = self.statement.clone();
-            statement.results = vec![StatedResult { fraction: 0, ..result.clone() }];
-            let proof = ResultProof::new(&statement, &plan, 0);
-            let units = proof.whole_units(unit, DIVISIONS_FOR_AN_ERROR);
-            // The promise of a result that does not depend on the node can allow operands for which the node has no value.
-            let units = units.unwrap_or(0.0);
-            if units.is_finite() {
-                largest = Some(largest.unwrap_or(0.0).max(units));
+            let mut alone = StatedResult { fraction: 0, ..result.clone() };
+            for (comparison, outcome) in &self.uses.conditions {
+                let condition = match outcome {
+                    true => comparison.clone(),
+                    false => comparison.negated(),
+                };
+                alone.promise = Some(match alone.promise {
+                    None => condition,
+                    Some(promise) => promise.and(condition),
+                });
             }
+            statement.results = vec![alone];
+            let proof = ResultProof::new(&statement, &plan, 0);
+            errors.push(proof.whole_units(unit, DIVISIONS_FOR_AN_ERROR).unwrap_or(0.0));
         }
-        largest.unwrap_or_else(|| (1.0 / unit).ceil())
+        errors
     }
 
     /// Returns whether the value of a node has no rounding error.

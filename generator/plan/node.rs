@@ -7,7 +7,7 @@ use std::sync::Arc;
 use glint_approximate::{Piecewise, TargetFunction};
 use glint_base::fixed::{Format, Rounding};
 use glint_base::interval::Interval;
-use glint_formula::Enclosure;
+use glint_formula::{Enclosure, Expression};
 
 /// The index of a node in [`super::ExpressionPlan::nodes`]. A node reads only nodes with a smaller index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -30,6 +30,9 @@ pub struct PlanNode {
     pub limits: Enclosure,
     /// An interval that contains the value that the hardware computes, for the same operands. The interval may be infinite.
     pub actual_limits: Enclosure,
+    /// A formula whose value the hardware has exactly, for all operands for which the node matters. The rewriting supplies it for
+    /// nodes that correct an error of the nodes before them; `None` for the others.
+    pub exact: Option<Arc<Expression>>,
     /// The index of the rounding operation in the list of numbers of fraction bits that the planner chooses. `None` for an
     /// exact operation.
     pub source: Option<usize>,

@@ -158,6 +158,7 @@ impl ExpressionPlan {
             range,
             limits: ANYTHING,
             actual_limits: ANYTHING,
+            exact: None,
             source: None,
         });
         Ok(NodeId(self.nodes.len() - 1))

@@ -171,7 +171,7 @@ fn refusals_name_the_part_and_a_remedy() {
     for (formula, promise, message, remedy) in [
         ("1 + x / y", None, "this is not finite", "where"),
         ("z + x", None, "there is no operand `z`", "name an operand"),
-        ("x % (y + 2)", None, "a remainder with a divisor that varies", "x % 1"),
+        ("x % exp(y)", None, "only of values that are not rounded", "divide operands"),
         ("if(sin(x + 2) > cos(y), x, y)", None, "cannot be proved below", "where"),
         ("x * y", Some("x > 7"), "no operands in the domains satisfy", "where"),
         ("sqrt(x + y)", None, "this is not finite, or has no value", "where"),

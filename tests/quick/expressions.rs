@@ -28,7 +28,7 @@ const TINY: &str =
 operands.c = { bits = 3, fraction = 40 }\noperands.d = { bits = 3, fraction = 40 }";
 
 /// Operands, and results that other results read or that need no operation.
-const CASES: [(&str, &str); 25] = [
+const CASES: [(&str, &str); 29] = [
     (
         // The exponential function has a table over an octave, and its results need no shift.
         "operands.y = { from = \"-9 / 4\", to = \"15 / 4\", to_included = true, fraction = 2, outside = \"anything\" }",
@@ -133,6 +133,31 @@ results.c = { formula = \"(x > y && !(y < 0.5)) || x == -1 ? x : y\", fraction =
         SIGNED,
         "results.a = { formula = \"atan2(x - y, x + y)\", fraction = 5, where = \"not (x == 0 and y == 0)\" }
 results.l = { formula = \"ln(x - y)\", fraction = 4, where = \"x > y and (y >= 0 or x < 0.5)\" }",
+    ),
+    (
+        // Integer quotients and remainders are exact.
+        SIGNED,
+        "results.q = { formula = \"floor(x / y)\", fraction = 0, where = \"y > 0\" }
+results.r = { formula = \"x % y\", fraction = 3, where = \"y > 0\" }
+results.g = { formula = \"if(y > 0, x % y, x)\", fraction = 3 }",
+    ),
+    (
+        SIGNED,
+        "results.t = { formula = \"int(x / y)\", fraction = 0, where = \"y > 0\" }
+results.c = { formula = \"ceil(x / y)\", fraction = 0, where = \"y > 0\" }
+results.n = { formula = \"round(x / y)\", fraction = 0, where = \"y > 0\" }",
+    ),
+    (
+        "operands.a = { bits = 6, fraction = 0 }\noperands.b = { bits = 4, fraction = 0 }",
+        "results.q = { formula = \"floor(2 * a / (a - b))\", fraction = 0, where = \"a > b\" }
+results.m = { formula = \"(a + b) % 3\", fraction = 0 }
+results.v = { formula = \"if(b > 1, if(a / b > 0.5, a % b, b % (a + 10)), 2)\", fraction = 0 }",
+    ),
+    (
+        // Powers far below the last bit of the result are 0.
+        "operands.x = { bits = 6, fraction = 5, signed = true }\noperands.n = { bits = 7, fraction = 0 }",
+        "results.h = { formula = \"if(x > 0, x^n, 0)\", fraction = 6 }
+results.d = { formula = \"20 * exp(-(x + 1) * n)\", fraction = 4 }",
     ),
     (
         "operands.x = { from = -0.3, to = 0.4, fraction = 6 }\noperands.y = { from = 0.25, to = 0.5, fraction = 6 }",

@@ -10,8 +10,8 @@
 
 use std::sync::Arc;
 
-use glint_base::fixed::Rounding;
-use glint_formula::{Expression, Function, Kind, Operator, TextSpan};
+use glint_base::fixed::{Format, Rounding, exp2};
+use glint_formula::{Enclosure, Expression, Function, Kind, Operator, TextSpan};
 
 use super::root::FEW_OCTAVES;
 use super::{Lowering, number};
@@ -115,10 +115,53 @@ impl Lowering<'_> {
         if self.plan.node(exponent).format.frac < 1 {
             return Ok(None);
         }
+        // The error of the exponent can make it reach the next integer.
+        let largest = range.high.floor() as i32 + 1;
+        let smallest = self.plan.node(exponent).range.0 >> self.plan.node(exponent).format.frac;
+        if i128::from(largest) - smallest <= MOST_PLACES {
+            return self.power_of_two(exponent, largest).map(Some);
+        }
+        // Far below the last bit of the result, the value counts as 0.
+        let slack = self.exponent_slack(exponent)?;
+        let mut least = 0;
+        let nothing = self.rounding(finest + 4, |own, frac| {
+            least = -frac;
+            let values = Enclosure::between(0.0, exp2(least + slack));
+            own.plan.rounded_constant("nothing", 0, frac, values)
+        })?;
+        let limit = self.plan.constant("least_exponent", least.into(), 0)?;
+        let is_below = self.plan.less("is_nothing", exponent, limit)?;
+        // Where the power counts, the exact exponent is not below this limit either.
+        let lower = self.plan.constant("lowest_exponent", (least - slack).into(), 0)?;
+        let limited = self.plan.maximum("exponent_limited", exponent, lower)?;
+        let power = self.power_of_two(limited, largest)?;
+        self.plan.choose("power_or_nothing", is_below, [power, nothing]).map(Some)
+    }
+
+    /// Returns an upper bound of the error of an exponent, in octaves, for the results that read the part that is being rewritten.
+    ///
+    /// # Errors
+    /// Fails if the bound is above [`MOST_SLACK`], or if none is found.
+    fn exponent_slack(&self, exponent: NodeId) -> Result<i32, PlanRefusal> {
+        let errors = self.errors_by_result(exponent);
+        let readers = self.uses.readers.iter().zip(&errors).filter(|(reads, _)| **reads);
+        let units = readers.map(|(_, units)| *units).fold(0.0, f64::max);
+        let octaves = (units * exp2(-self.plan.node(exponent).format.frac)).ceil();
+        if octaves > MOST_SLACK {
+            return Err(PlanRefusal::new(
+                "Glint finds no limit of the error of this exponent",
+                "limit the operands with `where`, so that the power is not far below the last bit of the result",
+            ));
+        }
+        Ok(octaves as i32)
+    }
+
+    /// Returns the node of 2 to the power of `exponent`, whose integer part is at most `largest`. Fails if a node has too many bits.
+    fn power_of_two(&mut self, exponent: NodeId, largest: i32) -> Result<NodeId, PlanRefusal> {
+        let finest = self.finest;
         let [integer, fraction] = self.plan.split("exponent", exponent)?;
         let bits = self.plan.node(fraction).format.frac;
-        // The error of the exponent can make it reach the next integer.
-        let largest = (range.high.floor() as i32 + 1).min(self.plan.node(integer).range.1 as i32);
+        let largest = largest.min(self.plan.node(integer).range.1 as i32);
         let domain = (0, (1i64 << bits) - 1);
         let frac = (finest + 2 + largest).max(0);
         let within = self.rounding(frac, |own, frac| {
@@ -130,13 +173,16 @@ impl Lowering<'_> {
         let places = self.plan.subtract("octaves_below", top, integer)?;
         let least = self.plan.node(places).range.0.max(0);
         let most = self.plan.node(places).range.1.clamp(least, MOST_PLACES);
-        let format = glint_base::fixed::Format::holding(0, most, 0);
+        let format = Format::holding(0, most, 0);
         let places = self.plan.narrow("places", places, format, Rounding::Truncate)?;
         let shifted = self.plan.shift_right("exponential", scaled, places)?;
         self.plan.nodes[shifted.0].source = source;
-        Ok(Some(shifted))
+        Ok(shifted)
     }
 }
+
+/// The largest error of an exponent, in octaves, for which the value of a power that has no bits left is known.
+const MOST_SLACK: f64 = 4.0;
 
 /// The largest number of bits of a shift. A larger shift would remove all bits of any word.
 const MOST_PLACES: i128 = 63;

@@ -1,0 +1,237 @@
+//! Rewrites the integer part of a quotient, floor(a / b), and the remainder a % b, so that both are exact.
+//!
+//! A product with a reciprocal from a table gives an estimate of the quotient with an error below a quarter. The estimate minus a
+//! quarter, rounded down, is the integer part or one less. The dividend minus this integer times the divisor is the remainder, or
+//! the remainder plus one divisor; a comparison with the divisor decides which.
+
+use std::mem;
+use std::sync::Arc;
+
+use glint_base::fixed::{Format, Rounding, exp2};
+use glint_formula::{Comparison, Enclosure, Expression, Function, Kind, Operator, TextSpan};
+
+use super::{KnownPart, Lowering, number};
+use crate::node::NodeId;
+use crate::refusal::PlanRefusal;
+use crate::uses::reads_always;
+
+/// The largest error of the estimate.
+const LARGEST_ERROR: f64 = 0.25;
+
+/// The guard bits that the estimate has at least, and the most that are tried.
+const GUARD_BITS: std::ops::RangeInclusive<i32> = 4..=8;
+
+/// The operations that compute a quotient only of exact numbers: a remedy for other numbers.
+const EXACT_NUMBERS: &str =
+    "divide operands, or sums, differences and products of operands, with constants such as 0.75";
+
+/// A quotient of two formulas.
+pub(super) struct QuotientParts {
+    pub(super) dividend: Expression,
+    pub(super) divisor: Expression,
+}
+
+/// Returns a quotient q for which `a - b` is floor(q): `b` is the remainder of `a` by 1, and `a` is q. Returns `None` if `a` is no
+/// quotient with a divisor that varies.
+pub(super) fn floor_of(a: &Expression, b: &Expression) -> Option<QuotientParts> {
+    let is_remainder =
+        matches!(&b.kind, Kind::Binary(Operator::Mod, of, one) if **of == *a && is_one(one));
+    if is_remainder { quotient_of(a) } else { None }
+}
+
+/// Returns a quotient q for which `a + b` is the ceiling of −q: `b` is the remainder of `-a` by 1, and `-a` is q. Returns `None` if
+/// `a` is no quotient with a divisor that varies.
+pub(super) fn ceiling_of(a: &Expression, b: &Expression) -> Option<QuotientParts> {
+    let Kind::Binary(Operator::Mod, negated, one) = &b.kind else { return None };
+    let is_negated = matches!(&negated.kind, Kind::Unary(Function::Negate, of) if **of == *a);
+    if is_negated && is_one(one) { quotient_of(negated) } else { None }
+}
+
+fn is_one(part: &Expression) -> bool {
+    !part.varies() && *part == number("1")
+}
+
+/// Writes a formula as a quotient with a divisor that varies. For example, `x / y + 1/2` is `(x + 1/2 * y) / y`. Returns `None` for a
+/// formula without such a quotient.
+pub(super) fn quotient_of(formula: &Expression) -> Option<QuotientParts> {
+    let made = |kind: Kind| Expression::new(kind, formula.span.clone());
+    let binary = |operator, a: &Expression, b: &Expression| {
+        made(Kind::Binary(operator, Arc::new(a.clone()), Arc::new(b.clone())))
+    };
+    match &formula.kind {
+        Kind::Binary(Operator::Div, a, b) if b.varies() => {
+            Some(QuotientParts { dividend: (**a).clone(), divisor: (**b).clone() })
+        }
+        Kind::Unary(Function::Negate, a) => {
+            let QuotientParts { dividend, divisor } = quotient_of(a)?;
+            let dividend = made(Kind::Unary(Function::Negate, Arc::new(dividend)));
+            Some(QuotientParts { dividend, divisor })
+        }
+        Kind::Binary(operator @ (Operator::Add | Operator::Sub), a, b) if !b.varies() => {
+            let QuotientParts { dividend, divisor } = quotient_of(a)?;
+            let moved = binary(Operator::Mul, b, &divisor);
+            Some(QuotientParts { dividend: binary(*operator, &dividend, &moved), divisor })
+        }
+        Kind::Binary(operator @ (Operator::Add | Operator::Sub), a, b) if !a.varies() => {
+            let QuotientParts { dividend, divisor } = quotient_of(b)?;
+            let moved = binary(Operator::Mul, a, &divisor);
+            Some(QuotientParts { dividend: binary(*operator, &moved, &dividend), divisor })
+        }
+        _ => None,
+    }
+}
+
+impl Lowering<'_> {
+    /// Returns an equivalent comparison without a quotient on one side, if the divisor is above 0 wherever the comparison matters.
+    /// For example, `x / y > 2` becomes `x > 2 * y`. Products of operands are exact, so that the comparison is decided without
+    /// rounding. Returns `None` if no side is a quotient with such a divisor.
+    pub(super) fn without_quotients(&self, comparison: &Comparison) -> Option<Comparison> {
+        let Comparison { left, right, or_equal } = comparison;
+        let is_positive =
+            |divisor: &Expression| self.range_here(divisor).is_ok_and(|values| values.low > 0.0);
+        let times = |part: &Arc<Expression>, divisor: &Expression| {
+            if part.rational().is_some_and(|value| value.is_zero()) {
+                return part.clone();
+            }
+            let kind = Kind::Binary(Operator::Mul, part.clone(), Arc::new(divisor.clone()));
+            Arc::new(Expression::new(kind, part.span.clone()))
+        };
+        let or_equal = *or_equal;
+        if let Some(QuotientParts { dividend, divisor }) =
+            quotient_of(left).filter(|it| is_positive(&it.divisor))
+        {
+            let right = times(right, &divisor);
+            return Some(Comparison { left: Arc::new(dividend), right, or_equal });
+        }
+        let QuotientParts { dividend, divisor } =
+            quotient_of(right).filter(|it| is_positive(&it.divisor))?;
+        let left = times(left, &divisor);
+        Some(Comparison { left, right: Arc::new(dividend), or_equal })
+    }
+
+    /// Returns the nodes of floor(a / b) and of the remainder a − b · floor(a / b), for a divisor above 0. Both are exact. The
+    /// location `span` is that of the whole part. For example, 7 and 2 give 3 and 1, and −7 and 2 give −4 and 1.
+    ///
+    /// # Errors
+    /// Fails if a or b is rounded, if the divisor may be 0 or below 0, or if a node has too many bits.
+    pub(super) fn whole_quotient(
+        &mut self,
+        a: &Expression,
+        b: &Expression,
+        span: &TextSpan,
+    ) -> Result<[NodeId; 2], PlanRefusal> {
+        let (dividend, divisor) = (self.part(a)?, self.part(b)?);
+        if !self.is_exact(dividend) || !self.is_exact(divisor) {
+            let message = "Glint computes an integer quotient or a remainder only of values that are not rounded";
+            return Err(PlanRefusal::new(message, EXACT_NUMBERS));
+        }
+        let divisors = self.range_here(b)?;
+        if divisors.low <= 0.0 {
+            let message =
+                "Glint computes an integer quotient or a remainder only for divisors above 0";
+            let remedy = format!("limit the divisor, for example where = \"{} > 0\"", b.python());
+            return Err(PlanRefusal::new(message, remedy));
+        }
+        let binary = |operator, a: &Expression, b: &Expression| {
+            let kind = Kind::Binary(operator, Arc::new(a.clone()), Arc::new(b.clone()));
+            Expression::new(kind, span.clone())
+        };
+        let quotient = binary(Operator::Div, a, b);
+        let remainder = binary(Operator::Mod, a, b);
+        let whole =
+            binary(Operator::Sub, &quotient, &binary(Operator::Mod, &quotient, &number("1")));
+        let outer = self.uses.clone();
+        self.add_readers_of(&[&whole, &remainder]);
+        let nodes = self.corrected_quotient(a, b, &quotient);
+        let uses = mem::replace(&mut self.uses, outer);
+        let nodes = nodes?;
+        for (node, part) in nodes.into_iter().zip([whole, remainder]) {
+            self.plan.nodes[node.0].exact = Some(Arc::new(part.clone()));
+            let uses = uses.clone();
+            self.known.push(KnownPart { part, node, uses, is_limited: false });
+        }
+        Ok(nodes)
+    }
+
+    /// Adds the results that read one of the parts for all operands, and that have the same condition as a result of the present
+    /// uses, to these uses, so that all of them share the nodes. In a case of a choice, the uses stay.
+    fn add_readers_of(&mut self, parts: &[&Expression]) {
+        if !self.uses.conditions.is_empty() {
+            return;
+        }
+        let results = &self.statement.results;
+        let Some(first) = self.uses.readers.iter().position(|reads| *reads) else { return };
+        for (reads, result) in self.uses.readers.iter_mut().zip(results) {
+            let reads_one = parts.iter().any(|part| reads_always(&result.formula, part));
+            *reads |= reads_one && result.promise == results[first].promise;
+        }
+    }
+
+    /// Returns the nodes of the integer part of the quotient a / b, and of its remainder. Fails if a node has too many bits.
+    fn corrected_quotient(
+        &mut self,
+        a: &Expression,
+        b: &Expression,
+        quotient: &Expression,
+    ) -> Result<[NodeId; 2], PlanRefusal> {
+        let (dividend, divisor) = (self.part(a)?, self.part(b)?);
+        let divisors = self.range_here(b)?;
+        let estimate = self.estimated_quotient(a, b, quotient)?;
+
+        let frac = self.plan.node(estimate).format.frac.max(2);
+        let quarter = self.plan.constant("quarter", 1 << (frac - 2), frac)?;
+        let below = self.plan.subtract("quotient_below", estimate, quarter)?;
+        // The integer part, or one less.
+        let values = self.range(quotient)?;
+        let (least, most) = (values.low.floor() as i128, values.high.floor() as i128);
+        let format = Format::holding(least - 1, most, 0);
+        let floor = self.plan.shorten("quotient_floor", below, 0, Rounding::Truncate)?;
+        let first = self.plan.narrow("quotient_first", floor, format, Rounding::Truncate)?;
+        let next = {
+            let one = self.plan.constant("one", 1, 0)?;
+            self.plan.add("quotient_next", first, one)?
+        };
+        // The remainder, or the remainder plus the divisor.
+        let product = self.plan.multiply("multiple", first, divisor)?;
+        let rest = self.plan.subtract("rest", dividend, product)?;
+        let limits = Enclosure::between(0.0, 2.0 * divisors.high);
+        let rest = self.plan.limited("rest_limited", rest, limits)?;
+        let is_less = self.plan.less("rest_is_less", rest, divisor)?;
+        let difference = self.plan.subtract("rest_less_divisor", rest, divisor)?;
+        let chosen = self.plan.choose("quotient_chosen", is_less, [next, first])?;
+        let wholes = Format::holding(least, most, 0);
+        let whole = self.plan.narrow("whole_quotient", chosen, wholes, Rounding::Truncate)?;
+        let left = self.plan.choose("remainder", is_less, [difference, rest])?;
+        let largest = self.plan.node(divisor).range.1;
+        let remainders = Format::holding(0, largest, self.plan.node(left).format.frac);
+        let left = self.plan.narrow("remainder_within", left, remainders, Rounding::Truncate)?;
+        Ok([whole, left])
+    }
+
+    /// Returns the node of an estimate of the quotient a / b with an error of at most a quarter. Fails if no number of guard bits
+    /// shows this, or if a node has too many bits.
+    fn estimated_quotient(
+        &mut self,
+        a: &Expression,
+        b: &Expression,
+        quotient: &Expression,
+    ) -> Result<NodeId, PlanRefusal> {
+        let values = self.range(quotient)?;
+        let bits =
+            Format::holding(values.low.floor() as i128, values.high.ceil() as i128, 0).width();
+        for guard in GUARD_BITS {
+            let before = self.fixed_guard.replace(bits as i32 + guard - self.finest);
+            let estimate = self.quotient(a, b, quotient);
+            self.fixed_guard = before;
+            let estimate = estimate?;
+            let unit = exp2(-self.plan.node(estimate).format.frac);
+            if self.largest_error(estimate) * unit <= LARGEST_ERROR {
+                return Ok(estimate);
+            }
+        }
+        Err(PlanRefusal::new(
+            "Glint finds no estimate of this quotient with an error below a quarter",
+            "give the operands fewer bits",
+        ))
+    }
+}
