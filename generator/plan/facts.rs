@@ -341,7 +341,11 @@ fn power(base: Enclosure, exponent: u32) -> Enclosure {
     for _ in 0..exponent {
         power = power * base;
     }
-    if exponent % 2 == 0 { Enclosure::between(power.low.max(0.0), power.high) } else { power }
+    if exponent.is_multiple_of(2) {
+        Enclosure::between(power.low.max(0.0), power.high)
+    } else {
+        power
+    }
 }
 
 /// A part that is a multiple of a fact's polynomial plus a rest.
@@ -516,6 +520,11 @@ impl GuardRewriting<'_> {
         let all = [facts, &own].concat();
         self.rewritten(case, &all, true, &mut HashMap::new())
     }
+}
+
+/// Returns whether a formula is a polynomial of operands, whose value the plan computes without rounding.
+pub(super) fn is_polynomial(statement: &ExpressionStatement, formula: &Expression) -> bool {
+    OperandPolynomial::of(formula, statement).is_some()
 }
 
 /// Returns whether the conditions of the uses of a part state a fact about the part itself.

@@ -39,6 +39,9 @@ const STYLES: [PlanStyle; 6] = [
     PlanStyle { table_error: 0.96, centres_fractions: false, keeps_functions: true },
 ];
 
+/// The most by which an evaluation of a formula can exceed an error, in units of the last bit.
+const EVALUATION_ERROR: f64 = 1e-6;
+
 /// A number that no rounding operation has.
 const NO_SOURCE: usize = usize::MAX;
 
@@ -112,7 +115,17 @@ pub fn find(statement: &ExpressionStatement) -> Result<ProvedPlan, PlanRefusal> 
     let mut proof = ProofKind::Enclosed;
     if statement.combinations() <= 1 << MOST_COMBINATIONS {
         proof = ProofKind::EveryCombination;
-        for (bound, largest) in bounds.iter_mut().zip(largest_errors(statement, &plan)?) {
+        let largest = largest_errors(statement, &plan)?;
+        for (number, (bound, largest)) in bounds.iter_mut().zip(largest).enumerate() {
+            if largest > *bound + EVALUATION_ERROR {
+                let name = &statement.results[number].name;
+                let message = format!(
+                    "the two proofs of the error of `{name}` disagree: by intervals it is at most {bound:.4} units, and a \
+                     combination of operands has {largest:.4}"
+                );
+                let remedy = "this is a fault of Glint: please report the formula, and write it in another way";
+                return Err(PlanRefusal::new(message, remedy).of_result(number));
+            }
             *bound = bound.min(largest);
         }
     }

@@ -22,7 +22,7 @@ use glint_base::fixed::{Format, Rounding, exp2, nearest, shifted_left};
 use glint_formula::{Comparison, Enclosure, Expression, Function, Kind, Operator, RBig};
 
 use super::boxes::ResultProof;
-use super::facts::has_fact;
+use super::facts::{has_fact, is_polynomial};
 use super::node::{Approximation, NodeId, Operation};
 use super::plan::ExpressionPlan;
 use super::range::{LIMIT_THE_OPERANDS, RangeMemo};
@@ -404,7 +404,11 @@ impl<'s> Lowering<'s> {
         }
         let core = core.clone();
         let has_remainder = part.has(&|kind| matches!(kind, Kind::Binary(Operator::Mod, ..)));
-        if has_remainder && division::quotient_of(&core).is_some() {
+        let is_polynomial = |formula: &Expression| is_polynomial(self.statement, formula);
+        let of_polynomials = |quotient: division::QuotientParts| {
+            is_polynomial(&quotient.dividend) && is_polynomial(&quotient.divisor)
+        };
+        if has_remainder && division::quotient_of(&core).is_some_and(of_polynomials) {
             // The integer part of a quotient is exact; a table would read a rounded quotient.
             return self.operation(part);
         }

@@ -28,7 +28,7 @@ const TINY: &str =
 operands.c = { bits = 3, fraction = 40 }\noperands.d = { bits = 3, fraction = 40 }";
 
 /// Operands, and results that other results read or that need no operation.
-const CASES: [(&str, &str); 29] = [
+const CASES: [(&str, &str); 30] = [
     (
         // The exponential function has a table over an octave, and its results need no shift.
         "operands.y = { from = \"-9 / 4\", to = \"15 / 4\", to_included = true, fraction = 2, outside = \"anything\" }",
@@ -152,6 +152,12 @@ results.n = { formula = \"round(x / y)\", fraction = 0, where = \"y > 0\" }",
         "results.q = { formula = \"floor(2 * a / (a - b))\", fraction = 0, where = \"a > b\" }
 results.m = { formula = \"(a + b) % 3\", fraction = 0 }
 results.v = { formula = \"if(b > 1, if(a / b > 0.5, a % b, b % (a + 10)), 2)\", fraction = 0 }",
+    ),
+    (
+        // The remainder has more fraction bits than the divisor.
+        "operands.a = { bits = 5, fraction = 2, signed = true }\noperands.b = { bits = 4, fraction = 1, signed = true }
+operands.c = { bits = 3, fraction = 0 }",
+        "results.r = { formula = \"(a - 3*c) % (3*b - c + 1) + b\", fraction = 4, where = \"3*b - c + 1 >= 0.5 && c < a + 3*b\" }",
     ),
     (
         // Powers far below the last bit of the result are 0.

@@ -202,8 +202,8 @@ impl Lowering<'_> {
         let wholes = Format::holding(least, most, 0);
         let whole = self.plan.narrow("whole_quotient", chosen, wholes, Rounding::Truncate)?;
         let left = self.plan.choose("remainder", is_less, [difference, rest])?;
-        let largest = self.plan.node(divisor).range.1;
-        let remainders = Format::holding(0, largest, self.plan.node(left).format.frac);
+        let frac = self.plan.node(left).format.frac;
+        let remainders = Format::holding(0, (divisors.high * exp2(frac)).ceil() as i128, frac);
         let left = self.plan.narrow("remainder_within", left, remainders, Rounding::Truncate)?;
         Ok([whole, left])
     }
