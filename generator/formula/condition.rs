@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::literal::Literal;
 use super::{Comparison, Expression, Function, Kind, Operator, TextSpan};
 
-/// A condition: a comparison, or two conditions of which both or at least one must hold.
+/// A condition: a comparison, or two conditions: both must hold, or at least one.
 #[derive(Clone)]
 pub(super) enum JoinedCondition {
     /// The comparison holds.

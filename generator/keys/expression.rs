@@ -103,8 +103,8 @@ fn result_fields() -> Vec<Key> {
             "where",
             "s > 0",
             TextPattern::Formula,
-            "A comparison of two formulas. The error bound holds for the operands for which the comparison is \
-             true.",
+            "A condition, such as `x < y and y != 0`. The error bound holds for the operands for which the condition \
+             is true.",
         ),
         Key::text(
             "doc",

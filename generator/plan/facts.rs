@@ -170,7 +170,7 @@ impl OperandPolynomial {
         Some((highest.0.clone(), highest.1.clone()))
     }
 
-    /// Returns a number of which every value of the polynomial is a multiple, for operands of the statement.
+    /// Returns a number that divides every value of the polynomial, for operands of the statement.
     fn step(&self, statement: &ExpressionStatement) -> RBig {
         let mut step = RBig::ZERO;
         for (exponents, coefficient) in &self.0 {
@@ -188,7 +188,7 @@ fn is_constant(exponents: &[u32]) -> bool {
     exponents.iter().all(|exponent| *exponent == 0)
 }
 
-/// Returns the largest number of which both numbers are multiples. For example, 3/4 and 1/2 give 1/4.
+/// Returns the largest number that divides both numbers. For example, 3/4 and 1/2 give 1/4.
 fn common_divisor(a: RBig, b: RBig) -> RBig {
     let (mut a, mut b) = (size_of(a), size_of(b));
     while b != RBig::ZERO {
@@ -238,7 +238,7 @@ impl Fact {
     }
 }
 
-/// Returns comparisons with their outcomes, all of which hold where `comparison` has the outcome `outcome`. For example, `min(x, y)
+/// Returns comparisons with their outcomes; all of them hold where `comparison` has the outcome `outcome`. For example, `min(x, y)
 /// > 0` gives `x > 0` and `y > 0`. A condition of several comparisons is written so.
 fn single_comparisons(comparison: &Comparison, outcome: bool) -> Vec<(Comparison, bool)> {
     let Comparison { left, right, or_equal } = comparison;
@@ -370,7 +370,7 @@ impl LimitedPart {
     }
 }
 
-/// A part of a formula with facts about it, and the name of the operand that stands for it.
+/// A part of a formula with facts about it, and the name of the operand that replaces it.
 struct GuardedPart {
     name: String,
     part: Expression,
@@ -400,7 +400,7 @@ impl GuardedPart {
 
 const ANYTHING: Enclosure = Enclosure::between(f64::NEG_INFINITY, f64::INFINITY);
 
-/// A formula whose value matters only under some conditions, in which an operand stands for each part with a fact about it.
+/// A formula whose value matters only under some conditions, in which an operand replaces each part with a fact about it.
 pub(super) struct GuardedFormula {
     formula: Arc<Expression>,
     parts: Vec<GuardedPart>,

@@ -98,7 +98,8 @@ pub enum Operation {
         by_pairs: bool,
     },
     /// The number of bits by which an [`Operation::Normalise`] node has shifted its word, or of pairs of bits if it shifts by
-    /// pairs. For a word of zeros, all bits of this number are 1.
+    /// pairs. For a word of zeros, all bits of this number are 1. The node directly follows its [`Operation::Normalise`] node in the
+    /// plan: the analysis of errors gives both their values at once, and the hardware builds them together.
     Places(NodeId),
     /// a · 2^b, where b is the value of the second node. High bits are dropped, as by [`Operation::Narrow`].
     ShiftLeft(NodeId, NodeId),

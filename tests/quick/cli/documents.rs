@@ -89,20 +89,25 @@ fn new_files_on_pages_have_the_names_of_their_cores() {
     assert!(count > 3, "{count} commands");
 }
 
-/// The README has two files `highlight.toml`: a new one, and a shorter one, which the commands below it use. Directories in the
-/// remarks exist afterwards.
+/// The README has a file `angle.toml`, whose first line is its name. Directories in the remarks exist afterwards. A box with the language `text` has lines of the output of
+/// the commands above it.
 #[test]
 fn commands_of_the_readme_run() {
     let text = read("README.md");
     let dir = Workspace::new();
     let mut run = 0;
+    let mut output = String::new();
     for (language, block) in blocks(&text) {
-        if language == "toml" && block.contains("name = \"highlight\"") {
-            dir.write("highlight.toml", block);
+        if language == "toml" && block.starts_with("# angle.toml") {
+            dir.write("angle.toml", block);
+        }
+        if language == "text" {
+            assert_shown("README.md", &format!("…\n{}", block.trim_end()), &output);
         }
         if !language.is_empty() {
             continue;
         }
+        output.clear();
         // Icarus Verilog is an outside tool.
         let commands = block.lines().filter(|line| line.starts_with("glint "));
         for line in commands.filter(|line| !line.contains("--simulator")) {
@@ -115,6 +120,7 @@ fn commands_of_the_readme_run() {
             if !file.is_empty() {
                 dir.write(file.trim(), &of.out);
             }
+            output += &of.out;
             for path in remark.split([' ', ',']).filter(|word| word.ends_with('/')) {
                 assert!(dir.at(path).is_dir(), "{line}: no {path}");
             }
