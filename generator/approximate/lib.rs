@@ -30,7 +30,7 @@ use glint_formula::{Enclosure, Expression, Fault, RBig};
 pub use reduction::{Identity, Reduction, Restore, Rule};
 pub use refusal::{Refusal, RefusalKind, UnsuitedReduction};
 pub use samples::Samples;
-pub use search::Wish;
+pub use search::{Wish, reachable_error};
 pub use segments::{Layout, SegmentOffset, Segments};
 
 /// The number of coefficients of a polynomial of the largest degree, which is 3.

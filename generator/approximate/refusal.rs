@@ -30,11 +30,8 @@ pub enum RefusalKind {
     ManyOperandsOfSamples,
     /// A result or a partial sum has too many bits.
     ResultBits,
-    /// No polynomials keep the allowed error.
-    Error {
-        /// An error that polynomials keep, in units of the result's last bit; `None` if none was found.
-        reached: Option<f64>,
-    },
+    /// No polynomials keep the allowed error. [`crate::reachable_error`] looks for an error that can be kept.
+    Error,
     /// At an operand, the error of the polynomials is not below the allowed error.
     ErrorExceeded,
     /// The domain has so many operands that the bound cannot be proved.

@@ -79,22 +79,27 @@ pub(super) fn search(function: &TargetFunction, wish: Wish) -> Result<Piecewise,
     if let Some(found) = attempt(function, wish)? {
         return Ok(found);
     }
-    let count_missed = NEAREST.partition_point(|error| {
-        let larger = TargetFunction { error: *error, ..function.clone() };
-        *error <= function.error || !matches!(attempt(&larger, wish), Ok(Some(_)))
-    });
-    let reached = NEAREST.get(count_missed).copied();
     let keeps = match wish.degree {
         Some(degree) => format!("degree {degree} does not keep"),
         None => format!("no degree up to {DEGREES} keeps"),
     };
     Err(Refusal::new(
-        RefusalKind::Error { reached },
+        RefusalKind::Error,
         format!(
             "{keeps} an error of {} units within 2^{ADDRESS} words and nets of {MAX_WIDTH} bits",
             function.error
         ),
     ))
+}
+
+/// Returns an error above the allowed error of `function` that polynomials keep, in units of the result's last bit; `None` if none of
+/// a few such errors is kept. The function takes as long as several searches: it helps a user whose error cannot be kept.
+pub fn reachable_error(function: &TargetFunction, wish: Wish) -> Option<f64> {
+    let count_missed = NEAREST.partition_point(|error| {
+        let larger = TargetFunction { error: *error, ..function.clone() };
+        *error <= function.error || !matches!(attempt(&larger, wish), Ok(Some(_)))
+    });
+    NEAREST.get(count_missed).copied()
 }
 
 /// Returns the cheapest approximation with a proved bound, or `None` if the search finds none. The first numbering of the

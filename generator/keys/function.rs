@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use glint_approximate::{
     Curve, Identity, Layout, Outside, Piecewise, Refusal, RefusalKind, TargetFunction,
-    UnsuitedReduction, Wish, find,
+    UnsuitedReduction, Wish, find, reachable_error,
 };
 use glint_base::config_error::ConfigError;
 use glint_base::fixed::{Format, MAX_WIDTH};
@@ -104,7 +104,7 @@ pub fn plan(config: &Config) -> Result<FunctionPlan, ConfigError> {
         identity: keys.reduction,
         least_words: 0,
     };
-    let polynomials = find(&function, wish).map_err(refused)?;
+    let polynomials = find(&function, wish).map_err(|refusal| refused(refusal, &function, wish))?;
     let plan = ExpressionPlan::of_function(&function, &polynomials).map_err(|refusal| {
         ConfigError::new("operand.fraction", refusal.message, "set a smaller operand.fraction")
     })?;
@@ -112,7 +112,7 @@ pub fn plan(config: &Config) -> Result<FunctionPlan, ConfigError> {
 }
 
 /// Returns the refusal of the search as an error of the key that the user should change.
-fn refused(refusal: Refusal) -> ConfigError {
+fn refused(refusal: Refusal, function: &TargetFunction, wish: Wish) -> ConfigError {
     const SMALLER: &str = "set a smaller operand.fraction";
     const DIVIDED: &str = "use device = \"expression\", which divides such a domain into octaves, or set a smaller \
                            operand.fraction";
@@ -128,12 +128,12 @@ fn refused(refusal: Refusal) -> ConfigError {
         RefusalKind::ResultBits => {
             ("result.fraction", "set fewer fraction bits, or another domain".to_owned())
         }
-        RefusalKind::Error { reached: Some(error) } => (
-            "result.error",
-            format!("set result.error to {error}, or {SMALLER} or result.fraction"),
-        ),
-        RefusalKind::Error { reached: None } => {
-            ("result.error", format!("{SMALLER} or result.fraction"))
+        RefusalKind::Error => {
+            let larger = match reachable_error(function, wish) {
+                Some(error) => format!("set result.error to {error}, or "),
+                None => String::new(),
+            };
+            ("result.error", format!("{larger}{SMALLER} or result.fraction"))
         }
         RefusalKind::ErrorExceeded => ("result.error", "allow a larger error".to_owned()),
         RefusalKind::Unproved => ("result.error", DIVIDED.to_owned()),

@@ -22,7 +22,7 @@ fn whole_configurations_of_the_pages_give_no_warning() {
         [include_str!("../../../README.md"), include_str!("../../../docs/pipelines.md")].concat();
     let blocks = pages.split("```toml\n").skip(1).filter_map(|rest| rest.split("```").next());
     let whole: Vec<&str> = blocks.filter(|text| text.contains("device = ")).collect();
-    assert_eq!(whole.len(), 3, "the angle, highlight.toml and my_pipeline.toml");
+    assert_eq!(whole.len(), 2, "angle.toml and my_pipeline.toml");
     for text in whole {
         Workspace::with("core.toml", text).glint(["generate", "core.toml"]).quiet();
     }
