@@ -180,7 +180,7 @@ impl Registry {
         &self,
         (config, source): (Config, ConfigSource),
     ) -> Result<(OpenedConfig, ConfigSource), Problems> {
-        let device = self.device(&config.device).expect("the schemas are those of the devices");
+        let device = self.device(&config.device).expect("each schema belongs to a device");
         match device.open(config.clone()) {
             Ok(opened) => Ok((opened, source)),
             Err(error) => Err(source.refusal(&(device.schema)(), &config, error)),

@@ -113,6 +113,9 @@ const PI: &str = "π";
 /// The largest depth to which parts may be nested. This depth limits the recursion of the parser.
 const DEEPEST: usize = 200;
 
+/// The most comparisons of a formula and signs that join them. Each can be a level of the tree.
+const MOST_CONDITIONS: usize = 400;
+
 /// The largest number of parts of a formula after its functions are replaced by their formulas. For example, `silu(x)` has 6
 /// parts more than x and contains x twice, so each `silu` around another doubles the number of parts.
 const MOST_PARTS: usize = 4096;
@@ -124,7 +127,7 @@ const MOST_PARTS: usize = 4096;
 /// # Errors
 /// Fails at the first mistake. The error has the location of the mistake.
 pub fn parse(text: &str) -> Result<Expression, Fault> {
-    let mut parser = Parser { text, tokens: tokens(text)?, at: 0, depth: 0 };
+    let mut parser = Parser { text, tokens: tokens(text)?, at: 0, depth: 0, conditions: 0 };
     let formula = parser.choice()?;
     match parser.tokens.get(parser.at) {
         None => Ok(formula),
@@ -142,7 +145,7 @@ pub fn parse(text: &str) -> Result<Expression, Fault> {
 /// # Errors
 /// Fails at the first mistake. The error has the location of the mistake.
 pub fn parse_condition(text: &str) -> Result<Comparison, Fault> {
-    let mut parser = Parser { text, tokens: tokens(text)?, at: 0, depth: 0 };
+    let mut parser = Parser { text, tokens: tokens(text)?, at: 0, depth: 0, conditions: 0 };
     let condition = parser.condition()?;
     match parser.tokens.get(parser.at) {
         None => Ok(condition.comparison()),
@@ -244,6 +247,8 @@ struct Parser<'t> {
     tokens: Vec<Range<usize>>,
     at: usize,
     depth: usize,
+    /// The number of comparisons, and of the signs that join them, so far.
+    conditions: usize,
 }
 
 impl Parser<'_> {
@@ -342,6 +347,7 @@ impl Parser<'_> {
     fn joined(&mut self, first: JoinedCondition) -> Result<JoinedCondition, Fault> {
         let mut either = self.all_of(first)?;
         while self.taken(&["or", "||"]) {
+            self.count_joined()?;
             let next = self.single_condition()?;
             either = JoinedCondition::Either(Box::new(either), Box::new(self.all_of(next)?));
         }
@@ -352,16 +358,33 @@ impl Parser<'_> {
     fn all_of(&mut self, first: JoinedCondition) -> Result<JoinedCondition, Fault> {
         let mut both = first;
         while self.taken(&["and", "&&"]) {
+            self.count_joined()?;
             both = JoinedCondition::Both(Box::new(both), Box::new(self.single_condition()?));
         }
         Ok(both)
     }
 
+    /// Counts one more comparison or joined condition of the formula. Fails at more than [`MOST_CONDITIONS`].
+    fn count_joined(&mut self) -> Result<(), Fault> {
+        self.conditions += 1;
+        if self.conditions > MOST_CONDITIONS {
+            return self.fault(format!("the formula has more than {MOST_CONDITIONS} conditions"));
+        }
+        Ok(())
+    }
+
     /// Parses a condition that neither `and` nor `or` divides. Fails at the first mistake.
     fn single_condition(&mut self) -> Result<JoinedCondition, Fault> {
-        if self.taken(&["not", "!"]) {
-            return Ok(self.single_condition()?.negated());
+        let mut negations = 0;
+        while self.taken(&["not", "!"]) {
+            negations += 1;
         }
+        let condition = self.condition_without_sign()?;
+        Ok(if negations % 2 == 1 { condition.negated() } else { condition })
+    }
+
+    /// Parses a condition in parentheses, or comparisons. Fails at the first mistake.
+    fn condition_without_sign(&mut self) -> Result<JoinedCondition, Fault> {
         if self.begins_condition() {
             self.expect("(")?;
             let inner = self.condition()?;
@@ -410,6 +433,7 @@ impl Parser<'_> {
                 let missing = "a comparison sign is missing: `<`, `>`, `<=`, `>=`, `==` or `!=`";
                 return all.map_or_else(|| self.fault(missing), Ok);
             }
+            self.count_joined()?;
             let second = Arc::new(self.sum()?);
             let comparison = JoinedCondition::Is(self.compared(first, &sign, second.clone()));
             all = Some(match all {

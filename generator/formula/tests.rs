@@ -453,6 +453,11 @@ fn conditions_join_comparisons() {
             }
         }
     }
+    let many = vec!["x < y"; 1000];
+    for joined in [many.join(" and "), many.join(" or "), format!("x{}", " < y".repeat(1000))] {
+        assert!(parse_condition(&joined).unwrap_err().message.contains("more than 400 conditions"));
+    }
+    assert!(parse_condition(&format!("{}x < y", "! ".repeat(9000))).is_ok());
     for wrong in ["x", "x <", "x < y z", "x and y", "not", "(x < y", "x < y and", "x ? y : 1"] {
         assert!(parse_condition(wrong).is_err(), "{wrong}");
     }

@@ -181,6 +181,7 @@ impl ExpressionPlan {
         let is_same = |node: &PlanNode| {
             node.source.is_none()
                 && node.limits == ANYTHING
+                && node.exact.is_none()
                 && node.format == format
                 && node.operation.identity().as_ref() == Some(&wanted)
         };

@@ -225,7 +225,10 @@ impl Lowering<'_> {
             self.fixed_guard = before;
             let estimate = estimate?;
             let unit = exp2(-self.plan.node(estimate).format.frac);
-            if self.largest_error(estimate) * unit <= LARGEST_ERROR {
+            // The claim that the corrected value is exact needs a bound for each result that reads it.
+            let errors = self.errors_by_result(estimate);
+            let mut readers = self.uses.readers.iter().zip(&errors).filter(|(reads, _)| **reads);
+            if readers.all(|(_, units)| *units * unit <= LARGEST_ERROR) {
                 return Ok(estimate);
             }
         }
