@@ -18,6 +18,10 @@ pub struct Wish {
     pub layout: Option<Layout>,
     /// The identity that the range reduction uses, for example f(−x) = f(x), or `Identity::None`.
     pub identity: Identity,
+    /// The largest number of look-up tables that an approximation may take, or `None` without a limit. The search finds nothing if
+    /// only dearer approximations keep the error. A caller that compares approximations saves time with the cost of the cheapest
+    /// one so far.
+    pub most_cells: Option<u32>,
     /// The smallest number of words with which a table enters the cost. For example, a look-up table with four inputs stores 16
     /// words of a bit, so a table of 5 words may cost as much as a table of 16 words.
     pub least_words: usize,
@@ -187,7 +191,7 @@ fn attempt_reduced(function: &TargetFunction, wish: Wish) -> Result<Option<Piece
 fn cheapest(seen: &AllowedResults, wish: Wish) -> Option<Piecewise> {
     let few = seen.thinned(CHOOSING);
     let mut found: Vec<(f64, Segments, Widths, Widths)> = Vec::new();
-    let mut least = f64::INFINITY;
+    let mut least = wish.most_cells.map_or(f64::INFINITY, f64::from);
     // Degrees that are often the cheapest come first, so that the search can end early for the others.
     for degree in [2, 3, 1, 0] {
         if wish.degree.is_some_and(|wanted| wanted != degree) {

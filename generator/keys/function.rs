@@ -102,6 +102,7 @@ pub fn plan(config: &Config) -> Result<FunctionPlan, ConfigError> {
         degree: keys.degree.parse().ok(),
         layout: Layout::NAMES.iter().find(|it| it.0 == keys.segments).map(|it| it.1),
         identity: keys.reduction,
+        most_cells: None,
         least_words: 0,
     };
     let polynomials = find(&function, wish).map_err(|refusal| refused(refusal, &function, wish))?;

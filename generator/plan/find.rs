@@ -238,14 +238,17 @@ fn with_polynomials(
 /// polynomials.
 fn cheapest_polynomials(function: &TargetFunction) -> Result<Arc<Piecewise>, PlanRefusal> {
     let mut wishes = Vec::new();
-    for degree in [1, 2, 3] {
-        wishes.push(Wish { degree: Some(degree), least_words: FULL_CELL, ..Wish::default() });
+    // Degree 2 is often the cheapest, and its cost ends the search of the others early.
+    for degree in [2, 3, 1] {
+        wishes.push(Wish { degree: Some(degree), ..Wish::default() });
     }
     for identity in IDENTITIES {
-        wishes.push(Wish { identity, least_words: FULL_CELL, ..Wish::default() });
+        wishes.push(Wish { identity, ..Wish::default() });
     }
     let mut cheapest: Option<(f64, Arc<Piecewise>)> = None;
     for wish in wishes {
+        let most_cells = cheapest.as_ref().map(|(least, _)| least.ceil() as u32);
+        let wish = Wish { least_words: FULL_CELL, most_cells, ..wish };
         let Ok(found) = glint_approximate::find(function, wish) else { continue };
         let cost = cells_of_function(function, &found);
         if cheapest.as_ref().is_none_or(|(least, _)| cost < *least) {

@@ -10,16 +10,16 @@ mod division;
 mod exponential;
 mod quotient;
 mod root;
+mod shape;
 mod wave;
 
 use std::collections::HashMap;
 use std::mem;
-use std::ptr;
 use std::sync::Arc;
 
 use glint_approximate::{Curve, Outside, Piecewise, TargetFunction};
 use glint_base::fixed::{Format, Rounding, exp2, nearest, shifted_left};
-use glint_formula::{Comparison, Enclosure, Expression, Function, Kind, Operator, RBig};
+use glint_formula::{Comparison, Enclosure, Expression, Function, Kind, Operator};
 
 use super::boxes::ResultProof;
 use super::facts::{has_fact, is_polynomial};
@@ -29,6 +29,10 @@ use super::range::{LIMIT_THE_OPERANDS, RangeMemo};
 use super::refusal::PlanRefusal;
 use super::statement::{ExpressionStatement, StatedOverflow, StatedResult, StatedWidth};
 use super::uses::{PartUses, reads_always};
+use shape::{
+    core_of, dominators, dyadic, floor_of, is_limit_of, modulus_exponent, number, power_of_two,
+    products_of,
+};
 
 /// The widest operand of a table of polynomials, in bits. A wider one is shortened first.
 const WIDEST_OPERAND: u32 = 20;
@@ -36,14 +40,16 @@ const WIDEST_OPERAND: u32 = 20;
 /// The widest factor of a product, in bits. A wider factor, which is the result of a product itself, is shortened first.
 const WIDEST_FACTOR: u32 = 18;
 
-/// The cost of a product of two numbers that vary, if a product with a constant costs 1.
-const PRODUCT: u32 = 2;
-
 /// The largest cost of products at which a function of one number is computed by products instead of a table.
 const MOST_PRODUCTS: u32 = 3;
 
-/// The largest number of fraction bits that a constant may have to count as exact.
-const MOST_CONSTANT_BITS: u32 = 18;
+/// If the largest value of a part is at least this times the smallest, a root or a logarithm of the part is computed octave by
+/// octave, even as a part of another function.
+const MANY_OCTAVES: f64 = 16.0;
+
+/// The widest number whose square is exact, in bits. A wider one is shortened first, because its square, or a sum of such squares,
+/// would have more bits than a net.
+const WIDEST_EXACT_SQUARE: u32 = 30;
 
 /// The number of divisions of the domain in a proof of the error of a single node.
 const DIVISIONS_FOR_AN_ERROR: usize = 64;
@@ -402,8 +408,15 @@ impl<'s> Lowering<'s> {
         {
             return self.operation(part);
         }
-        let core = core.clone();
         let has_remainder = part.has(&|kind| matches!(kind, Kind::Binary(Operator::Mod, ..)));
+        let is_kept = self.guards.style.keeps_functions && is_short_operand(self.statement, core);
+        let core = match has_remainder || is_kept {
+            true => core.clone(),
+            false => self.table_operand(part, core)?,
+        };
+        if products_of(part, &core).is_some_and(|products| products <= MOST_PRODUCTS) {
+            return self.operation(part);
+        }
         let is_polynomial = |formula: &Expression| is_polynomial(self.statement, formula);
         let of_polynomials = |quotient: division::QuotientParts| {
             is_polynomial(&quotient.dividend) && is_polynomial(&quotient.divisor)
@@ -420,6 +433,47 @@ impl<'s> Lowering<'s> {
             Kind::Unary(_, argument) => self.function_of(part, argument),
             _ => self.operation(part),
         }
+    }
+
+    /// Returns the part of `part` whose value a table reads: `core`, or a part that dominates it. A table over the values of `core`
+    /// would be large where a part is limited, or where a root, a reciprocal or a logarithm spans octaves. For example,
+    /// `sqrt(max(0, x)) + 3` gives `sqrt(max(0, x))`. Fails if a part has no finite values.
+    fn table_operand(
+        &mut self,
+        part: &Expression,
+        core: &Expression,
+    ) -> Result<Expression, PlanRefusal> {
+        let mut operand = core.clone();
+        for dominator in dominators(part, core) {
+            if is_limit_of(dominator, &operand) {
+                operand = dominator.clone();
+            }
+        }
+        loop {
+            let mut widest = None;
+            for dominator in dominators(part, &operand) {
+                if self.spans_octaves(dominator, &operand)? {
+                    widest = Some(dominator.clone());
+                }
+            }
+            match widest {
+                Some(dominator) => operand = dominator,
+                None => return Ok(operand),
+            }
+        }
+    }
+
+    /// Returns whether `part` is a logarithm, a root or a reciprocal of `core`, or a product of roots and reciprocals, and the values
+    /// of `core` span several octaves. Fails if `core` has no finite values.
+    fn spans_octaves(&self, part: &Expression, core: &Expression) -> Result<bool, PlanRefusal> {
+        let function = part.substitute(core, &Expression::operand("x"), &part.span);
+        let is_singular = root::power_of(&function).is_some_and(|power| power.is_singular())
+            || exponential::factor_of_logarithm(&function).is_some();
+        if !is_singular {
+            return Ok(false);
+        }
+        let values = self.range(core)?;
+        Ok(values.low >= 0.0 && values.high >= values.low * MANY_OCTAVES)
     }
 
     /// Returns whether a table over the values of `core` can compute `part`. It cannot if a case of a choice has no value outside
@@ -550,8 +604,10 @@ impl<'s> Lowering<'s> {
             Operator::Div if b.varies() => self.quotient(a, b, part),
             Operator::Atan2 => self.direction(a, b, &direction::Scaling::none()),
             Operator::Power if *b == number("2") => {
-                let a = self.part(a)?;
-                self.plan.multiply("square", a, a)
+                let node = self.part(a)?;
+                let is_wide = self.plan.node(node).format.width() > WIDEST_EXACT_SQUARE;
+                let root = if is_wide { self.factor(a)? } else { node };
+                self.plan.multiply("square", root, root)
             }
             Operator::Power => {
                 let power = exponential::written_with_logarithm(a, b, &part.span);
@@ -838,151 +894,6 @@ pub(super) fn has_functions_of_operands(statement: &ExpressionStatement) -> bool
         is_short_operand(statement, core) && !is_by_products
     };
     statement.results.iter().any(|result| result.formula.count(&is_function) > 0)
-}
-
-/// Returns the smallest part on which a formula depends: the formula is a function of the value of this part alone. This part
-/// is the formula itself if the formula combines different parts. For example, the core of `1 / sqrt(x + y)` is `x + y`.
-fn core_of(formula: &Expression) -> &Expression {
-    core_with(&mut HashMap::new(), formula)
-}
-
-/// Returns the core of a formula, as [`core_of`] does. `known` has the cores of parts that were seen before, because several
-/// operations may share a part.
-fn core_with<'f>(
-    known: &mut HashMap<*const Expression, &'f Expression>,
-    formula: &'f Expression,
-) -> &'f Expression {
-    let place = ptr::from_ref(formula);
-    if let Some(core) = known.get(&place) {
-        return core;
-    }
-    let mut cores = Vec::new();
-    for part in formula.parts() {
-        if part.varies() {
-            cores.push(core_with(known, part));
-        }
-    }
-    let core = match cores[..] {
-        [first, ref rest @ ..] if rest.iter().all(|core| *core == first) => first,
-        _ => formula,
-    };
-    known.insert(place, core);
-    core
-}
-
-/// Returns the cost of the multiplications that compute a formula from its core by sums, products, squares, minima and absolute
-/// values. Returns `None` if these operations do not compute the formula. For example, `3 * x * (1 - x)` costs 3: 1 for the
-/// product with a constant, and 2 for the product of two numbers.
-fn products_of(formula: &Expression, core: &Expression) -> Option<u32> {
-    products_with(&mut HashMap::new(), formula, core)
-}
-
-/// Returns the cost of multiplications, as [`products_of`] does. A part that was seen before costs nothing; `known` has these
-/// parts.
-fn products_with(
-    known: &mut HashMap<*const Expression, Option<u32>>,
-    formula: &Expression,
-    core: &Expression,
-) -> Option<u32> {
-    let place = ptr::from_ref(formula);
-    if let Some(cost) = known.get(&place) {
-        return *cost;
-    }
-    let cost = new_products(known, formula, core);
-    known.insert(place, cost.map(|_| 0));
-    cost
-}
-
-fn new_products(
-    known: &mut HashMap<*const Expression, Option<u32>>,
-    formula: &Expression,
-    core: &Expression,
-) -> Option<u32> {
-    if formula == core {
-        return Some(0);
-    }
-    let mut products_of = |part: &Expression, core: &Expression| products_with(known, part, core);
-    if !formula.varies() {
-        return Some(0);
-    }
-    match &formula.kind {
-        Kind::Unary(Function::Negate | Function::Abs, a) => products_of(a, core),
-        Kind::Binary(Operator::Add | Operator::Sub | Operator::Min | Operator::Max, a, b) => {
-            Some(products_of(a, core)? + products_of(b, core)?)
-        }
-        Kind::Binary(operator @ (Operator::Mul | Operator::Div), a, b) => {
-            let is_divisor_fixed = !b.varies();
-            if *operator == Operator::Div && !is_divisor_fixed {
-                return None;
-            }
-            let both = products_of(a, core)? + products_of(b, core)?;
-            let factor = if is_divisor_fixed { b } else { a };
-            let is_shift = !factor.varies() && power_of_two(factor, *operator).is_some();
-            match (is_shift, operator) {
-                (true, _) => Some(both),
-                (false, Operator::Mul) if !factor.varies() => Some(both + 1),
-                (false, Operator::Mul) => Some(both + PRODUCT),
-                (false, _) => None,
-            }
-        }
-        Kind::Binary(Operator::Mod, a, b) if modulus_exponent(b).is_some() && !rounds(a) => {
-            products_of(a, core)
-        }
-        Kind::Binary(Operator::Power, a, b) if **b == number("2") => {
-            Some(products_of(a, core)? + PRODUCT)
-        }
-        _ => None,
-    }
-}
-
-/// Returns whether a formula has a constant that is rounded. For example, `0.3 * x` has one, and `0.75 * x` has none.
-fn rounds(formula: &Expression) -> bool {
-    formula.count(&|part| !part.varies() && dyadic(part).is_none()) > 0
-}
-
-/// Returns k if the divisor of a remainder is the constant 2^k, and `None` for any other divisor.
-fn modulus_exponent(divisor: &Expression) -> Option<i32> {
-    if divisor.varies() { None } else { power_of_two(divisor, Operator::Mul) }
-}
-
-/// Returns k if `b` is the remainder of `a` by the constant 2^k, so that a − b is the greatest multiple of 2^k that is not above
-/// a. For example, `floor(x)` is x − x % 1, which gives 0.
-fn floor_of(a: &Expression, b: &Expression) -> Option<i32> {
-    match &b.kind {
-        Kind::Binary(Operator::Mod, of, divisor) if **of == *a => modulus_exponent(divisor),
-        _ => None,
-    }
-}
-
-/// Parses a formula. The text must be valid.
-fn number(text: &str) -> Expression {
-    glint_formula::parse(text).expect("a formula")
-}
-
-/// Returns a constant as a raw value and its number of fraction bits, if it is exact with at most 18 fraction bits and 32 bits
-/// in all. For example, `3/4` gives (3, 2). Returns `None` otherwise.
-fn dyadic(part: &Expression) -> Option<(i128, i32)> {
-    let value = part.rational()?;
-    for frac in 0..=MOST_CONSTANT_BITS {
-        let scaled = value.clone() * RBig::from(1u64 << frac);
-        if scaled.is_int() {
-            let raw = i64::try_from(scaled.numerator().clone()).ok()?;
-            return (raw.unsigned_abs() < 1 << 32).then_some((raw.into(), frac as i32));
-        }
-    }
-    None
-}
-
-/// Returns the exponent k if a multiplication by the constant `part`, or a division by it, equals a multiplication by 2^k. For
-/// example, a division by 8 gives −3. Returns `None` for any other constant.
-fn power_of_two(part: &Expression, operator: Operator) -> Option<i32> {
-    let (raw, frac) = dyadic(part)?;
-    let is_power = raw > 0 && raw.count_ones() == 1;
-    if !is_power {
-        return None;
-    }
-    let exponent = raw.trailing_zeros() as i32 - frac;
-    Some(if operator == Operator::Div { -exponent } else { exponent })
 }
 
 /// Returns limits of the values of a function of x over the raw domain. Returns `None` if the limits are not finite.

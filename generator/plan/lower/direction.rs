@@ -10,7 +10,8 @@ use glint_base::fixed::{Format, exp2};
 use glint_formula::{Enclosure, Expression, Function, Kind, Operator};
 
 use super::root::holding;
-use super::{Lowering, number};
+use super::Lowering;
+use super::shape::number;
 use crate::node::NodeId;
 use crate::refusal::PlanRefusal;
 

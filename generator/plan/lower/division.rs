@@ -10,7 +10,8 @@ use std::sync::Arc;
 use glint_base::fixed::{Format, Rounding, exp2};
 use glint_formula::{Comparison, Enclosure, Expression, Function, Kind, Operator, TextSpan};
 
-use super::{KnownPart, Lowering, number};
+use super::shape::number;
+use super::{KnownPart, Lowering};
 use crate::node::NodeId;
 use crate::refusal::PlanRefusal;
 use crate::uses::reads_always;

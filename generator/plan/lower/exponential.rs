@@ -14,7 +14,8 @@ use glint_base::fixed::{Format, Rounding, exp2};
 use glint_formula::{Enclosure, Expression, Function, Kind, Operator, TextSpan};
 
 use super::root::FEW_OCTAVES;
-use super::{Lowering, number};
+use super::Lowering;
+use super::shape::number;
 use crate::node::NodeId;
 use crate::refusal::PlanRefusal;
 
@@ -48,21 +49,52 @@ fn base_of(function: &Expression) -> Option<Option<Expression>> {
     }
 }
 
+/// Returns the constant c if the formula is c · log₂ x. For example, `3 * ln(x)` gives 3 · ln 2. Returns `None` for any other formula.
+pub(super) fn factor_of_logarithm(function: &Expression) -> Option<Expression> {
+    let with_kind = |kind: Kind| Expression::new(kind, function.span.clone());
+    match &function.kind {
+        Kind::Unary(kind @ (Function::Log2 | Function::Ln), operand)
+            if **operand == Expression::operand("x") =>
+        {
+            Some(number(if *kind == Function::Log2 { "1" } else { "ln(2)" }))
+        }
+        Kind::Unary(Function::Negate, a) => {
+            let factor = factor_of_logarithm(a)?;
+            Some(with_kind(Kind::Unary(Function::Negate, Arc::new(factor))))
+        }
+        Kind::Binary(Operator::Mul, a, b) if !a.varies() => {
+            factor_of_logarithm(b).map(|factor| scaled_by(a, &factor))
+        }
+        Kind::Binary(Operator::Mul, a, b) if !b.varies() => {
+            factor_of_logarithm(a).map(|factor| scaled_by(b, &factor))
+        }
+        Kind::Binary(Operator::Div, a, b) if !b.varies() => {
+            let factor = factor_of_logarithm(a)?;
+            Some(with_kind(Kind::Binary(Operator::Div, Arc::new(factor), b.clone())))
+        }
+        _ => None,
+    }
+}
+
+/// Returns the product of two formulas, or the second one if the first is the constant 1.
+fn scaled_by(factor: &Expression, formula: &Expression) -> Expression {
+    if factor.rational().is_some_and(|factor| factor.is_one()) {
+        return formula.clone();
+    }
+    let kind = Kind::Binary(Operator::Mul, Arc::new(factor.clone()), Arc::new(formula.clone()));
+    Expression::new(kind, formula.span.clone())
+}
+
 impl Lowering<'_> {
-    /// Returns the node of a logarithm. `function` must be the formula with `x` in the place of its operand, the expression
-    /// `core`. Returns `None` if `function` is no logarithm of `x`, if its operand may be 0 or less, or if the largest operand
-    /// is less than `FEW_OCTAVES` times the smallest. Fails if a part has too many bits, no finite values, or no rule.
+    /// Returns the node of a constant times a logarithm. `function` must be the formula with `x` in the place of its operand, the
+    /// expression `core`. Returns `None` for any other function, if its operand may be 0 or less, or if the largest operand is
+    /// less than `FEW_OCTAVES` times the smallest. Fails if a part has too many bits, no finite values, or no rule.
     pub(super) fn logarithm(
         &mut self,
         core: &Expression,
         function: &Expression,
     ) -> Result<Option<NodeId>, PlanRefusal> {
-        let Kind::Unary(kind @ (Function::Log2 | Function::Ln), operand) = &function.kind else {
-            return Ok(None);
-        };
-        if **operand != Expression::operand("x") {
-            return Ok(None);
-        }
+        let Some(factor) = factor_of_logarithm(function) else { return Ok(None) };
         let range = self.range(core)?;
         if range.low <= 0.0 || range.high < range.low * FEW_OCTAVES {
             return Ok(None);
@@ -70,17 +102,20 @@ impl Lowering<'_> {
         let node = self.part(core)?;
         let octave = self.octave(node, range, false)?;
         let finest = self.finest;
+        let of_mantissa = scaled_by(&factor, &number("log2(x)"));
         let within = self.rounding(finest + 2, |own, frac| {
-            own.approximation("logarithm", octave.mantissa, &number("log2(x)"), octave.domain, frac)
+            own.approximation("logarithm", octave.mantissa, &of_mantissa, octave.domain, frac)
         })?;
         let exponent = self.plan.constant("exponent", octave.exponent.into(), 0)?;
         let octaves = self.plan.subtract("octaves", exponent, octave.places)?;
-        let logarithm = self.plan.add("logarithm_of_word", octaves, within)?;
-        if *kind == Function::Log2 {
-            return Ok(Some(logarithm));
-        }
-        let factor = self.number(&number("ln(2)"))?;
-        self.plan.multiply("natural_logarithm", logarithm, factor).map(Some)
+        let octaves = match factor.rational().is_some_and(|factor| factor.is_one()) {
+            true => octaves,
+            false => {
+                let factor = self.number(&factor)?;
+                self.plan.multiply("octaves_scaled", octaves, factor)?
+            }
+        };
+        self.plan.add("logarithm_of_word", octaves, within).map(Some)
     }
 
     /// Returns the node of an exponential function. `function` must be the formula with `x` in the place of its operand, the

@@ -8,7 +8,8 @@ use glint_base::fixed::{Format, Rounding, exp2};
 use glint_formula::{Enclosure, Expression};
 
 use super::root::{FEW_OCTAVES, Octave, holding};
-use super::{Lowering, WIDEST_FACTOR, WIDEST_OPERAND, number};
+use super::shape::number;
+use super::{Lowering, WIDEST_FACTOR, WIDEST_OPERAND};
 use crate::facts::promises_less;
 use crate::node::NodeId;
 use crate::refusal::PlanRefusal;

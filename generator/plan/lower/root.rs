@@ -27,6 +27,13 @@ const MOST_OCTAVES_BELOW_1: i32 = 12;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct DoubledExponent(i32);
 
+impl DoubledExponent {
+    /// Returns whether the power has no finite slope, or no finite value, at 0.
+    pub(super) fn is_singular(self) -> bool {
+        self.0 < 2
+    }
+}
+
 /// Returns twice the exponent p of a formula that is a constant times x^p. Returns `None` for any other formula, if 2p is no
 /// integer from −8 to 8, or if p is 0 or 1. For example, `3 / sqrt(x)` gives −1.
 pub(super) fn power_of(formula: &Expression) -> Option<DoubledExponent> {

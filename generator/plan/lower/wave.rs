@@ -12,7 +12,8 @@ use std::sync::Arc;
 
 use glint_formula::{Expression, Function, Kind, Operator, RBig};
 
-use super::{Lowering, core_of, number};
+use super::Lowering;
+use super::shape::{core_of, number};
 use crate::node::NodeId;
 use crate::refusal::PlanRefusal;
 

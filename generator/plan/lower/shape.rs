@@ -1,0 +1,210 @@
+//! Examines the shape of a formula: the part on which it depends, the products that compute it, and constants that are exact in
+//! binary.
+
+use std::collections::{HashMap, HashSet};
+use std::ptr;
+
+use glint_formula::{Expression, Function, Kind, Operator, RBig};
+
+/// The cost of a product of two numbers that vary, if a product with a constant costs 1.
+const PRODUCT: u32 = 2;
+
+/// The largest number of fraction bits that a constant may have to count as exact.
+const MOST_CONSTANT_BITS: u32 = 18;
+
+/// The most parts of a formula whose dominators are searched.
+const MOST_PARTS: u32 = 200;
+
+/// Returns the smallest part on which a formula depends: the formula is a function of the value of this part alone. This part
+/// is the formula itself if the formula combines different parts. For example, the core of `1 / sqrt(x + y)` is `x + y`.
+pub(super) fn core_of(formula: &Expression) -> &Expression {
+    core_with(&mut HashMap::new(), formula)
+}
+
+/// Returns the core of a formula, as [`core_of`] does. `known` has the cores of parts that were seen before, because several
+/// operations may share a part.
+fn core_with<'f>(
+    known: &mut HashMap<*const Expression, &'f Expression>,
+    formula: &'f Expression,
+) -> &'f Expression {
+    let place = ptr::from_ref(formula);
+    if let Some(core) = known.get(&place) {
+        return core;
+    }
+    let mut cores = Vec::new();
+    for part in formula.parts() {
+        if part.varies() {
+            cores.push(core_with(known, part));
+        }
+    }
+    let core = match cores[..] {
+        [first, ref rest @ ..] if rest.iter().all(|core| *core == first) => first,
+        _ => formula,
+    };
+    known.insert(place, core);
+    core
+}
+
+/// Returns the parts that dominate `core` in `formula`: the formula reads `core` only through each of these parts. The formula
+/// and `core` themselves are left out, and the part nearest to `core` comes first. For example, `max(0, x)` and
+/// `sqrt(max(0, x))` dominate x in `1 - sqrt(max(0, x))`. The list is empty for a formula of more than 200 parts.
+pub(super) fn dominators<'f>(formula: &'f Expression, core: &Expression) -> Vec<&'f Expression> {
+    if formula.size() > MOST_PARTS {
+        return Vec::new();
+    }
+    let mut inner = Vec::new();
+    add_parts(formula, core, &mut HashSet::new(), &mut inner);
+    inner.retain(|part| *part != formula && is_only_read_through(formula, core, part));
+    inner.sort_by_key(|part| part.size());
+    inner.dedup();
+    inner
+}
+
+/// Adds the parts of `formula` that contain `core`, apart from `core` itself, to `inner`. `seen` has the parts that were visited.
+fn add_parts<'f>(
+    formula: &'f Expression,
+    core: &Expression,
+    seen: &mut HashSet<*const Expression>,
+    inner: &mut Vec<&'f Expression>,
+) {
+    if formula == core || !seen.insert(ptr::from_ref(formula)) {
+        return;
+    }
+    if formula.count(&|part| part == core) > 0 {
+        inner.push(formula);
+        for part in formula.parts() {
+            add_parts(part, core, seen, inner);
+        }
+    }
+}
+
+/// Returns whether `formula` reads `core` only through `part`.
+fn is_only_read_through(formula: &Expression, core: &Expression, part: &Expression) -> bool {
+    let replaced = formula.substitute(part, &number("0"), &formula.span);
+    replaced.count(&|inner| inner == core) == 0
+}
+
+/// Returns whether a part limits `core`: it is a minimum or a maximum of `core` and a constant.
+pub(super) fn is_limit_of(part: &Expression, core: &Expression) -> bool {
+    match &part.kind {
+        Kind::Binary(Operator::Min | Operator::Max, a, b) => {
+            **a == *core && !b.varies() || **b == *core && !a.varies()
+        }
+        _ => false,
+    }
+}
+
+/// Returns the cost of the multiplications that compute a formula from its core by sums, products, squares, minima and absolute
+/// values. Returns `None` if these operations do not compute the formula. For example, `3 * x * (1 - x)` costs 3: 1 for the
+/// product with a constant, and 2 for the product of two numbers.
+pub(super) fn products_of(formula: &Expression, core: &Expression) -> Option<u32> {
+    products_with(&mut HashMap::new(), formula, core)
+}
+
+/// Returns the cost of multiplications, as [`products_of`] does. A part that was seen before costs nothing; `known` has these
+/// parts.
+fn products_with(
+    known: &mut HashMap<*const Expression, Option<u32>>,
+    formula: &Expression,
+    core: &Expression,
+) -> Option<u32> {
+    let place = ptr::from_ref(formula);
+    if let Some(cost) = known.get(&place) {
+        return *cost;
+    }
+    let cost = new_products(known, formula, core);
+    known.insert(place, cost.map(|_| 0));
+    cost
+}
+
+fn new_products(
+    known: &mut HashMap<*const Expression, Option<u32>>,
+    formula: &Expression,
+    core: &Expression,
+) -> Option<u32> {
+    if formula == core {
+        return Some(0);
+    }
+    let mut products_of = |part: &Expression, core: &Expression| products_with(known, part, core);
+    if !formula.varies() {
+        return Some(0);
+    }
+    match &formula.kind {
+        Kind::Unary(Function::Negate | Function::Abs, a) => products_of(a, core),
+        Kind::Binary(Operator::Add | Operator::Sub | Operator::Min | Operator::Max, a, b) => {
+            Some(products_of(a, core)? + products_of(b, core)?)
+        }
+        Kind::Binary(operator @ (Operator::Mul | Operator::Div), a, b) => {
+            let is_divisor_fixed = !b.varies();
+            if *operator == Operator::Div && !is_divisor_fixed {
+                return None;
+            }
+            let both = products_of(a, core)? + products_of(b, core)?;
+            let factor = if is_divisor_fixed { b } else { a };
+            let is_shift = !factor.varies() && power_of_two(factor, *operator).is_some();
+            match (is_shift, operator) {
+                (true, _) => Some(both),
+                (false, Operator::Mul) if !factor.varies() => Some(both + 1),
+                (false, Operator::Mul) => Some(both + PRODUCT),
+                (false, _) => None,
+            }
+        }
+        Kind::Binary(Operator::Mod, a, b) if modulus_exponent(b).is_some() && !rounds(a) => {
+            products_of(a, core)
+        }
+        Kind::Binary(Operator::Power, a, b) if **b == number("2") => {
+            Some(products_of(a, core)? + PRODUCT)
+        }
+        _ => None,
+    }
+}
+
+/// Returns whether a formula has a constant that is rounded. For example, `0.3 * x` has one, and `0.75 * x` has none.
+fn rounds(formula: &Expression) -> bool {
+    formula.count(&|part| !part.varies() && dyadic(part).is_none()) > 0
+}
+
+/// Returns k if the divisor of a remainder is the constant 2^k, and `None` for any other divisor.
+pub(super) fn modulus_exponent(divisor: &Expression) -> Option<i32> {
+    if divisor.varies() { None } else { power_of_two(divisor, Operator::Mul) }
+}
+
+/// Returns k if `b` is the remainder of `a` by the constant 2^k, so that a − b is the greatest multiple of 2^k that is not above
+/// a. For example, `floor(x)` is x − x % 1, which gives 0.
+pub(super) fn floor_of(a: &Expression, b: &Expression) -> Option<i32> {
+    match &b.kind {
+        Kind::Binary(Operator::Mod, of, divisor) if **of == *a => modulus_exponent(divisor),
+        _ => None,
+    }
+}
+
+/// Parses a formula. The text must be valid.
+pub(super) fn number(text: &str) -> Expression {
+    glint_formula::parse(text).expect("a formula")
+}
+
+/// Returns a constant as a raw value and its number of fraction bits, if it is exact with at most 18 fraction bits and 32 bits
+/// in all. For example, `3/4` gives (3, 2). Returns `None` otherwise.
+pub(super) fn dyadic(part: &Expression) -> Option<(i128, i32)> {
+    let value = part.rational()?;
+    for frac in 0..=MOST_CONSTANT_BITS {
+        let scaled = value.clone() * RBig::from(1u64 << frac);
+        if scaled.is_int() {
+            let raw = i64::try_from(scaled.numerator().clone()).ok()?;
+            return (raw.unsigned_abs() < 1 << 32).then_some((raw.into(), frac as i32));
+        }
+    }
+    None
+}
+
+/// Returns the exponent k if a multiplication by the constant `part`, or a division by it, equals a multiplication by 2^k. For
+/// example, a division by 8 gives −3. Returns `None` for any other constant.
+pub(super) fn power_of_two(part: &Expression, operator: Operator) -> Option<i32> {
+    let (raw, frac) = dyadic(part)?;
+    let is_power = raw > 0 && raw.count_ones() == 1;
+    if !is_power {
+        return None;
+    }
+    let exponent = raw.trailing_zeros() as i32 - frac;
+    Some(if operator == Operator::Div { -exponent } else { exponent })
+}
