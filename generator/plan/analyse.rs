@@ -567,7 +567,8 @@ fn raw_limits(value: Enclosure, format: Format) -> (i128, i128) {
     // A raw value is an integer.
     let (first, last) = (low.ceil(), high.floor());
     let (first, last) = if first <= last { (first, last) } else { (low.floor(), high.ceil()) };
-    (first.max(least as f64) as i128, last.min(most as f64) as i128)
+    // The ends of a wide format are no f64, so that integers are compared.
+    ((first as i128).max(least), (last as i128).min(most))
 }
 
 /// Checks that the bits that a node drops at the top are copies of the sign. Fails if the value may exceed the format.
