@@ -11,7 +11,9 @@
 use glint_base::fixed::{Format, Rounding, exp2};
 use glint_formula::Enclosure;
 
-use super::node::{Approximation, NodeId, Operation, PlanNode, middle, normalising_shifts};
+use super::node::{
+    Accuracy, Approximation, NodeId, Operation, PlanNode, StatedValue, middle, normalising_shifts,
+};
 use super::plan::ExpressionPlan;
 
 /// The largest number of integer parts that are analysed one by one.
@@ -120,7 +122,7 @@ impl ErrorAnalysis<'_> {
             let is_unknown = |input: &NodeId| !known.values[input.0].is_limited();
             if !self.needed[id.0] {
                 known.values.push(NodeError::exactly(NOTHING));
-            } else if node.exact.is_none() && !is_choice && inputs.iter().any(is_unknown) {
+            } else if !node.has_stated_error() && !is_choice && inputs.iter().any(is_unknown) {
                 known.values.push(NodeError::UNKNOWN);
             } else if let Operation::Normalise { word, by_pairs } = node.operation {
                 return self.each_shift(word, by_pairs, &known, operands, visit);
@@ -273,10 +275,9 @@ impl ErrorAnalysis<'_> {
         operands: &[(&str, Enclosure)],
     ) -> Result<NodeError, Undecided> {
         let node = self.plan.node(id);
-        if let Some(formula) = &node.exact {
-            let value = formula.enclose(operands).ok().filter(|value| value.is_finite());
-            let what = "its value has no limit";
-            return value.map(NodeError::exactly).ok_or(Undecided { node: id, what });
+        if node.has_stated_error() {
+            let value = stated_value(node, operands);
+            return value.ok_or(Undecided { node: id, what: "its value has no limit" });
         }
         let input = |id: NodeId| values[id.0];
         let own_errors = node.source.is_none() || self.only.is_none() || self.only == node.source;
@@ -309,7 +310,13 @@ impl ErrorAnalysis<'_> {
                 let a = input(*a);
                 condition(is_nonzero(a.ideal), is_nonzero(a.actual), a.error == NOTHING)
             }
-            Operation::Choose { condition, cases } => chosen(*condition, *cases, values),
+            Operation::Choose { condition, cases } => {
+                let value = chosen(*condition, *cases, values);
+                match value.is_limited() {
+                    true => value,
+                    false => taken_case(node, values, operands).unwrap_or(value),
+                }
+            }
             Operation::Scale(a) => {
                 let factor = exp2(self.plan.node(*a).format.frac - node.format.frac);
                 let NodeError { ideal, error, .. } = input(*a);
@@ -484,6 +491,34 @@ fn chosen(condition: NodeId, cases: [NodeId; 2], values: &[NodeError]) -> NodeEr
         return taken;
     }
     NodeError::new(ideal, taken.error + (taken.ideal - other.ideal).hull(NOTHING))
+}
+
+/// Returns the value and the error of a node whose stated value alone limits its error. Returns `None` if the formula has no finite
+/// value for some of the operands.
+fn stated_value(node: &PlanNode, operands: &[(&str, Enclosure)]) -> Option<NodeError> {
+    let StatedValue { formula, accuracy } = node.stated.as_ref()?;
+    let ideal = formula.enclose(operands).ok().filter(|value| value.is_finite())?;
+    let half = exp2(-node.format.frac) / 2.0;
+    Some(match accuracy {
+        Accuracy::Nearest => NodeError::new(ideal, Enclosure::between(-half, half)),
+        Accuracy::Exact | Accuracy::FromInputs => NodeError::exactly(ideal),
+    })
+}
+
+/// Returns the value of a choice whose other case has no limits, from the stated formula. Returns `None` if the node has no such
+/// formula, if the box does not decide which case the hardware takes, or if this case or the formula has no limits.
+fn taken_case(
+    node: &PlanNode,
+    values: &[NodeError],
+    operands: &[(&str, Enclosure)],
+) -> Option<NodeError> {
+    let Operation::Choose { condition, cases } = &node.operation else { return None };
+    let bit = fixed(values[condition.0].actual)?;
+    let taken = values[cases[bit as usize].0];
+    let stated = node.stated.as_ref()?;
+    let ideal = stated.formula.enclose(operands).ok().filter(|value| value.is_finite())?;
+    let is_known = taken.actual.is_finite();
+    is_known.then(|| NodeError { ideal, error: taken.actual - ideal, actual: taken.actual })
 }
 
 /// Returns the values of a bit that is 1 for the whole box, 0 for the whole box, or undecided.

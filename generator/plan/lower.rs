@@ -8,6 +8,7 @@
 mod direction;
 mod division;
 mod exponential;
+mod nearest;
 mod quotient;
 mod root;
 mod shape;
@@ -23,11 +24,13 @@ use glint_formula::{Comparison, Enclosure, Expression, Function, Kind, Operator}
 
 use super::boxes::ResultProof;
 use super::facts::{has_fact, is_polynomial};
-use super::node::{Approximation, NodeId, Operation};
+use super::node::{Accuracy, Approximation, NodeId, Operation, StatedValue};
 use super::plan::ExpressionPlan;
 use super::range::{LIMIT_THE_OPERANDS, RangeMemo};
 use super::refusal::PlanRefusal;
-use super::statement::{ExpressionStatement, StatedOverflow, StatedResult, StatedWidth};
+use super::statement::{
+    ExpressionStatement, HALF_A_UNIT, StatedOverflow, StatedResult, StatedWidth,
+};
 use super::uses::{PartUses, reads_always};
 use shape::{
     core_of, dominators, dyadic, floor_of, is_limit_of, modulus_exponent, number, power_of_two,
@@ -50,6 +53,9 @@ const MANY_OCTAVES: f64 = 16.0;
 /// The widest number whose square is exact, in bits. A wider one is shortened first, because its square, or a sum of such squares,
 /// would have more bits than a net.
 const WIDEST_EXACT_SQUARE: u32 = 30;
+
+/// A quotient is computed with a reciprocal if the result has no more bits than this.
+const WIDEST_RATIO: i32 = 28;
 
 /// The number of divisions of the domain in a proof of the error of a single node.
 const DIVISIONS_FOR_AN_ERROR: usize = 64;
@@ -209,8 +215,11 @@ impl<'s> Lowering<'s> {
     /// many bits, no finite values, or no rule.
     fn result(&mut self, number: usize) -> Result<NodeId, PlanRefusal> {
         let result = &self.statement.results[number];
-        let node = self.part(&result.formula)?;
         let values = self.range(&result.formula)?;
+        let node = match self.nearest_where_needed(result, values)? {
+            Some(node) => node,
+            None => self.part(&result.formula)?,
+        };
         let frac = result.fraction as i32;
         let unit = exp2(frac);
         let places = self.plan.node(node).format.frac - frac;
@@ -229,6 +238,24 @@ impl<'s> Lowering<'s> {
             Operation::Operand(_) => self.plan.copy(&name, node),
             _ => Ok(node),
         }
+    }
+
+    /// Returns the node of a result that is the nearest value: if no larger error is allowed, or if the result is a quotient of so many
+    /// bits that the product with a reciprocal is too wide. Returns `None` for another result, and for a formula that is no quotient
+    /// and no root of exact numbers. `values` must contain the values of the formula. Fails if a part has too many bits.
+    fn nearest_where_needed(
+        &mut self,
+        result: &StatedResult,
+        values: Enclosure,
+    ) -> Result<Option<NodeId>, PlanRefusal> {
+        let unit = exp2(result.fraction as i32);
+        let largest = values.low.abs().max(values.high.abs()) * unit;
+        let is_wide = matches!(result.formula.kind, Kind::Binary(Operator::Div, ..))
+            && largest >= exp2(WIDEST_RATIO);
+        if result.error > HALF_A_UNIT && !is_wide {
+            return Ok(None);
+        }
+        self.nearest(&result.formula, result.fraction as i32)
     }
 
     /// Returns the node of the result with the index `number` in its stated width, or `node` itself if no width is stated.
@@ -873,7 +900,10 @@ impl<'s> Lowering<'s> {
     fn is_exact(&self, node: NodeId) -> bool {
         let needed = self.plan.needed_by(node);
         let mut nodes = self.plan.nodes.iter().zip(needed);
-        nodes.all(|(node, is_needed)| !is_needed || node.source.is_none())
+        nodes.all(|(node, is_needed)| {
+            let is_nearest = |stated: &StatedValue| stated.accuracy == Accuracy::Nearest;
+            !is_needed || node.source.is_none() && !node.stated.as_ref().is_some_and(is_nearest)
+        })
     }
 }
 

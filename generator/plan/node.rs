@@ -30,12 +30,42 @@ pub struct PlanNode {
     pub limits: Enclosure,
     /// An interval that contains the value that the hardware computes, for the same operands. The interval may be infinite.
     pub actual_limits: Enclosure,
-    /// A formula whose value the hardware has exactly, for all operands for which the node matters. The rewriting supplies it for
-    /// nodes that correct an error of the nodes before them; `None` for the others.
-    pub exact: Option<Arc<Expression>>,
+    /// The value of the node by a formula of the operands, for all operands for which the node matters. The rewriting supplies it
+    /// where the nodes before this one do not show the value; `None` for the others.
+    pub stated: Option<StatedValue>,
     /// The index of the rounding operation in the list of numbers of fraction bits that the planner chooses. `None` for an
     /// exact operation.
     pub source: Option<usize>,
+}
+
+/// The value of a node, stated by the formula that it computes.
+#[derive(Clone, Debug)]
+pub struct StatedValue {
+    /// The formula.
+    pub formula: Arc<Expression>,
+    /// How near the hardware's value is to the formula.
+    pub accuracy: Accuracy,
+}
+
+/// How near the hardware's value of a node is to the formula that the node computes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Accuracy {
+    /// The hardware has the value of the formula. For example, a node that corrects an estimate of a quotient has its integer part.
+    Exact,
+    /// The hardware has the value of the formula, rounded to the nearest value with the fraction bits of the node. Of two values
+    /// that are equally near, it has the larger one.
+    Nearest,
+    /// The errors of the inputs decide. The formula gives the ideal value of a choice where the case that the hardware does not
+    /// take has no limits.
+    FromInputs,
+}
+
+impl PlanNode {
+    /// Returns whether the stated value of the node alone limits its error, whatever the errors of its inputs are.
+    pub(super) fn has_stated_error(&self) -> bool {
+        let accuracy = self.stated.as_ref().map(|stated| stated.accuracy);
+        matches!(accuracy, Some(Accuracy::Exact | Accuracy::Nearest))
+    }
 }
 
 /// An operation on raw values. If two inputs have different numbers of fraction bits, zeros are appended to the input with

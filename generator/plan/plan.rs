@@ -158,7 +158,7 @@ impl ExpressionPlan {
             range,
             limits: ANYTHING,
             actual_limits: ANYTHING,
-            exact: None,
+            stated: None,
             source: None,
         });
         Ok(NodeId(self.nodes.len() - 1))
@@ -181,7 +181,7 @@ impl ExpressionPlan {
         let is_same = |node: &PlanNode| {
             node.source.is_none()
                 && node.limits == ANYTHING
-                && node.exact.is_none()
+                && node.stated.is_none()
                 && node.format == format
                 && node.operation.identity().as_ref() == Some(&wanted)
         };

@@ -69,7 +69,7 @@ pub enum StatedOverflow {
 }
 
 /// The largest error of rounding to the nearest value, in units of the last bit.
-const HALF_A_UNIT: f64 = 0.5;
+pub(super) const HALF_A_UNIT: f64 = 0.5;
 
 impl ExpressionStatement {
     /// Returns the name of each operand with its exact value, from raw values in the order of the operands.

@@ -9,8 +9,8 @@ use std::sync::Arc;
 use glint_base::fixed::{Format, exp2};
 use glint_formula::{Enclosure, Expression, Function, Kind, Operator};
 
-use super::root::holding;
 use super::Lowering;
+use super::root::holding;
 use super::shape::number;
 use crate::node::NodeId;
 use crate::refusal::PlanRefusal;

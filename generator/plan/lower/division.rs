@@ -12,12 +12,18 @@ use glint_formula::{Comparison, Enclosure, Expression, Function, Kind, Operator,
 
 use super::shape::number;
 use super::{KnownPart, Lowering};
-use crate::node::NodeId;
+use crate::node::{Accuracy, NodeId, Operation, PlanNode, StatedValue};
 use crate::refusal::PlanRefusal;
 use crate::uses::reads_always;
 
 /// The largest error of the estimate.
 const LARGEST_ERROR: f64 = 0.25;
+
+/// The number of bits of a digit, if a quotient is computed digit by digit.
+const DIGIT_BITS: u32 = 16;
+
+/// The widest quotient that a single estimate gives, in bits.
+const MOST_QUOTIENT_BITS: u32 = 22;
 
 /// The guard bits that the estimate has at least, and the most that are tried.
 const GUARD_BITS: std::ops::RangeInclusive<i32> = 4..=8;
@@ -121,6 +127,18 @@ impl Lowering<'_> {
         b: &Expression,
         span: &TextSpan,
     ) -> Result<[NodeId; 2], PlanRefusal> {
+        self.whole_quotient_within(a, b, span, None)
+    }
+
+    /// Returns what [`Self::whole_quotient`] returns. `values` has limits of the quotient, or `None` if they follow from the formulas.
+    /// Fails as [`Self::whole_quotient`] does.
+    fn whole_quotient_within(
+        &mut self,
+        a: &Expression,
+        b: &Expression,
+        span: &TextSpan,
+        values: Option<Enclosure>,
+    ) -> Result<[NodeId; 2], PlanRefusal> {
         let (dividend, divisor) = (self.part(a)?, self.part(b)?);
         if !self.is_exact(dividend) || !self.is_exact(divisor) {
             let message = "Glint computes an integer quotient or a remainder only of values that are not rounded";
@@ -143,11 +161,22 @@ impl Lowering<'_> {
             binary(Operator::Sub, &quotient, &binary(Operator::Mod, &quotient, &number("1")));
         let outer = self.uses.clone();
         self.add_readers_of(&[&whole, &remainder]);
-        let nodes = self.corrected_quotient(a, b, &quotient);
+        let values = match values {
+            Some(values) => values,
+            None => self.range(&quotient)?,
+        };
+        let bits =
+            Format::holding(values.low.floor() as i128, values.high.ceil() as i128, 0).width();
+        let nodes = match bits > MOST_QUOTIENT_BITS {
+            true => self.quotient_by_digits(a, b, span),
+            false => self.corrected_quotient(a, b, values),
+        };
         let uses = mem::replace(&mut self.uses, outer);
         let nodes = nodes?;
         for (node, part) in nodes.into_iter().zip([whole, remainder]) {
-            self.plan.nodes[node.0].exact = Some(Arc::new(part.clone()));
+            let formula = Arc::new(part.clone());
+            let stated = StatedValue { formula, accuracy: Accuracy::Exact };
+            self.plan.nodes[node.0].stated = Some(stated);
             let uses = uses.clone();
             self.known.push(KnownPart { part, node, uses, is_limited: false });
         }
@@ -168,22 +197,58 @@ impl Lowering<'_> {
         }
     }
 
-    /// Returns the nodes of the integer part of the quotient a / b, and of its remainder. Fails if a node has too many bits.
+    /// Returns the nodes of the integer part of the quotient a / b, and of its remainder, for a quotient of many bits. The
+    /// dividend is divided by 2^16 times the divisor, and the remainder of that by the divisor, as in a division by hand whose digits
+    /// have 16 bits. The products have fewer bits than with one estimate. Fails if a node has too many bits.
+    fn quotient_by_digits(
+        &mut self,
+        a: &Expression,
+        b: &Expression,
+        span: &TextSpan,
+    ) -> Result<[NodeId; 2], PlanRefusal> {
+        let binary = |operator, a: &Expression, b: &Expression| {
+            let kind = Kind::Binary(operator, Arc::new(a.clone()), Arc::new(b.clone()));
+            Expression::new(kind, span.clone())
+        };
+        let digit = exp2(DIGIT_BITS as i32);
+        let multiple = binary(Operator::Mul, b, &number(&digit.to_string()));
+        let [upper_quotient, _] = self.whole_quotient(a, &multiple, span)?;
+        let rest = binary(Operator::Mod, a, &multiple);
+        // The remainder is less than the multiple, so that the second quotient is less than the factor.
+        let values = Some(Enclosure::between(0.0, digit));
+        let [lower_quotient, last] = self.whole_quotient_within(&rest, b, span, values)?;
+        let upper_quotient =
+            self.plan.scale("quotient_upper", upper_quotient, DIGIT_BITS as i32)?;
+        let whole = self.plan.add("quotient_of_digits", upper_quotient, lower_quotient)?;
+        // The results have stated values of their own.
+        let [whole, last] =
+            [("whole_of_digits", whole), ("last_remainder", last)].map(|(name, node)| {
+                let copy = PlanNode {
+                    name: name.to_owned(),
+                    stated: None,
+                    ..self.plan.node(node).clone()
+                };
+                self.plan.push_copy(&copy, Operation::Scale(node))
+            });
+        Ok([whole, last])
+    }
+
+    /// Returns the nodes of the integer part of the quotient a / b, and of its remainder. `values` has the limits of the quotient.
+    /// Fails if a node has too many bits.
     fn corrected_quotient(
         &mut self,
         a: &Expression,
         b: &Expression,
-        quotient: &Expression,
+        values: Enclosure,
     ) -> Result<[NodeId; 2], PlanRefusal> {
         let (dividend, divisor) = (self.part(a)?, self.part(b)?);
         let divisors = self.range_here(b)?;
-        let estimate = self.estimated_quotient(a, b, quotient)?;
+        let estimate = self.estimated_quotient(a, b, values)?;
 
         let frac = self.plan.node(estimate).format.frac.max(2);
         let quarter = self.plan.constant("quarter", 1 << (frac - 2), frac)?;
         let below = self.plan.subtract("quotient_below", estimate, quarter)?;
         // The integer part, or one less.
-        let values = self.range(quotient)?;
         let (least, most) = (values.low.floor() as i128, values.high.floor() as i128);
         let format = Format::holding(least - 1, most, 0);
         let floor = self.plan.shorten("quotient_floor", below, 0, Rounding::Truncate)?;
@@ -215,14 +280,13 @@ impl Lowering<'_> {
         &mut self,
         a: &Expression,
         b: &Expression,
-        quotient: &Expression,
+        values: Enclosure,
     ) -> Result<NodeId, PlanRefusal> {
-        let values = self.range(quotient)?;
         let bits =
             Format::holding(values.low.floor() as i128, values.high.ceil() as i128, 0).width();
         for guard in GUARD_BITS {
             let before = self.fixed_guard.replace(bits as i32 + guard - self.finest);
-            let estimate = self.quotient(a, b, quotient);
+            let estimate = self.quotient_within(a, b, values);
             self.fixed_guard = before;
             let estimate = estimate?;
             let unit = exp2(-self.plan.node(estimate).format.frac);

@@ -13,8 +13,8 @@ use std::sync::Arc;
 use glint_base::fixed::{Format, Rounding, exp2};
 use glint_formula::{Enclosure, Expression, Function, Kind, Operator, TextSpan};
 
-use super::root::FEW_OCTAVES;
 use super::Lowering;
+use super::root::FEW_OCTAVES;
 use super::shape::number;
 use crate::node::NodeId;
 use crate::refusal::PlanRefusal;

@@ -23,9 +23,19 @@ impl Lowering<'_> {
         b: &Expression,
         part: &Expression,
     ) -> Result<NodeId, PlanRefusal> {
+        let values = self.range(part)?;
+        self.quotient_within(a, b, values)
+    }
+
+    /// Returns the node of the quotient a / b, whose values lie within `values`. Fails as [`Self::quotient`] does.
+    pub(super) fn quotient_within(
+        &mut self,
+        a: &Expression,
+        b: &Expression,
+        values: Enclosure,
+    ) -> Result<NodeId, PlanRefusal> {
         let dividend = self.part(a)?;
         let divisor = self.part(b)?;
-        let values = self.range(part)?;
         let divisors = self.range(b)?;
         let largest = match self.is_proper(a, b) {
             true => 1.0,
@@ -100,7 +110,7 @@ impl Lowering<'_> {
         if is_never_larger {
             self.plan.nodes[shifted.0].actual_limits = limits;
         }
-        let shifted = self.rounding(finest + octave.exponent, |own, frac| {
+        let shifted = self.rounding(finest - octave.exponent, |own, frac| {
             if own.plan.node(shifted).format.width() <= WIDEST_FACTOR {
                 return Ok(shifted);
             }

@@ -11,7 +11,7 @@ use glint_base::fixed::{Format, Rounding, exp2};
 use glint_formula::{Enclosure, Expression, Function, Kind, Operator, RBig};
 
 use super::{Lowering, WIDEST_OPERAND};
-use crate::node::NodeId;
+use crate::node::{Accuracy, NodeId, StatedValue};
 use crate::refusal::PlanRefusal;
 
 /// If the largest value of a domain is less than this times the smallest, one table covers the domain.
@@ -132,7 +132,12 @@ impl Lowering<'_> {
         }
         let zero = self.plan.constant("zero", 0, self.plan.node(shifted).format.frac)?;
         let is_some = self.plan.nonzero("is_nonzero", octave.word)?;
-        self.plan.choose("power_or_zero", is_some, [zero, shifted]).map(Some)
+        let chosen = self.plan.choose("power_or_zero", is_some, [zero, shifted])?;
+        // A word that was rounded to 0 has no power in the table.
+        let formula = Arc::new(part.clone());
+        let stated = StatedValue { formula, accuracy: Accuracy::FromInputs };
+        self.plan.nodes[chosen.0].stated = Some(stated);
+        Ok(Some(chosen))
     }
 
     /// Normalises a node whose values are not below 0, apart from rounding errors. The word is shifted to the left, so that a
