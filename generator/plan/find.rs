@@ -39,6 +39,9 @@ const STYLES: [PlanStyle; 6] = [
     PlanStyle { table_error: 0.96, centres_fractions: false, keeps_functions: true },
 ];
 
+/// A table with at least this many operands is searched in one style only.
+const LONG_DOMAIN: u64 = 1 << 22;
+
 /// The most by which an evaluation of a formula can exceed an error, in units of the last bit.
 const EVALUATION_ERROR: f64 = 1e-6;
 
@@ -175,8 +178,13 @@ fn smallest_candidate(statement: &ExpressionStatement) -> Result<PlanCandidate, 
             }
         };
         let cells = candidate.plan.total_cells();
+        let has_long_table = has_long_table(&candidate.plan);
         if smallest.as_ref().is_none_or(|(least, _)| cells < *least) {
             smallest = Some((cells, candidate));
+        }
+        if has_long_table {
+            // Each search of such a table takes seconds, and the other styles would save few look-up tables.
+            break;
         }
     }
     match (smallest, first_refusal) {
@@ -184,6 +192,14 @@ fn smallest_candidate(statement: &ExpressionStatement) -> Result<PlanCandidate, 
         (None, Some(refusal)) => Err(refusal),
         (None, None) => unreachable!("there are styles to try"),
     }
+}
+
+/// Returns whether a table of the plan has so many operands that the planner searches it only once.
+fn has_long_table(plan: &ExpressionPlan) -> bool {
+    plan.approximations().iter().any(|approximation| {
+        let (first, last) = approximation.function.domain;
+        last.abs_diff(first) >= LONG_DOMAIN
+    })
 }
 
 /// Returns a plan in the given style that keeps the allowed errors, as far as `divisions` divisions of the domain show. Fails

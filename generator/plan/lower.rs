@@ -33,8 +33,8 @@ use super::statement::{
 };
 use super::uses::{PartUses, reads_always};
 use shape::{
-    core_of, dominators, dyadic, floor_of, is_limit_of, modulus_exponent, number, power_of_two,
-    products_of,
+    core_of, dominators, dyadic, floor_of, is_limit_of, is_size_of, modulus_exponent, number,
+    power_of_two, products_of,
 };
 
 /// The widest operand of a table of polynomials, in bits. A wider one is shortened first.
@@ -128,6 +128,16 @@ struct KnownPart {
     is_limited: bool,
 }
 
+/// The guard bits of the roundings in an estimate.
+#[derive(Clone, Copy)]
+struct FixedGuard {
+    /// The guard bits that each rounding has beyond the finest result.
+    guard: i32,
+    /// The number of integer bits of the estimate, for factors whose relative error counts. A number that is as large as the estimate
+    /// does without these bits.
+    value_bits: i32,
+}
+
 /// The state of the rewriting of formulas as a plan.
 pub(super) struct Lowering<'s> {
     statement: &'s ExpressionStatement,
@@ -145,7 +155,7 @@ pub(super) struct Lowering<'s> {
     /// The number of rounding operations so far.
     sources: usize,
     /// The guard bits of roundings within a computation whose result is corrected, so that the planner does not choose them.
-    fixed_guard: Option<i32>,
+    fixed_guard: Option<FixedGuard>,
     /// The largest number of fraction bits among the results.
     finest: i32,
 }
@@ -355,8 +365,8 @@ impl<'s> Lowering<'s> {
         frac: i32,
         make: impl FnOnce(&mut Self, i32) -> Result<NodeId, PlanRefusal>,
     ) -> Result<NodeId, PlanRefusal> {
-        if let Some(guard) = self.fixed_guard {
-            return make(self, frac + guard);
+        if let Some(FixedGuard { guard, value_bits }) = self.fixed_guard {
+            return make(self, frac + guard + value_bits);
         }
         let source = self.sources;
         self.sources += 1;
@@ -471,9 +481,18 @@ impl<'s> Lowering<'s> {
         core: &Expression,
     ) -> Result<Expression, PlanRefusal> {
         let mut operand = core.clone();
-        for dominator in dominators(part, core) {
+        let inner = dominators(part, core);
+        for (at, dominator) in inner.iter().enumerate() {
             if is_limit_of(dominator, &operand) {
-                operand = dominator.clone();
+                operand = (*dominator).clone();
+            } else if is_size_of(dominator, &operand) {
+                // A root or a logarithm of an absolute value is computed octave by octave.
+                for outer in inner[at + 1..].iter().chain([&part]) {
+                    if self.spans_octaves(outer, dominator)? {
+                        operand = (*dominator).clone();
+                        break;
+                    }
+                }
             }
         }
         loop {
@@ -637,15 +656,22 @@ impl<'s> Lowering<'s> {
                 self.plan.multiply("square", root, root)
             }
             Operator::Power => {
+                self.range(part)?;
                 let power = exponential::written_with_logarithm(a, b, &part.span);
-                if self.range(a)?.low != 0.0 || self.range(b)?.low <= 0.0 {
+                if self.range(a)?.low != 0.0 || self.range(b)?.low < 0.0 {
                     return self.part(&power);
                 }
-                // The logarithm of 0 has no value. For an exponent above 0, the power of 0 is 0.
-                let zero = Arc::new(number("0"));
-                let (left, right) = (Arc::new(a.clone()), zero.clone());
-                let is_some = Comparison { left, right, or_equal: false };
-                self.choice(&is_some, &power, &zero)
+                // The logarithm of 0 has no value. The power of 0 is 0 for an exponent above 0, and 1 for the exponent 0.
+                let is_positive = |part: &Expression| Comparison {
+                    left: Arc::new(part.clone()),
+                    right: Arc::new(number("0")),
+                    or_equal: false,
+                };
+                let powers = [number("0"), number("1")].map(Arc::new);
+                let [zero, one] = powers;
+                let kind = Kind::If(is_positive(b), zero, one);
+                let of_zero = Expression::new(kind, part.span.clone());
+                self.choice(&is_positive(a), &power, &of_zero)
             }
             Operator::Mod if modulus_exponent(b).is_some() => {
                 let [_, fraction] = self.division(a, modulus_exponent(b).unwrap_or(0))?;

@@ -324,12 +324,16 @@ impl ExpressionPlan {
         self.subtract(name, zero, a)
     }
 
+    /// Adds the product of two nodes, and returns its node. The wider factor comes first, so that one multiplier for all products
+    /// of a sequential core has as few bits as possible. Fails if the node has more than 64 bits.
     pub(super) fn multiply(
         &mut self,
         name: &str,
         a: NodeId,
         b: NodeId,
     ) -> Result<NodeId, PlanRefusal> {
+        let width = |id: NodeId| self.node(id).format.width();
+        let [a, b] = if width(b) > width(a) { [b, a] } else { [a, b] };
         let (first, second) = (self.node(a), self.node(b));
         let range = if a == b {
             let [low, high] =

@@ -11,7 +11,7 @@ use glint_base::fixed::{Format, Rounding, exp2};
 use glint_formula::{Comparison, Enclosure, Expression, Function, Kind, Operator, TextSpan};
 
 use super::shape::number;
-use super::{KnownPart, Lowering};
+use super::{FixedGuard, KnownPart, Lowering};
 use crate::node::{Accuracy, NodeId, Operation, PlanNode, StatedValue};
 use crate::refusal::PlanRefusal;
 use crate::uses::reads_always;
@@ -168,6 +168,7 @@ impl Lowering<'_> {
         let bits =
             Format::holding(values.low.floor() as i128, values.high.ceil() as i128, 0).width();
         let nodes = match bits > MOST_QUOTIENT_BITS {
+            true if values.low < 0.0 => self.quotient_of_size(a, b, span),
             true => self.quotient_by_digits(a, b, span),
             false => self.corrected_quotient(a, b, values),
         };
@@ -195,6 +196,52 @@ impl Lowering<'_> {
             let reads_one = parts.iter().any(|part| reads_always(&result.formula, part));
             *reads |= reads_one && result.promise == results[first].promise;
         }
+    }
+
+    /// Returns the nodes of the integer part of the quotient a / b, and of its remainder, for a dividend that may be below 0. Let u be
+    /// the last place of both. The dividend −a − u is not below 0, and floor(a / b) is −1 − floor((−a − u) / b). Fails if a node has
+    /// too many bits.
+    fn quotient_of_size(
+        &mut self,
+        a: &Expression,
+        b: &Expression,
+        span: &TextSpan,
+    ) -> Result<[NodeId; 2], PlanRefusal> {
+        let with_kind = |kind: Kind| Expression::new(kind, span.clone());
+        let (dividend, divisor) = (self.part(a)?, self.part(b)?);
+        let frac = self.plan.node(dividend).format.frac.max(self.plan.node(divisor).format.frac);
+        let unit = Arc::new(number(&exp2(-frac).to_string()));
+        let zero = Arc::new(number("0"));
+        let a = Arc::new(a.clone());
+        let negated = Arc::new(with_kind(Kind::Unary(Function::Negate, a.clone())));
+        let flipped = Arc::new(with_kind(Kind::Binary(Operator::Sub, negated, unit.clone())));
+        let is_positive = Comparison { left: a.clone(), right: zero, or_equal: true };
+        let size = with_kind(Kind::If(is_positive, a, flipped));
+        let node = {
+            let zero = self.plan.constant("zero", 0, 0)?;
+            let is_negative = self.plan.less("dividend_is_negative", dividend, zero)?;
+            let negated = self.plan.negate("dividend_negated", dividend)?;
+            let unit = self.plan.constant("unit", 1, frac)?;
+            let flipped = self.plan.subtract("dividend_flipped", negated, unit)?;
+            self.plan.choose("dividend_size", is_negative, [dividend, flipped])?
+        };
+        let most = self.plan.node(node).range.1;
+        let format = Format::holding(0, most, self.plan.node(node).format.frac);
+        let node = self.plan.narrow("dividend_without_sign", node, format, Rounding::Truncate)?;
+        let uses = self.uses.clone();
+        self.known.push(KnownPart { part: size.clone(), node, uses, is_limited: false });
+        let [whole, rest] = self.whole_quotient(&size, b, span)?;
+
+        let zero = self.plan.constant("zero", 0, 0)?;
+        let is_negative = self.plan.less("dividend_is_negative", dividend, zero)?;
+        let below = self.plan.constant("minus_one", -1, 0)?;
+        let flipped = self.plan.subtract("whole_flipped", below, whole)?;
+        let whole = self.plan.choose("whole_with_sign", is_negative, [whole, flipped])?;
+        let unit = self.plan.constant("unit", 1, frac)?;
+        let less = self.plan.subtract("divisor_less_unit", divisor, unit)?;
+        let flipped = self.plan.subtract("rest_flipped", less, rest)?;
+        let rest = self.plan.choose("rest_with_sign", is_negative, [rest, flipped])?;
+        Ok([whole, rest])
     }
 
     /// Returns the nodes of the integer part of the quotient a / b, and of its remainder, for a quotient of many bits. The
@@ -253,25 +300,71 @@ impl Lowering<'_> {
         let format = Format::holding(least - 1, most, 0);
         let floor = self.plan.shorten("quotient_floor", below, 0, Rounding::Truncate)?;
         let first = self.plan.narrow("quotient_first", floor, format, Rounding::Truncate)?;
+        let dividends = self.range_here(a)?;
+        // If the divisor can be much larger than the dividend, a negative integer would give a rest of many bits.
+        let is_clamped = least == 0 && dividends.high < divisors.high / 4.0;
+        let first = match is_clamped {
+            true => {
+                let zero = self.plan.constant("zero", 0, 0)?;
+                self.plan.maximum("quotient_not_negative", first, zero)?
+            }
+            false => first,
+        };
         let next = {
             let one = self.plan.constant("one", 1, 0)?;
             self.plan.add("quotient_next", first, one)?
         };
         // The remainder, or the remainder plus the divisor.
         let product = self.plan.multiply("multiple", first, divisor)?;
-        let rest = self.plan.subtract("rest", dividend, product)?;
-        let limits = Enclosure::between(0.0, 2.0 * divisors.high);
-        let rest = self.plan.limited("rest_limited", rest, limits)?;
-        let is_less = self.plan.less("rest_is_less", rest, divisor)?;
-        let difference = self.plan.subtract("rest_less_divisor", rest, divisor)?;
+        let most_rest = match is_clamped {
+            true => 2.0 * divisors.high.min(dividends.high),
+            false => 2.0 * divisors.high,
+        };
+        let rest = self.difference_within("rest", dividend, product, most_rest)?;
+        // The divisor has no bits below its last one, so that the low bits of the rest do not matter for the comparison.
+        let frac = self.plan.node(divisor).format.frac;
+        let upper = self.plan.shorten("rest_upper", rest, frac, Rounding::Truncate)?;
+        let is_less = self.plan.less("rest_is_less", upper, divisor)?;
+        let difference = self.difference_within("rest_less_divisor", rest, divisor, most_rest)?;
         let chosen = self.plan.choose("quotient_chosen", is_less, [next, first])?;
         let wholes = Format::holding(least, most, 0);
         let whole = self.plan.narrow("whole_quotient", chosen, wholes, Rounding::Truncate)?;
         let left = self.plan.choose("remainder", is_less, [difference, rest])?;
         let frac = self.plan.node(left).format.frac;
-        let remainders = Format::holding(0, (divisors.high * exp2(frac)).ceil() as i128, frac);
+        let largest = divisors.high.min(if is_clamped { dividends.high } else { f64::INFINITY });
+        let remainders = Format::holding(0, (largest * exp2(frac)).ceil() as i128, frac);
         let left = self.plan.narrow("remainder_within", left, remainders, Rounding::Truncate)?;
         Ok([whole, left])
+    }
+
+    /// Returns the node of a − b, whose value is from 0 to `most` wherever it matters. Bits above `most` are dropped before the
+    /// subtraction. Fails if a node has too many bits.
+    fn difference_within(
+        &mut self,
+        name: &str,
+        a: NodeId,
+        b: NodeId,
+        most: f64,
+    ) -> Result<NodeId, PlanRefusal> {
+        let most_raw = (most.ceil() as i128).max(1);
+        let int = Format::holding(0, most_raw, 0).int;
+        let mut lower = [a, b];
+        for node in &mut lower {
+            let own = self.plan.node(*node).format;
+            if own.int > int {
+                let format = Format::unsigned(int, own.frac);
+                *node = self.plan.narrow(
+                    &format!("{name}_input"),
+                    *node,
+                    format,
+                    Rounding::Truncate,
+                )?;
+            }
+        }
+        let [a, b] = lower;
+        let difference = self.plan.subtract(name, a, b)?;
+        let format = Format::unsigned(int, self.plan.node(difference).format.frac);
+        self.plan.narrow(&format!("{name}_within"), difference, format, Rounding::Truncate)
     }
 
     /// Returns the node of an estimate of the quotient a / b with an error of at most a quarter. Fails if no number of guard bits
@@ -285,7 +378,8 @@ impl Lowering<'_> {
         let bits =
             Format::holding(values.low.floor() as i128, values.high.ceil() as i128, 0).width();
         for guard in GUARD_BITS {
-            let before = self.fixed_guard.replace(bits as i32 + guard - self.finest);
+            let fixed = FixedGuard { guard: guard - self.finest, value_bits: bits as i32 };
+            let before = self.fixed_guard.replace(fixed);
             let estimate = self.quotient_within(a, b, values);
             self.fixed_guard = before;
             let estimate = estimate?;

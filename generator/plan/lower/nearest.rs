@@ -10,9 +10,9 @@ use std::sync::Arc;
 use glint_base::fixed::{Format, Rounding, exp2};
 use glint_formula::{Enclosure, Expression, Function, Kind, Operator, TextSpan};
 
-use super::Lowering;
 use super::division::{QuotientParts, quotient_of};
 use super::shape::number;
+use super::{FixedGuard, Lowering};
 use crate::facts::is_polynomial;
 use crate::node::{Accuracy, NodeId, Operation, PlanNode, StatedValue};
 use crate::refusal::PlanRefusal;
@@ -119,7 +119,8 @@ impl Lowering<'_> {
     /// that is being rewritten. Fails if no number of guard bits shows this, or if a node has too many bits.
     fn estimated_root(&mut self, root: &Expression, frac: i32) -> Result<NodeId, PlanRefusal> {
         for guard in GUARD_BITS {
-            let before = self.fixed_guard.replace(frac + guard - self.finest);
+            let fixed = FixedGuard { guard: frac + guard - self.finest, value_bits: 0 };
+            let before = self.fixed_guard.replace(fixed);
             let estimate = self.new_part(root);
             self.fixed_guard = before;
             let estimate = estimate?;

@@ -110,7 +110,9 @@ impl Lowering<'_> {
         if is_never_larger {
             self.plan.nodes[shifted.0].actual_limits = limits;
         }
-        let shifted = self.rounding(finest - octave.exponent, |own, frac| {
+        // The dividend is as large as the quotient, up to the weight of the divisor's octave.
+        let value_bits = self.fixed_guard.map_or(0, |fixed| fixed.value_bits);
+        let shifted = self.rounding(finest - octave.exponent - value_bits, |own, frac| {
             if own.plan.node(shifted).format.width() <= WIDEST_FACTOR {
                 return Ok(shifted);
             }

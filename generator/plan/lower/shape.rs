@@ -84,6 +84,11 @@ fn is_only_read_through(formula: &Expression, core: &Expression, part: &Expressi
     replaced.count(&|inner| inner == core) == 0
 }
 
+/// Returns whether a part is the absolute value of `core`.
+pub(super) fn is_size_of(part: &Expression, core: &Expression) -> bool {
+    matches!(&part.kind, Kind::Unary(Function::Abs, a) if **a == *core)
+}
+
 /// Returns whether a part limits `core`: it is a minimum or a maximum of `core` and a constant.
 pub(super) fn is_limit_of(part: &Expression, core: &Expression) -> bool {
     match &part.kind {
