@@ -1,3 +1,4 @@
+//! Defines signals, and the operations on them: wiring, arithmetic, comparisons and muxes.
 
 use std::cmp::Ordering;
 
@@ -7,7 +8,7 @@ use glint_base::codes;
 use glint_base::fixed::Format;
 use glint_base::interval::{self, Interval, hull};
 
-/// A signal of a hardware description, and the operations on it.
+/// A signal of a hardware description: the handle of a net.
 #[derive(Clone, Copy)]
 pub struct Signal<'d> {
     designer: &'d Designer,

@@ -15,6 +15,7 @@ pub enum Op<N = NetId> {
     /// and 4.
     Slice {
         of: N,
+        /// The number of the lowest bit that is taken.
         low: u32,
     },
     /// The bits of all operands joined, the first operand in the top bits; the result is as wide as all operands together. For
