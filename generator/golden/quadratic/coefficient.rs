@@ -7,7 +7,7 @@
 use glint_keys::quadratic::Scheme;
 
 /// Returns the exact a(n) for n = 0 … `count` − 1: n − 1 for the scheme `taylor`, and the minimax coefficient for `minimax`.
-/// The entry for n = 0 equals the entry for n = 1, which is 0.
+/// The entry for n = 0 is 0, as for n = 1.
 pub fn table(scheme: Scheme, count: u32) -> Vec<f64> {
     (0..count)
         .map(|n| match scheme {
@@ -36,8 +36,8 @@ fn minimax(n: f64) -> f64 {
     a
 }
 
-/// Returns the x at which h is largest, by Newton's iteration from x = 0. From 0 on, h′ falls and is convex, so the iteration
-/// approaches the zero of h′ from the left.
+/// Returns the x at which h is largest, by Newton's iteration from x = 0. From there on, h′ falls and is convex, so the
+/// iteration approaches the zero of h′ from the left.
 fn summit(n: f64, a: f64) -> f64 {
     let mut x = 0.0;
     for _ in 0..60 {
