@@ -27,7 +27,7 @@
 
 use super::{BlockMemory, Chip, DelayMemory, Estimate, Family, Registered, Timing};
 
-/// Data of the family Lattice ECP5, for speed grade 6.
+/// For speed grade 6.
 pub const ECP5: Family = Family {
     title: "ECP5",
     timing: Timing {

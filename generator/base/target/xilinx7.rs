@@ -4,7 +4,7 @@
 
 use super::{BlockMemory, Chip, Estimate, Family, Timing};
 
-/// Data of the family AMD 7 series, for speed grade −1.
+/// For speed grade −1.
 pub const XILINX7: Family = Family {
     title: "Xilinx 7",
     timing: Timing {
