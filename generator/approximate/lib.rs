@@ -60,7 +60,7 @@ glint_config::choices! {
         /// The result of the operand moved by whole domain lengths into the domain: on the domain 0 to 1, 1.25 gives the result
         /// of 0.25.
         Wrap = "wrap",
-        /// Not specified.
+        /// The result is not specified.
         Anything = "anything",
     }
 }
@@ -79,10 +79,10 @@ pub struct TargetFunction {
     pub curve: Curve,
     /// The smallest and the largest raw operand, both included: (65536, 262143) for 1 to below 4 with 16 fraction bits.
     pub domain: (i64, i64),
-    /// Of the operand x.
+    /// The format of the operand x.
     pub operand: Format,
     pub outside: Outside,
-    /// Of the result.
+    /// The number of fraction bits of the result.
     pub fraction: u32,
     /// Every error must be below this number, in units of the last bit of the result.
     pub error: f64,
@@ -112,7 +112,7 @@ impl HornerStep {
 /// A piecewise polynomial in integers: the table of coefficients, and all bit widths of the hardware.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Piecewise {
-    /// Of the operand x.
+    /// The format of the operand x.
     pub operand: Format,
     /// The smallest and the largest raw operand, both included.
     pub domain: (i64, i64),
@@ -123,7 +123,7 @@ pub struct Piecewise {
     pub origin: i64,
     /// They map the number of an operand to a word of the table.
     pub segments: Segments,
-    /// In order of rising powers: entry 0 is the constant.
+    /// The formats of the coefficients, in order of rising powers: entry 0 is the constant.
     pub coefficients: Vec<Format>,
     /// The table: for each segment, the raw coefficients, the constant first.
     pub words: Vec<Vec<i64>>,

@@ -26,7 +26,7 @@ pub(super) struct AllowedResults<'f> {
     pub(super) stride: i64,
     /// The lowest and the highest allowed raw value of the polynomial for each of these operands.
     pub(super) right: Vec<(i64, i64)>,
-    /// Of the polynomial's value.
+    /// The format of the polynomial's value.
     pub(super) result: Format,
     /// The function on the large domain, its range reduction, and the format of its results.
     pub(super) whole: Option<(&'f TargetFunction, &'f Reduction, Format)>,

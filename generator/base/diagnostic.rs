@@ -14,7 +14,7 @@ pub type SourceLocation = &'static Location<'static>;
 #[derive(Clone, Debug)]
 pub struct Diagnostic {
     pub code: Code,
-    /// Names the signals.
+    /// The text names the signals.
     pub message: String,
     /// The line of the Rust source with the mistake.
     pub location: SourceLocation,

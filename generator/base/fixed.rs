@@ -18,7 +18,7 @@ pub const MAX_POINT: i32 = 1000;
 /// to be zero.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Format {
-    /// In two's complement, with a sign bit above the integer bits.
+    /// Whether the format is in two's complement, with a sign bit above the integer bits.
     pub signed: bool,
     /// The I of the format, without the sign bit.
     pub int: i32,

@@ -49,9 +49,9 @@ impl DelayMemory {
 /// The delays of a multiplier with an output register, in nanoseconds, without the delay of an ordinary register.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Registered {
-    /// From the operands of the multiplier to the setup of its output register.
+    /// The delay from the operands of the multiplier to the setup of its output register.
     pub product: f64,
-    /// From the rising edge to the output of the multiplier.
+    /// The delay from the rising edge to the output of the multiplier.
     pub output: f64,
 }
 
@@ -88,7 +88,7 @@ pub struct Timing {
     /// The extra delay of the wire to the address of a block memory, compared with a wire to a register. Block memories occupy
     /// only a few columns of the chip.
     pub address: f64,
-    /// Also says which ROMs synthesis puts into block memories.
+    /// The block memories, with the ROMs that synthesis puts into them.
     pub blocks: BlockMemory,
     /// A memory of look-up tables that is read without a clock. `None` if the target has none, or if synthesis itself makes shift
     /// registers of look-up tables.
@@ -130,7 +130,7 @@ impl BlockMemory {
 /// An FPGA chip and its resources.
 #[derive(Debug)]
 pub struct Chip {
-    /// As people write it.
+    /// The chip's name as people write it.
     pub name: &'static str,
     /// Options with which nextpnr selects the chip and its package. Empty if Glint does not run nextpnr for it.
     pub options: &'static str,
@@ -174,7 +174,7 @@ pub type LutsOfProduct = fn(u64, u64) -> u64;
 /// An FPGA family: delays, Yosys commands, cell names and chips.
 #[derive(Debug)]
 pub struct Family {
-    /// As people write it.
+    /// The family's name as people write it.
     pub title: &'static str,
     /// For schedules of pipelines and for estimates of the clock.
     pub timing: Timing,
@@ -195,7 +195,7 @@ pub struct Family {
     /// Block RAMs: of 4 kbit in iCE40, of 20 kbit in GateMate, of 18 kbit in the others.
     pub block_rams: Kinds,
     pub flip_flops: Kinds,
-    /// From a small and common chip to the largest one.
+    /// The chips, from a small and common one to the largest.
     pub chips: &'static [Chip],
     pub estimate: Estimate,
 }
@@ -262,7 +262,7 @@ impl Timing {
 /// The resources of a design after synthesis, before placement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Usage {
-    /// Look-up tables.
+    /// The number of look-up tables.
     pub luts: u64,
     pub dsps: u64,
     pub block_rams: u64,

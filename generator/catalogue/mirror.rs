@@ -28,7 +28,7 @@ pub(super) struct MirrorChain {
     start: NodeId,
     /// The condition and the cases of `start`, if it is a choice that only the first mirror reads.
     choice: Option<(NodeId, [NodeId; 2])>,
-    /// In the order in which they are applied.
+    /// The mirrors, in the order in which they are applied.
     mirrors: Vec<Mirror>,
     /// The node that rounds the mirrored value to the nearest, if there is one.
     rounded: Option<NodeId>,

@@ -124,7 +124,7 @@ pub struct PolynomialDatapath<'d, 'p> {
     d: &'d Designer,
     it: &'p Piecewise,
     prefix: String,
-    /// Of the operand's segment, the constant first.
+    /// The coefficients of the operand's segment, the constant first.
     coefficients: Vec<Signal<'d>>,
     /// The offset from the middle of the segment, shortened to the bits that each step multiplies.
     offsets: Vec<Signal<'d>>,

@@ -4,7 +4,7 @@ use super::problems::quoted;
 use glint_base::config_error::ConfigError;
 use glint_base::keywords::is_keyword;
 
-/// In characters. Derived modules and files append endings to the name.
+/// The limit is in characters. Derived modules and files append endings to the name.
 const LONGEST: usize = 60;
 
 /// Returns an error, with a similar valid name in the remedy, unless the name has 1 to 60 ASCII letters, digits and `_`, does

@@ -13,7 +13,7 @@ use glint_base::config_error::ConfigError;
 use glint_base::input;
 use glint_base::program::Program;
 
-/// In bytes. The limit protects against files that would exhaust the memory.
+/// The limit, in bytes, protects against files that would exhaust the memory.
 const LARGEST: u64 = 1 << 16;
 
 /// Reads a configuration file, or standard input if the path is `-`. `schemas` must contain the schemas of all devices.

@@ -8,10 +8,10 @@ use glint_base::config_error::ConfigError;
 /// The text of a configuration file. An error that is found after reading gets its line and column from here.
 #[derive(Clone, Debug, Default)]
 pub struct ConfigSource {
-    /// As the caller gave it, or an empty text.
+    /// The path as the caller gave it, or an empty text.
     pub file: String,
     pub text: String,
-    /// As ranges of bytes.
+    /// The places of the keys, as ranges of bytes.
     locations: BTreeMap<String, Range<usize>>,
 }
 

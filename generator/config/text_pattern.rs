@@ -20,19 +20,19 @@ pub enum TextPattern {
     Samples,
 }
 
-/// In characters.
+/// The limit of a formula, in characters.
 const LONGEST_FORMULA: usize = 500;
 
-/// In bytes.
+/// The limit of samples, in bytes.
 const LONGEST_SAMPLES: usize = 1 << 20;
 
-/// In characters.
+/// The limit of a remark, in characters.
 const LONGEST_REMARK: usize = 80;
 
-/// Of a name or a licence, in bytes.
+/// The limit of a name or a licence, in bytes.
 const LONGEST: usize = 60;
 
-/// Of each number in a version.
+/// The most digits of each number in a version.
 const DIGITS: usize = 4;
 
 impl TextPattern {

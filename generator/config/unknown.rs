@@ -8,7 +8,7 @@ use super::shared::shared_keys;
 use super::write::tables;
 
 pub(super) struct UnknownName {
-    /// For the message.
+    /// The remedy that the message tells the user.
     pub(super) remedy: String,
     /// The keys that the user may mean. Their intended values are unknown.
     pub(super) meant: Vec<&'static str>,

@@ -15,17 +15,17 @@ use serde::ser::{Serialize, SerializeMap, Serializer};
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 #[serde(untagged)]
 pub enum Value {
-    /// Of [`super::KeyKind::Integer`].
+    /// A value of [`super::KeyKind::Integer`].
     Integer(i64),
-    /// Of [`super::KeyKind::Number`].
+    /// A value of [`super::KeyKind::Number`].
     Number(f64),
-    /// Of [`super::KeyKind::Choice`] and [`super::KeyKind::Text`].
+    /// A value of [`super::KeyKind::Choice`] or [`super::KeyKind::Text`].
     Text(String),
-    /// Of [`super::KeyKind::Flag`].
+    /// A value of [`super::KeyKind::Flag`].
     Flag(bool),
-    /// Of [`super::KeyKind::Integers`].
+    /// A value of [`super::KeyKind::Integers`].
     Integers(Vec<i64>),
-    /// Of [`super::KeyKind::Table`].
+    /// A value of [`super::KeyKind::Table`].
     Table(TableEntries),
 }
 
@@ -65,7 +65,7 @@ pub struct TableEntry {
     pub fields: Vec<(&'static str, Value)>,
 }
 
-/// In the order of the file.
+/// The entries have the order of the file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TableEntries(pub Vec<TableEntry>);
 
@@ -168,7 +168,7 @@ pub struct Config {
     pub device: String,
     /// Whether Glint must refuse a configuration that violates the accuracy contract, instead of warning about it.
     pub strict: bool,
-    /// In the order of the schema.
+    /// The values, in the order of the schema.
     pub(super) values: Vec<(&'static str, Value)>,
 }
 

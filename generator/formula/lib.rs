@@ -132,7 +132,7 @@ pub enum Operator {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fault {
     pub span: TextSpan,
-    /// For the user.
+    /// A message for the user.
     pub message: String,
 }
 

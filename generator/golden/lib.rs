@@ -141,7 +141,7 @@ pub struct Operand {
     pub clamped: bool,
     /// Whether a highlight multiplies the reflectance `f` by this operand. The other operands determine `f`.
     pub colour: bool,
-    /// In one line.
+    /// A text of one line.
     pub doc: String,
 }
 
@@ -374,7 +374,7 @@ pub struct Bounds {
     /// The bound on the quantity that a sweep measures: the error of `f` of a highlight, otherwise the largest bound of an
     /// output, in units.
     pub f: f64,
-    /// In the order of the outputs, of which there is at least one.
+    /// The bounds in the order of the outputs. There is at least one output.
     pub outputs: Vec<Bound>,
 }
 
@@ -382,7 +382,7 @@ pub struct Bounds {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bound {
     pub output: String,
-    /// In units of the output's last bit; of a highlight for the largest colour operand.
+    /// The bound in units of the last bit of the output. For a highlight, it assumes the largest colour operand.
     pub units: f64,
     /// The contract is kept if `units` is below this limit: 1, or the error that the configuration allows.
     pub limit: f64,
@@ -414,7 +414,7 @@ pub struct Term {
     pub key: &'static str,
     /// The operation that rounds or approximates.
     pub what: &'static str,
-    /// In units of the last bit of an output.
+    /// The contribution, in units of the last bit of an output.
     pub units: f64,
 }
 

@@ -10,7 +10,7 @@ use std::collections::VecDeque;
 /// `interval`-th move.
 #[derive(Clone, Debug)]
 pub struct Occupancy<P> {
-    /// From stage 1 on. The last stage has the results.
+    /// The computations from stage 1 on. The last stage has the results.
     stages: VecDeque<Option<P>>,
     interval: usize,
     slot: usize,

@@ -180,11 +180,11 @@ fn error(contract: &dyn Contract) -> f64 {
 }
 
 struct PartErrors {
-    /// Of the cosine between normal and light.
+    /// The error of the cosine between normal and light.
     facing: f64,
-    /// Of the cosine between normal and half vector.
+    /// The error of the cosine between normal and half vector.
     cosine: f64,
-    /// Of the highlight of a colour, in units of a result.
+    /// The error of the highlight of a colour, in units of a result.
     highlight: f64,
     /// How much the formula of the highlight changes with the cosine, if this is known.
     variation: Option<Variation>,

@@ -53,10 +53,10 @@ struct ExpressionPreset {
 /// Whether the operand has a sign, its width in bits, and its number of fraction bits.
 type OperandFormat = (bool, i64, i64);
 
-/// From −1 to below 1.
+/// The format of numbers from −1 to below 1.
 const COORDINATE: OperandFormat = (true, 16, 15);
 
-/// From 0 to below 1.
+/// The format of numbers from 0 to below 1.
 const PART_OF_ONE: OperandFormat = (false, 16, 16);
 
 const EXPRESSIONS: [ExpressionPreset; 10] = [

@@ -77,7 +77,7 @@ fn check(config: &Config, problems: &mut Problems) {
 
 const FORMULA: &str = "function.formula";
 
-/// Of the operands of each light.
+/// The suffixes of the operands of each light.
 const SUFFIXES: [&str; 4] = ["", "2", "3", "4"];
 
 pub struct LightParts {

@@ -182,7 +182,7 @@ pub struct Frame {
     logic: Vec<(Slot, Value)>,
     edges: Vec<Does>,
     valid_delay: u32,
-    /// In the order of execution.
+    /// The steps of a computation, in the order of execution.
     pub(super) parts: Vec<FrameStep>,
 }
 

@@ -12,7 +12,7 @@ use glint_base::fixed::{Rounding, exp2};
 
 /// A bin is small compared with the narrowest highlight, which is 3.6° wide at n = 1000.
 const BINS: usize = 512;
-/// In radians.
+/// The width of a bin, in radians.
 pub const BIN: f64 = FRAC_PI_2 / BINS as f64;
 
 /// A margin, in radians, that covers the rounding of angles in f64.

@@ -53,7 +53,7 @@ pub enum Op<N = NetId> {
     Mux {
         /// A net of enough bits to number all inputs.
         select: N,
-        /// Two or more.
+        /// Two or more nets.
         inputs: Vec<N>,
     },
 }

@@ -11,7 +11,7 @@ use glint_base::diagnostic::SourceLocation;
 pub struct Control {
     /// The fields of the control word, the most significant first.
     pub fields: Vec<Field>,
-    /// In the order of their addresses.
+    /// The microinstructions, in the order of their addresses.
     pub microprogram: Vec<Microinstruction>,
     pub rom: RomId,
     /// The counter that addresses the control ROM.
@@ -52,7 +52,7 @@ pub enum FieldKind {
 #[derive(Clone, Debug)]
 pub struct Microinstruction {
     pub name: String,
-    /// In the order of [`Control::fields`].
+    /// The values of the fields, in the order of [`Control::fields`].
     pub values: Vec<u64>,
     pub sequence: Sequence,
     pub location: SourceLocation,

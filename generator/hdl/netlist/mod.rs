@@ -137,7 +137,7 @@ pub enum RegisterKind {
     /// The write strobe loads it from an input port, or `start` from its buffer. It does not change during a computation. For
     /// example, `cos_gamma_reg` of `rough`.
     Operand,
-    /// In front of an operand register, accepts the next operand at any time.
+    /// A buffer in front of an operand register accepts the next operand at any time.
     Buffer,
     /// A register of the datapath that the description declares. The golden model predicts it on every clock.
     Architectural,
@@ -176,7 +176,7 @@ pub struct NetlistRom {
 /// A port of the design, other than the clock `clk`.
 #[derive(Clone, Debug)]
 pub struct Port {
-    /// Has the port's name, format, block number and comment.
+    /// The net that has the port's name, format, block number and comment.
     pub net: NetId,
     pub role: Role,
 }
@@ -238,9 +238,9 @@ impl Role {
 /// Texts about a device, for the header of the Verilog, the manifest and the documentation.
 #[derive(Clone, Debug, Default)]
 pub struct About {
-    /// Such as `rough`.
+    /// The device's name, such as `rough`.
     pub device: String,
-    /// One line.
+    /// The title has one line.
     pub title: String,
     pub formula: String,
     /// The document that describes the device, and the part of the document, for people. Empty if there is no such document.

@@ -53,7 +53,7 @@ pub enum PipelineErrorKind {
 
 #[derive(Clone, Debug)]
 pub struct PipelineError {
-    /// Has the nearest possible value in most cases.
+    /// The kind, in most cases with the nearest possible value.
     pub kind: PipelineErrorKind,
     /// The message for the user, with the line of the Rust source that it concerns.
     pub diagnostic: Diagnostic,

@@ -54,7 +54,7 @@ pub fn count(
 /// The nodes on which some conditions depend.
 struct Cone {
     leaves: Vec<NodeId>,
-    /// Of all leaves together.
+    /// The number of bits of all leaves together.
     bits: u32,
     /// The nodes from the leaves to the conditions, each after its operands.
     inside: Vec<NodeId>,

@@ -13,7 +13,7 @@ use glint_base::target::{FAMILIES, Timing};
 /// Products that can share multipliers, each in its own slot (clock modulo the interval).
 #[derive(Clone, Debug)]
 pub struct ProductGroup {
-    /// In the order of the computation.
+    /// The products, in the order of the computation.
     pub products: Vec<NodeId>,
     /// The number of multipliers, less than the number of products.
     pub units: usize,

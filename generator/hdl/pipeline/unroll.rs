@@ -33,7 +33,7 @@ pub struct Unrolled {
     /// The nets of output ports, each with its node. The outputs of the handshake are not among them, except in the graph of a
     /// `Cycle`, which has all outputs.
     pub results: Vec<(NetId, NodeId)>,
-    /// In the order of execution.
+    /// The microinstructions in the order of execution.
     pub steps: Vec<UnrolledStep>,
 }
 

@@ -73,9 +73,9 @@ fn clock(thresholds: Thresholds, places: CutPlaces) -> usize {
 
 struct OperandCell {
     net: NetId,
-    /// In hundredths of a nanosecond.
+    /// The cell's delay, in hundredths of a nanosecond.
     delay: u32,
-    /// Without constants.
+    /// The operands that are not constants.
     operands: Vec<NetId>,
 }
 

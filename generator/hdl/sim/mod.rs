@@ -32,7 +32,7 @@ pub use machine::Machine;
 pub use program::CompiledDesign;
 pub use vcd::VcdWriter;
 
-/// In picoseconds, for waveforms.
+/// Half a clock in picoseconds, for waveforms.
 const HALF_CLOCK: u64 = 5_000;
 
 /// Two updates of rust_hdl are enough: the change itself, and an update that changes nothing.
@@ -57,7 +57,7 @@ pub struct Simulator<const LANES: usize = 1> {
     name: String,
     inputs: Vec<String>,
     trace: Option<VcdWriter<Box<dyn Write + Send>>>,
-    /// In picoseconds.
+    /// The simulated time, in picoseconds.
     time: u64,
 }
 

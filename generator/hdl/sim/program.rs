@@ -191,7 +191,7 @@ pub(super) struct Bank {
     /// An edge performs the reads before it loads `registers`. No read or load overwrites a slot that a later one uses.
     pub reads: Vec<ReadEdge>,
     pub registers: Vec<RegisterEdge>,
-    /// At power-up, before settling.
+    /// The values at power-up, before settling.
     pub initial: Vec<u64>,
 }
 
@@ -206,7 +206,7 @@ pub struct CompiledDesign {
     pub(super) wide: Bank,
     /// The inputs of all muxes with more than two inputs, as slots in the bank of the mux.
     pub(super) choices: Vec<Slot>,
-    /// Of all ROMs.
+    /// The words of all ROMs.
     pub(super) words: Vec<u64>,
     /// For each net, its slot; `None` for an unnamed net that the compiler has optimised away.
     pub(super) places: Vec<Option<ValueSlot>>,

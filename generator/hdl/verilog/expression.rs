@@ -28,7 +28,7 @@ pub struct Constant {
 pub struct Expressions<'a> {
     plan: &'a Plan<'a>,
     names: Names,
-    /// In the order of use.
+    /// The constants, in the order of use.
     pub constants: Vec<Constant>,
 }
 
