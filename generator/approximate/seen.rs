@@ -9,7 +9,7 @@ use glint_base::fixed::{Format, exp2, nearest};
 /// The search evaluates at most this number of operands; it takes evenly spaced ones of a larger domain.
 const HELD: u64 = 1 << 25;
 
-/// The same if the domain is too large for a proof operand by operand.
+/// This limit replaces [`HELD`] if the domain is too large for a proof operand by operand.
 const HELD_OF_MANY: u64 = 1 << 18;
 
 /// The number of operands in one parallel step.

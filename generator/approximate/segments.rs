@@ -14,7 +14,7 @@ pub enum Layout {
 }
 
 impl Layout {
-    /// With their names in configurations.
+    /// The layouts with their names in configurations.
     pub const NAMES: [(&str, Self); 3] =
         [("uniform", Self::Uniform), ("octaves", Self::Octaves), ("halving", Self::Halving)];
 

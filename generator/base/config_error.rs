@@ -19,7 +19,7 @@ pub struct ConfigError {
     /// The range of bytes in the key's text that the error concerns, for example an operator in a formula, if not the whole
     /// value.
     pub place: Option<Range<usize>>,
-    /// For the user, for example "`core` cannot run at 900 MHz".
+    /// A message for the user, for example "`core` cannot run at 900 MHz".
     pub message: String,
     /// How to remove the error: a sentence that lists the integers that the key accepts, for example.
     pub remedy: String,

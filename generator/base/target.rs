@@ -30,7 +30,7 @@ pub struct DelayMemory {
     pub words: u32,
     /// The number of bits of a word.
     pub width: u32,
-    /// The number of look-up tables, with those that write the memory.
+    /// The number of look-up tables, including the write logic of the memory.
     pub tables: u32,
 }
 
@@ -176,7 +176,7 @@ pub type LutsOfProduct = fn(u64, u64) -> u64;
 pub struct Family {
     /// The family's name as people write it.
     pub title: &'static str,
-    /// For schedules of pipelines and for estimates of the clock.
+    /// The delays for schedules of pipelines and for estimates of the clock.
     pub timing: Timing,
     /// The Yosys command that reads the models of the cells which a core may instantiate, or an empty text.
     pub library: &'static str,

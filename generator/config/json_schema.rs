@@ -60,7 +60,7 @@ fn of_device(schema: &Schema) -> Json {
     device
 }
 
-/// No keys are allowed in the table except those that the caller adds.
+/// The table allows only the keys that the caller adds.
 fn table() -> Json {
     json!({ "type": "object", "additionalProperties": false, "properties": {} })
 }

@@ -112,7 +112,7 @@ impl Problems {
         self.list.is_empty()
     }
 
-    /// Returns the number of mistakes, including those that are only counted.
+    /// Returns the number of mistakes, including the ones that are only counted.
     pub fn len(&self) -> usize {
         self.list.len() + self.further
     }

@@ -98,8 +98,8 @@ fn remarked(line: &str, remark: &str) -> String {
 
 /// Returns the file that `glint new --all` prints: every key with its value, its meaning, and the values that it accepts.
 ///
-/// The keys in `given`, `device`, `name` and `strict` are set. All other keys, even those that do not apply, are comments. If `#
-/// ` is removed from their lines, the file is read as the same configuration.
+/// The keys in `given`, `device`, `name` and `strict` are set. All other keys are comments, even keys that do not apply. The
+/// user can remove `# ` from these lines, and the file is still read as the same configuration.
 pub fn commented(schema: &Schema, config: &Config, given: &[String]) -> String {
     let mut text = comment(&format!(
         "Glint configuration of the device \"{}\". It shows all keys. A key in a comment has its default, \

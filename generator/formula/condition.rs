@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::literal::Literal;
 use super::{Comparison, Expression, Function, Kind, Operator, TextSpan};
 
-/// A comparison, or two conditions of which both or at least one must hold.
+/// A comparison, or two conditions, both or at least one of them true.
 #[derive(Clone)]
 pub(super) enum JoinedCondition {
     Is(Comparison),

@@ -140,7 +140,7 @@ impl SegmentedCurve {
         self.pieces.push(Piece { start, last: start + steps - 1, error, shape });
     }
 
-    /// Returns all segments, those of the topmost range first and the tail last.
+    /// Returns all segments: first the segments of the topmost range, and last the tail.
     pub fn pieces(&self) -> &[Piece] {
         &self.pieces
     }

@@ -13,8 +13,8 @@ use glint_base::fixed::exp2;
 use glint_formula::{Enclosure, parse};
 use glint_keys::function::{FunctionPlan, operand};
 
-/// A domain is divided into this number of pieces, in each of which a slope is enclosed. It is a power of two, so that the ends
-/// of the pieces are exact.
+/// The bound encloses the slope in each of this number of pieces of the domain. It is a power of two, so that the ends of the
+/// pieces are exact.
 const PIECES: u32 = 4096;
 
 fn device(planned: &FunctionPlan) -> device::Device {

@@ -79,7 +79,7 @@ impl Keys {
 struct LyonArithmetic {
     keys: Keys,
     squarings: u32,
-    /// With the fraction bits of f.
+    /// The number 1 with the fraction bits of f.
     one: i64,
     /// The largest value of the shift register, which multiplies D² by a power of two.
     shifted_most: i64,

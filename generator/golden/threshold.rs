@@ -22,7 +22,7 @@ use glint_keys::threshold::Keys;
 /// The integer arithmetic of the device, on raw values.
 struct ThresholdArithmetic {
     keys: Keys,
-    /// With the fraction bits of the base.
+    /// The number 1 with the fraction bits of the base.
     base_one: i64,
     scaled: Narrow,
     square: Narrow,

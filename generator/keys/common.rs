@@ -61,7 +61,7 @@ impl ColourKeys {
         self.multipliers == 1
     }
 
-    /// For tests with numbers that can be followed by hand: colours of four bits.
+    /// Returns small keys for tests whose numbers a reader can follow by hand: colours of four bits.
     #[doc(hidden)]
     pub fn small() -> Self {
         Self { bits: 4, multipliers: 3 }
@@ -83,7 +83,7 @@ impl Operands {
         Format::unsigned(self.exponent_bits as i32, 0)
     }
 
-    /// For tests with numbers that can be followed by hand: operands of four bits.
+    /// Returns small keys for tests whose numbers a reader can follow by hand: operands of four bits.
     #[doc(hidden)]
     pub fn small() -> Self {
         Self {
@@ -110,7 +110,7 @@ impl Intensity {
         Format::unsigned(0, self.fraction as i32)
     }
 
-    /// For tests with numbers that can be followed by hand: f has four bits.
+    /// Returns small keys for tests whose numbers a reader can follow by hand: f has four bits.
     #[doc(hidden)]
     pub fn small() -> Self {
         let (rounding, output_rounding) = (Rounding::Truncate, Rounding::Nearest);
@@ -134,7 +134,7 @@ impl Domain {
         (self.least, self.most)
     }
 
-    /// For tests with numbers that can be followed by hand: all exponents with four bits except 0.
+    /// Returns small keys for tests whose numbers a reader can follow by hand: all exponents with four bits except 0.
     #[doc(hidden)]
     pub fn small() -> Self {
         Self { least: 1, most: 15 }

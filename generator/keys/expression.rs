@@ -25,7 +25,7 @@ use super::port_names::{self, NameFault, NamedTable};
 const LEAST_ERROR: f64 = 0.5;
 const LARGEST_ERROR: f64 = 1024.0;
 
-/// For a relative error that is not a number between 0 and 1.
+/// The remedy for a relative error that is not a number between 0 and 1.
 const RELATIVE_ERROR: &str =
     "give a number between 0 and 1, or a formula of numbers, for example \"2^-12\"";
 

@@ -79,7 +79,7 @@ fn check(config: &Config, problems: &mut Problems) {
 }
 
 pub struct FunctionPlan {
-    /// With its domain and the allowed error.
+    /// The function with its domain and the allowed error.
     pub function: TargetFunction,
     /// They approximate the function, with a proved bound of the error.
     pub polynomials: Arc<Piecewise>,

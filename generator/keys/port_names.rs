@@ -101,7 +101,7 @@ pub(super) fn check(entries: &[(NamedTable, &str)]) -> Result<(), NameFault> {
     for (entry, (table, name)) in entries.iter().enumerate() {
         let others: Vec<(NamedTable, &str)> =
             entries.iter().enumerate().filter(|(at, _)| *at != entry).map(|(_, it)| *it).collect();
-        // Of two entries with the same name, the second one is refused.
+        // The second of two entries with the same name is refused.
         let found = obstacle(*table, name, &entries[..entry]);
         let Some(message) = found.or_else(|| owned_name(name, &others)) else { continue };
         let remedy = match free_name(*table, name, &others) {

@@ -27,7 +27,7 @@
 
 use super::{BlockMemory, Chip, DelayMemory, Estimate, Family, Registered, Timing};
 
-/// For speed grade 6.
+/// The delays are for speed grade 6.
 pub const ECP5: Family = Family {
     title: "ECP5",
     timing: Timing {

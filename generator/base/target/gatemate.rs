@@ -25,7 +25,7 @@ fn product_luts(first: u64, second: u64) -> u64 {
     2 * cells
 }
 
-/// For the chip CCGM1A1.
+/// The delays are for the chip CCGM1A1.
 pub const GATEMATE: Family = Family {
     title: "GateMate",
     timing: Timing {

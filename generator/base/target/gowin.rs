@@ -71,7 +71,7 @@ const ESTIMATE: Estimate = Estimate {
     least_product: 9,
 };
 
-/// For speed grade C8/I7 and the chip GW2AR-18 of the Tang Nano 20K.
+/// The delays are for speed grade C8/I7 and the chip GW2AR-18 of the Tang Nano 20K.
 pub const GOWIN: Family = Family {
     title: "Gowin GW2A",
     timing: Timing {
@@ -104,7 +104,7 @@ pub const GOWIN: Family = Family {
     estimate: ESTIMATE,
 };
 
-/// For speed grade C6/I5 and the chip GW1NR-9 of the Tang Nano 9K.
+/// The delays are for speed grade C6/I5 and the chip GW1NR-9 of the Tang Nano 9K.
 pub const GOWIN_GW1N: Family = Family {
     title: "Gowin GW1N",
     timing: Timing {

@@ -13,7 +13,7 @@ const PURE_MULTIPLIERS: &str = "synth_ice40 -top {top} -run begin:coarse; opt; w
     select a:mul2dsp; setattr -unset mul2dsp; opt_expr -fine; wreduce; select -clear; \
     chtype -set $mul t:$__soft_mul; ";
 
-/// For the chip UP5K.
+/// The delays are for the chip UP5K.
 pub const ICE40: Family = Family {
     title: "iCE40",
     timing: Timing {

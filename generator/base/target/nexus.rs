@@ -29,7 +29,7 @@ const PURE_MULTIPLIERS: &str = "synth_nexus -top {top} -run begin:coarse; proc; 
     setattr -unset mul2dsp; opt_expr -fine; wreduce; select -clear; opt_expr -undriven; chtype -set $mul t:$__soft_mul; \
     alumacc; maccmap; opt; ";
 
-/// For the chip LIFCL-40 (CrossLink-NX).
+/// The delays are for the chip LIFCL-40 (CrossLink-NX).
 pub const NEXUS: Family = Family {
     title: "Nexus",
     timing: Timing {

@@ -14,7 +14,7 @@ const HANDSHAKE: [&str; 5] = ["valid", "busy", "done", "run", "word_address"];
 pub(super) struct ModelConstants {
     pub(super) program: Vec<FrameStep>,
     pub(super) operands: Vec<FrameOperand>,
-    /// With a mask of the width, the outputs first.
+    /// The signals with masks of their widths, the outputs first.
     pub(super) shown: Vec<(Slot, u64)>,
     /// The number of outputs in `shown`.
     pub(super) outputs: usize,

@@ -41,8 +41,8 @@ pub trait Reflectance: Send + Sync {
         Vec::new()
     }
 
-    /// Changes the raw control operands of a computation to those of its result number `index`, counted from 0. A device that
-    /// computes a line of points, such as `quad-cosine`, must set the angle of that point.
+    /// Changes the raw control operands of a computation to the operands of its result number `index`, counted from 0. A device
+    /// that computes a line of points, such as `quad-cosine`, must set the angle of that point.
     fn point(&self, control: &mut [i64], index: u64) {
         let _ = (control, index);
     }

@@ -6,7 +6,7 @@
 use crate::dsl::{Counter, Designer, Mux, Register, Signal, Step, StepSetting, loop_while, step};
 use glint_base::fixed::Format;
 
-/// The squarings that raise a base to a power of two. If there are several, the counter `remaining` counts those that still
+/// The squarings that raise a base to a power of two. If there are several, the counter `remaining` has the number that still
 /// follow.
 pub struct Squarings<'d> {
     designer: &'d Designer,

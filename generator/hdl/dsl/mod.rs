@@ -115,7 +115,7 @@ const BUFFERED_NOTE: &str = "Operands have buffers. A write at any time is for t
 /// Builds a [`Design`] from a hardware description; the [module documentation](self) has an example.
 pub struct Designer {
     inner: RefCell<Inner>,
-    /// Distinguishes the handles of this designer from those of another designer.
+    /// Distinguishes this designer's handles from another designer's.
     serial: u64,
     /// The number of descriptions around this one, which is a part of the innermost; 0 for a whole device.
     depth: u32,

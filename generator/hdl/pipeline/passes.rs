@@ -17,7 +17,7 @@ const UNROLL: &str = "unroll";
 
 /// A rewriting of a computation that keeps its results.
 pub struct Pass {
-    /// Also the name of the directory with the files that test the pass.
+    /// The directory with the files that test the pass has the same name.
     pub name: &'static str,
     /// A sentence for `glint schedule --passes`.
     pub description: &'static str,

@@ -12,7 +12,7 @@ use super::unroll::Unrolled;
 use glint_base::fixed::Format;
 use glint_base::target::Timing;
 
-/// With more lower bits, their product is not made of rows in look-up tables.
+/// The most lower bits whose product is made of rows in look-up tables.
 const MOST_ROWS: u32 = 4;
 
 /// Splits products that are too wide for the target's multipliers, and shortens the carry chains of sums and differences

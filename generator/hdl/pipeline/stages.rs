@@ -108,7 +108,7 @@ struct StageBuilder<'a> {
     /// For each product that shares a multiplier, the register behind the multiplier.
     shared: HashMap<NodeId, NetId>,
     taken: HashSet<String>,
-    /// Without the suffix of a stage.
+    /// The names of the nodes, without the suffix of a stage.
     names: HashMap<NodeId, String>,
     /// The net with the value of a node in a stage; constants have stage 0.
     values: HashMap<(NodeId, usize), NetId>,

@@ -11,7 +11,7 @@ use glint_base::fixed::Format;
 use glint_base::interval::Interval;
 
 /// Returns the node for the cell `op`. In a sum or a difference, low bits that need no carry bypass the adder: the lowest two
-/// bits of `x + 4` are those of `x`. A sum of `a`, `~b` and the carry 1 becomes `a - b`.
+/// bits of `x + 4` equal the lowest two of `x`. A sum of `a`, `~b` and the carry 1 becomes `a - b`.
 pub fn shortened(
     graph: &mut Graph,
     op: NodeOp,

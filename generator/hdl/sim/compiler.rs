@@ -32,7 +32,7 @@ pub(super) struct Compiler<'a> {
     pub(super) sources: Vec<Sources>,
     /// The number of sources that are input ports.
     input_sources: u32,
-    /// For the next value that a rising edge writes.
+    /// The number of the source for the next value that a rising edge writes.
     next_source: u32,
     /// For each enable, the source of the values that a rising edge writes only if it is 1.
     enabled: HashMap<NetId, u32>,
@@ -45,7 +45,7 @@ pub(super) struct Compiler<'a> {
     known: HashMap<Instruction, Slot>,
     /// The instruction that writes each slot. Fields of the control word, and slots that no instruction writes, have no entry.
     made_by: HashMap<Slot, Instruction>,
-    /// Each instruction follows those that compute its operands.
+    /// Each instruction follows the instructions that compute its operands.
     pub(super) steps: Vec<Ordered>,
     pub(super) choices: Vec<Slot>,
     pub(super) words: Vec<u64>,

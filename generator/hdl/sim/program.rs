@@ -198,7 +198,7 @@ pub(super) struct Bank {
 /// A compiled [`Design`](crate::netlist::Design), without state. Several machines may share it.
 #[derive(Clone, Debug)]
 pub struct CompiledDesign {
-    /// Each step follows those that compute its operands.
+    /// Each step follows the steps that compute its operands.
     pub(super) steps: Vec<SettlingStep>,
     /// Consecutive steps with the same sources. Together the groups contain all steps, in order.
     pub(super) segments: Vec<StepGroup>,

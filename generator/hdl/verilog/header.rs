@@ -11,7 +11,7 @@ use glint_base::fixed::Format;
 pub struct Origin<'a> {
     /// The command that generates the file again, or an empty text.
     pub regenerate: &'a str,
-    /// For the line on latency.
+    /// The header's line on latency states this timing.
     pub timing: &'a HandshakeTiming,
 }
 

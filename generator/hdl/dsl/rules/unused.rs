@@ -17,8 +17,8 @@ pub(in crate::dsl) fn warnings(design: &Design, partly_used: &HashSet<FieldId>) 
     found
 }
 
-/// Finds registers, memories and named cells on which no output depends. Those that other unused logic reads are left out, so
-/// that one mistake gives one warning.
+/// Finds registers, memories and named cells on which no output depends. It leaves out the ones that other unused
+/// logic reads, so that one mistake gives one warning.
 fn dead(design: &Design) -> Vec<Diagnostic> {
     let used = used(design);
     let mut dead: Vec<(NetId, &Net)> = Vec::new();

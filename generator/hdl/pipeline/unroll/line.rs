@@ -28,7 +28,7 @@ pub struct UnrolledLine {
 pub struct WalkRegister {
     /// The first point loads this value.
     pub first: NodeId,
-    /// Before a later point is loaded, an unknown value of the graph.
+    /// The unknown value of the register before a later point is loaded.
     pub before: NodeId,
     /// A later point loads this function of the `before` values of the walk.
     pub next: NodeId,
