@@ -109,7 +109,7 @@ pub struct Analysis {
     pub products: f64,
     /// The largest rounding error of the base in register 13.
     pub base: f64,
-    /// Of the square in register 13.
+    /// The largest error of the square in register 13.
     pub ulp: f64,
     /// The largest error of the base before it is rounded, where the square is not constant.
     pub square: f64,
