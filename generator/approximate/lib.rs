@@ -1,6 +1,6 @@
 //! Finds piecewise polynomials in fixed point that approximate a function of one operand, and proves a bound on their error.
 //!
-//! The domain is divided into [`Segments`]; a table has the polynomial's coefficients for each segment, and the hardware
+//! The domain is divided into [`Segments`]. A table has the polynomial's coefficients for each segment, and the hardware
 //! evaluates the polynomial in integers by Horner's rule. [`find`] chooses the degree, the segments, the coefficients and the bit
 //! widths. [`Piecewise::prove`] then compares the result of every operand with the formula or the curve. For more than
 //! 2^[`MOST_BITS`] operands of a formula, the proof uses intervals; so many operands are an error with samples or with a range
@@ -38,7 +38,7 @@ const MOST_SUMS: usize = 4;
 
 /// The number of intervals in which [`TargetFunction::pole`] looks for a pole.
 const POLES: u32 = 1 << 16;
-/// The distance from an operand that the search for a pole leaves out, as a fraction of the distance between two operands: the
+/// The distance from an operand that the search for a pole leaves out, as a fraction of the distance between two operands. The
 /// formula may jump at an operand, as `if(x <= 0, …)` does.
 const BESIDE: f64 = 1.0 / 1024.0;
 
@@ -88,8 +88,8 @@ pub struct TargetFunction {
     pub error: f64,
 }
 
-/// The bit widths of a step of Horner's rule. With the partial sum p so far and the offset t of the operand in its segment, it
-/// computes p·t, drops low bits, and adds the next coefficient.
+/// The bit widths of a step of Horner's rule. With the partial sum p and the operand's offset t in its segment, it computes p·t,
+/// drops low bits, and adds the next coefficient.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HornerStep {
     /// The number of leading bits of the offset that the step multiplies.
@@ -184,9 +184,9 @@ impl TargetFunction {
         RBig::from(raw) * scale
     }
 
-    /// Returns two neighbouring operands, as real numbers, between which the formula has a pole, or has no value, or comes so
-    /// near to such a place that interval arithmetic cannot exclude it. A curve through samples has none. The search gives up
-    /// after 65536 intervals.
+    /// Returns two neighbouring operands, as real numbers, between which the formula has a pole or no value. It also returns them
+    /// if interval arithmetic cannot exclude such a place. A curve through samples has none. The search gives up after 65536
+    /// intervals.
     pub fn pole(&self) -> Option<(f64, f64)> {
         let Curve::Formula(formula) = &self.curve else { return None };
         let mut open = vec![self.domain];
@@ -225,8 +225,8 @@ impl TargetFunction {
         }
     }
 
-    /// Returns the numberings that a search should try, in this order: with an overhang, if possible, and without, because the
-    /// segments of a steep function may be too short for an overhang.
+    /// Returns the numberings that a search should try, in this order: with an overhang, if possible, and without. The segments
+    /// of a steep function may be too short for an overhang.
     fn numberings(&self, layout: Option<Layout>) -> Vec<Numbering> {
         let with_overhang = self.numbering_with_overhang(layout);
         with_overhang.into_iter().chain([self.numbering_without_overhang()]).collect()
@@ -234,8 +234,8 @@ impl TargetFunction {
 
     /// Returns the numbering in which the last segment also contains the operands beyond a power of two, the overhang. Raw
     /// operands 0 to 1024 get numbers of 10 bits and an overhang of 1. Returns `None` if the overhang has more than 1/32 of the
-    /// operands, if the domain has a single operand, or if the results outside the domain are specified (`Clamp` or `Wrap`). The
-    /// layout `Halving` also gives `None`, because its last segment is too short.
+    /// operands, or if the domain has a single operand. It is also `None` if the results outside the domain are specified
+    /// (`Clamp` or `Wrap`). The layout `Halving` also gives `None`, because its last segment is too short.
     fn numbering_with_overhang(&self, layout: Option<Layout>) -> Option<Numbering> {
         let span = (self.domain.1 - self.domain.0) as u64;
         let bits = u64::BITS - span.leading_zeros();
@@ -377,9 +377,8 @@ impl Piecewise {
     /// Proves a bound on the error at every operand of the domain, in units of the last bit of the result.
     ///
     /// # Errors
-    /// Fails if a sum does not fit its format, if an error is not below the error that `function` allows, or if the function has
-    /// no value at an operand. For a domain with more than 2^[`MOST_BITS`] operands, also fails if the proof needs too many
-    /// intervals.
+    /// Fails if a sum does not fit its format, an error is not below the one that `function` allows, or the function has no value
+    /// at an operand. For a domain with more than 2^[`MOST_BITS`] operands, also fails if the proof needs too many intervals.
     pub fn prove(&self, function: &TargetFunction) -> Result<f64, Refusal> {
         let (first, last) = self.domain;
         if matches!(function.curve, Curve::Formula(_)) && function.is_wide() {

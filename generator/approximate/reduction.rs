@@ -57,22 +57,21 @@ pub struct Reduction {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Rule {
     /// The number is |x|, but at most the largest number of [`Reduction::bits`] bits. For an odd function f, the field is 2·f(0)
-    /// in units of the result's last bit, from which the result of a negative operand is subtracted; for an even function,
-    /// `None`.
+    /// in units of the result's last bit, from which the result of a negative operand is subtracted. An even function has `None`.
     Size(Option<i64>),
     /// The number is the distance from the nearest zero of a sine, after x is increased by the given number of quadrants: 1 for a
     /// cosine. At a peak of the sine, the number is one less than this distance, so that it fits its bits.
     Quadrants(u32),
     /// The number consists of the bits behind the leading 1 bit of x. If octaves come in pairs, an additional leading bit tells
-    /// the two apart. For example, without pairs, the raw operand 5 with 8 bits, 00000101, has five leading zeros, and the bits
-    /// 01 behind its leading 1 give the number 0100000, or 32. The operand 0 has no leading 1; its number and its result are 0.
+    /// the two apart. For example, the raw operand 5 with 8 bits, 00000101, has five leading zeros. Without pairs, the bits 01
+    /// behind its leading 1 give the number 0100000, or 32. The operand 0 has no leading 1; its number and its result are 0.
     Octaves {
         /// The number of bits of the operand.
         width: u32,
         /// Whether two neighbouring octaves share the same restoring steps.
         pairs: bool,
-        /// The steps that restore the result, by the number of leading zeros of the operand: a shift to the right in bits, and
-        /// the value that is added before the shift, in units of the polynomial's last bit.
+        /// The steps that restore the result, by the number of leading zeros of the operand. A step is a shift to the right in
+        /// bits, and the value that is added before it, in units of the polynomial's last bit.
         restores: Vec<(u32, i64)>,
     },
     /// The number is the fraction of the exponent of two; its integer part becomes a shift of the polynomial's value.
@@ -165,8 +164,8 @@ impl Reduction {
         }
     }
 
-    /// Returns the number of bits by which the hardware shifts the polynomial's value to the right for the raw operand `raw`,
-    /// without the guard bits: the integer part of the exponent determines it. Other rules than `Exponent` shift by 0.
+    /// Returns the number of bits by which the hardware shifts the polynomial's value to the right, without the guard bits. The
+    /// integer part of the exponent of the raw operand `raw` determines it. Other rules than `Exponent` shift by 0.
     pub fn places(&self, raw: i64) -> u32 {
         match self.rule {
             Rule::Exponent { scale, whole, .. } => {
@@ -182,8 +181,8 @@ impl Reduction {
     ///
     /// # Errors
     /// Fails if the function is a curve through samples, or if the identity is `None`. Fails if the function has no value at one
-    /// of a few test points, if the identity does not hold there, or if the domain does not suit the identity. Also fails if a
-    /// number would have no bits or more than [`MOST`] bits.
+    /// of a few test points, the identity does not hold there, or the domain does not suit it. Also fails if a number would have
+    /// no bits or more than [`MOST`] bits.
     pub(super) fn of(
         identity: Identity,
         function: &TargetFunction,
@@ -268,8 +267,8 @@ fn all_near(values: &[f64]) -> bool {
     values.iter().all(|&value| near(value, values[0]))
 }
 
-/// Returns whether the values at the eighths of a period follow a sine with a positive amplitude that is `phase` quadrants ahead,
-/// as a cosine is one ahead.
+/// Returns whether the values at the eighths of a period follow a sine that is `phase` quadrants ahead, with a positive
+/// amplitude. A cosine is one quadrant ahead.
 fn is_sine(values: &[f64; 8], phase: usize) -> bool {
     let at = |eighth: usize| values[(eighth + 8 - 2 * phase) % 8];
     let largest = at(2);

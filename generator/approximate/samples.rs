@@ -73,9 +73,9 @@ fn inner_slope((h, s): Chord, (k, t): Chord) -> f64 {
     if s * t > 0.0 { 2.0 * least.copysign(s) } else { 0.0 }
 }
 
-/// Returns the slope of Steffen's curve at an end, whose chord is `(h, s)`. `beside` is the neighbouring chord. The slope is the
-/// slope of the parabola through the three points at this end, limited to the range from 0 to twice the chord's slope; a single
-/// chord has its own slope.
+/// Returns the slope of Steffen's curve at an end, whose chord is `(h, s)`. `beside` is the neighbouring chord. The parabola
+/// through the three points at this end gives the slope, limited to the range from 0 to twice the chord's slope. A single chord
+/// has its own slope.
 fn end_slope((h, s): Chord, beside: Option<Chord>) -> f64 {
     let parabola = beside.map_or(s, |(k, t)| s + (s - t) * h / (h + k));
     if parabola * s <= 0.0 { 0.0 } else { parabola.abs().min(2.0 * s.abs()).copysign(s) }

@@ -55,8 +55,8 @@ const NEAREST: [f64; 14] =
 ///
 /// # Errors
 /// Fails if the operands of the domain differ by 2^46 or more, or if there are more than 2^26 operands of samples. Fails if the
-/// function has no value at an operand, if the identity of `wish` does not hold, or if no approximation with the allowed error is
-/// found and proved.
+/// function has no value at an operand, the identity of `wish` does not hold, or no approximation with the allowed error is found
+/// and proved.
 pub(super) fn search(function: &TargetFunction, wish: Wish) -> Result<Piecewise, Refusal> {
     let span = function.domain.1.abs_diff(function.domain.0);
     if span >> WIDEST != 0 {
@@ -88,8 +88,8 @@ pub(super) fn search(function: &TargetFunction, wish: Wish) -> Result<Piecewise,
     ))
 }
 
-/// Returns an error above the allowed error of `function` that polynomials keep, in units of the result's last bit, if one of a
-/// few such errors is kept. This takes as long as several searches, and helps a user whose error cannot be kept.
+/// Returns an error above the allowed error of `function` that polynomials keep, in units of the result's last bit. The search
+/// tries only a few such errors. This takes as long as several searches, and helps a user whose error cannot be kept.
 pub fn reachable_error(function: &TargetFunction, wish: Wish) -> Option<f64> {
     let count_missed = NEAREST.partition_point(|error| {
         let larger = TargetFunction { error: *error, ..function.clone() };
@@ -136,8 +136,8 @@ fn attempt_numbered(
     unproved.map_or(Ok(None), Err)
 }
 
-/// Returns the variants that the search tries in turn: the number of additional fraction bits of the polynomial, and whether the
-/// largest |x| of an odd or even function has a number of its own.
+/// Returns the variants that the search tries in turn. A variant is the number of additional fraction bits of the polynomial, and
+/// whether the largest |x| of an odd or even function has a number of its own.
 fn variants(identity: Identity) -> &'static [(u32, bool)] {
     match identity {
         Identity::Odd | Identity::Even => &[(0, false), (0, true)],
@@ -151,8 +151,8 @@ fn variants(identity: Identity) -> &'static [(u32, bool)] {
 /// Returns the cheapest approximation with a proved bound for the first of the [`variants`] that has one.
 ///
 /// # Errors
-/// Fails if the domain has more than 2^26 operands, if the identity does not hold, if the function has no value at an operand, or
-/// if the found approximation cannot be proved.
+/// Fails if the domain has more than 2^26 operands, or the identity does not hold. Also fails if the function has no value at an
+/// operand, or the approximation cannot be proved.
 fn attempt_reduced(function: &TargetFunction, wish: Wish) -> Result<Option<Piecewise>, Refusal> {
     if function.is_wide() {
         let message = format!(
@@ -223,9 +223,9 @@ fn most_words(seen: &AllowedResults, degree: u32, least: f64) -> usize {
 }
 
 /// Returns divisions of the domain into at most `most` segments that are fine enough for polynomials of degree `degree`, in order
-/// of rising numbers of segments. These are the coarsest division of a layout and a number of octaves, if more octaves have made
-/// it coarser than the divisions before, and the same with twice as many segments. A division is fine enough if polynomials with
-/// unrounded coefficients keep the error.
+/// of rising numbers of segments. They are the coarsest division of a layout and a number of octaves, and the same with twice as
+/// many segments. The function leaves out numbers of octaves that make no coarser division than fewer octaves. A division is fine
+/// enough if polynomials with unrounded coefficients keep the error.
 fn cuts(seen: &AllowedResults, degree: u32, layout: Option<Layout>, most: usize) -> Vec<Segments> {
     let mut search = CutSearch { seen, degree, most, worst: None };
     let mut cuts: Vec<Segments> = Vec::new();

@@ -39,7 +39,7 @@ pub struct Segments {
     /// The number of bits that select a segment within a block, which has 2^`prefix` segments.
     pub prefix: u32,
     /// The count of numbers from 2^`bits` on that belong to the last segment. The domain from 0 to 1 with both ends has an
-    /// overhang of 1; without it, the end 1 alone would double the number of segments.
+    /// overhang of 1. Without it, the end 1 alone would double the number of segments.
     pub overhang: u64,
 }
 
@@ -48,8 +48,8 @@ pub struct Segments {
 pub struct SegmentOffset {
     /// The index of the segment's word in the table.
     pub word: usize,
-    /// The distance from the middle of the segment, in units of 2^−[`Segments::rest`] of the segment's length: from −1/2 to below
-    /// 1/2 of the length, and in the overhang 1/2 or more.
+    /// The distance from the middle of the segment, in units of 2^−[`Segments::rest`] of the segment's length. It is from −1/2 to
+    /// below 1/2 of the length, and in the overhang 1/2 or more.
     pub offset: i64,
 }
 
@@ -81,7 +81,7 @@ impl Segments {
         fits && self.layout != Layout::Halving
     }
 
-    /// Returns the number of bits of an offset in a segment of the block `block`: block 0 lies below the octaves, and block k is
+    /// Returns the number of bits of an offset in a segment of the block `block`. Block 0 lies below the octaves, and block k is
     /// octave k from below. 8-bit numbers with 3 octaves and a prefix of 2 bits have 3 bits in block 0 and 5 bits in block 3.
     pub fn rest_of(&self, block: u32) -> u32 {
         (self.bits + block.max(1) - 1) - self.octaves - self.prefix

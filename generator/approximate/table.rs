@@ -65,8 +65,8 @@ impl Widths {
         Some(steps)
     }
 
-    /// Adds `change` bits to variable number `at`, unless it would become too small: below 0 for the constant, below [`FEWEST`]
-    /// for another coefficient, or below 1 for an offset.
+    /// Adds `change` bits to variable number `at`, unless it would become too small. The limit is 0 for the constant, [`FEWEST`]
+    /// for another coefficient, and 1 for an offset.
     fn with(&self, at: usize, change: i32) -> Option<Self> {
         let mut other = self.clone();
         match other.guard.get_mut(at) {

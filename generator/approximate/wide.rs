@@ -2,9 +2,9 @@
 //!
 //! The proof treats the offset of an operand in its segment as a real number t, so that a word of the table is a polynomial
 //! P(t). The hardware drops bits, so its result differs from P(t); the proof bounds this difference for a whole segment. Within
-//! an interval, the distance between the function and P is at most the distance in the middle plus half of the length times the
-//! largest slope of their difference. If this bound is too large, or if the function may have no derivative, the proof halves
-//! the interval. An interval with at most four operands is computed operand by operand. A proof that needs more than 2^20
+//! an interval, the distance between the function and P is at most the distance in the middle plus a product: half of the length
+//! times the largest slope of their difference. If this bound is too large, or if the function may have no derivative, the proof
+//! halves the interval. An interval with at most four operands is computed operand by operand. A proof that needs more than 2^20
 //! intervals fails.
 
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -141,7 +141,7 @@ impl Piecewise {
 
     /// Returns a bound on the error over the raw operands from `low` to `high`, which must all read the word `word`. `lag` has
     /// the limits of the dropped bits. Returns `None` if the formula may jump between these operands, or may have no value or no
-    /// derivative there, if a result may not fit its format, or if the function is a curve through samples.
+    /// derivative there. It is also `None` if a result may not fit its format, and for a curve through samples.
     fn error_between(
         &self,
         function: &TargetFunction,

@@ -184,7 +184,7 @@ pub enum Rounding {
 }
 
 impl Rounding {
-    /// Divides `raw` by `2^places` and rounds; a negative `places` multiplies exactly. −3 by one place gives −2 if truncated,
+    /// Divides `raw` by `2^places` and rounds. A negative `places` multiplies exactly. −3 by one place gives −2 if truncated,
     /// and −1 if rounded to the nearest. Panics if a multiplication gives more than 127 bits and a sign.
     pub fn shift(self, raw: i128, places: i32) -> i128 {
         match (self, places) {

@@ -1,6 +1,6 @@
 //! The hardware description of the device `dot-product`, which computes cos γ = max(0, N·H / |N|).
 //!
-//! N is a vector of any length, such as an interpolated surface normal; H is a unit vector, such as the half vector; γ is the
+//! N is a vector of any length, such as an interpolated surface normal. H is a unit vector, such as the half vector. γ is the
 //! angle between them. The device adds up N·H and N·N, and multiplies N·H by 1/√(N·N), which it interpolates in a table. With the
 //! key `two_sided` it computes |N·H| / |N|. A result above 1 becomes 1, and the zero vector N gives 0.
 

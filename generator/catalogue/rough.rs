@@ -61,8 +61,8 @@ impl Formats {
             sine: Format::unsigned(0, keys.sine_fraction as i32),
             cos_cos: Format::unsigned(1, product),
             sin_sin: Format::unsigned(0, product),
-            // The format begins at −1.0, where the parabola has its zero and the clamp acts, or without the clamp at −2.0, the
-            // smallest value that can occur.
+            // The format begins at −1.0, where the parabola has its zero and the clamp acts. Without the clamp it begins at
+            // −2.0, the smallest value that can occur.
             result: Format::signed(i32::from(!keys.clamp), keys.f.fraction as i32),
             f: keys.f.format(),
             product_rounding: keys.product_rounding,
@@ -257,7 +257,7 @@ fn exact_sums<'d>(
 /// Builds adder 15, n/2 and adder 16 as in the patent. All numbers are fractions modulo 1.0, so that a missing carry replaces
 /// each "− 1". The low bit of n is dropped.
 ///
-/// The patent contradicts itself about the second input of adder 31: the input is all ones in the claim and in the description,
+/// The patent contradicts itself about the second input of adder 31. The input is all ones in the claim and in the description,
 /// and zeros in the summary. This circuit uses ones.
 fn patent_sums<'d>(
     d: &'d Designer,

@@ -2,7 +2,7 @@
 //! level ([symbols](crate#symbols)).
 //!
 //! The level comes from a table, ROM(n). f is 0 too for c ≤ 0, and where n/2·(c − 1) + 1 is negative. The source is the patent UA
-//! 30041, which seed 001 cites. UA 30041 connects its blocks without a control block; this description adds two registers, so
+//! 30041, which seed 001 cites. UA 30041 connects its blocks without a control block. This description adds two registers, so
 //! that no clock contains more than one multiplier before the outputs. Each kind of block is numbered from 1, as in the text of
 //! seed 001: register 1, adder 1, multiplier 1.
 
@@ -98,7 +98,7 @@ fn level_rom<'d>(d: &'d Designer, keys: &Keys, exponent: Signal<'d>) -> Rom<'d> 
         .comments(comments)
 }
 
-/// Returns the level for the exponent n in hundredths of an output unit, by n's octave: n = 20 is in octave 4, from 16 to 31, and
+/// Returns the level for the exponent n in hundredths of an output unit, by n's octave. n = 20 is in octave 4, from 16 to 31, and
 /// n = 0 in octave 0. Octaves beyond the configured levels have the last level.
 fn hundredths(keys: &Keys, n: i64) -> u32 {
     let levels = &keys.levels;

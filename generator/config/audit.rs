@@ -7,7 +7,7 @@ use super::values::Config;
 
 impl Schema {
     /// Returns a sentence for each mistake in the schema itself. A name is a mistake if it repeats, is a key of every device,
-    /// names both a table and a value, or is not made of plain lower-case words. A default is a mistake if it is outside its
+    /// names both a table and a value, or has other than plain lower-case words. A default is a mistake if it is outside its
     /// range. A condition is a mistake if its key is not declared before, or can never have its value. If the schema has no such
     /// mistake, the device's `check` must accept the defaults. The reader of configurations relies on a schema without mistakes.
     pub fn mistakes(&self) -> Vec<String> {

@@ -13,7 +13,7 @@ pub trait Setting: Sized {
 }
 
 /// Declares a struct whose fields are configuration keys. Its function `keys` returns the keys for a [`Schema`](super::Schema),
-/// in the order of the fields, and its function `of` reads the values of these keys from a configuration. `of` panics if the
+/// in the order of the fields. Its function `of` reads the values of these keys from a configuration. `of` panics if the
 /// configuration belongs to a device without these keys. Each field has a [`Key`], or is another such struct with several keys.
 ///
 /// ```

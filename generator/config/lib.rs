@@ -1,7 +1,7 @@
 //! Reads configurations, which are TOML files with the choices for one device, such as the width of an operand.
 //!
 //! A device declares its keys as a [`Schema`]; this crate knows no device. [`read()`] and [`parse()`] turn a file into a
-//! [`Config`], whose values need no further checks, or into [`Problems`], which list the mistakes of the file, each with a
+//! [`Config`], whose values need no further checks, or into [`Problems`]. These list the mistakes of the file, each with a
 //! remedy and its location. [`brief`] and [`commented`] write files from which a user can start, and [`sample()`] draws
 //! random valid configurations for tests.
 

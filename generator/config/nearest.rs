@@ -1,6 +1,6 @@
 //! Suggests the valid word for a misspelt one, and joins words for a sentence.
 
-/// Returns the candidate that is most similar to `word`, if at most a third of the letters of the longer word differ, or one
+/// Returns the candidate that is most similar to `word`. At most a third of the letters of the longer word may differ, or one
 /// letter in shorter words. Otherwise returns the first candidate that begins with `word`, if `word` has more than two bytes.
 /// A `word` of more than 100 bytes has no candidate.
 ///

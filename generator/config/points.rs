@@ -10,8 +10,8 @@ use std::{fs, io};
 /// without a number before the first point are headings, `#` begins a comment, and empty lines are skipped.
 ///
 /// # Errors
-/// Fails with a message and a remedy if the file is no regular file, cannot be read or is not UTF-8, if a line is not two finite
-/// numbers, or if the file has no points.
+/// Fails with a message and a remedy if the file is no regular file, cannot be read or is not UTF-8. Also fails if a line is not
+/// two finite numbers, or the file has no points.
 pub(super) fn read(path: &Path) -> Result<String, (String, String)> {
     let name = path.display();
     let text = text(path).map_err(|error| {

@@ -16,10 +16,10 @@ const REPAIRS: usize = 100;
 /// Returns a random valid configuration of a device. The same seed always gives the same configuration, with a name such as
 /// `dot_product_7`.
 ///
-/// Integers, numbers, choices, flags and lists of the device are drawn from their ranges, or from the range of [`Key::drawn`];
-/// the ends more often than other values. Texts, tables, keys that do not apply and the keys that every device shares keep their
-/// defaults. If the device refuses a combination, the offending key is drawn again, so that keys with narrow conditions vary
-/// too. `refusal` returns the error of a configuration that the schema accepts and the device cannot have.
+/// Integers, numbers, choices, flags and lists of the device are drawn from their ranges, or from the range of [`Key::drawn`].
+/// The ends are drawn more often than other values. Texts, tables, keys that do not apply and the keys that every device shares
+/// keep their defaults. If the device refuses a combination, the offending key is drawn again, so that keys with narrow
+/// conditions vary too. `refusal` returns the error of a configuration that the schema accepts and the device cannot have.
 ///
 /// # Panics
 /// Panics if the device refuses all 1000 configurations that are drawn.

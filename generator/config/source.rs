@@ -35,8 +35,8 @@ impl ConfigSource {
         self.line_and_column(self.locations.get(key)?.start)
     }
 
-    /// Returns the range of bytes in the file that an error concerns, if the file sets the key: a part of the key's text, if the
-    /// file contains the text literally, in quotes and without escapes, or the whole value.
+    /// Returns the range of bytes in the file that an error concerns, if the file sets the key. It is a part of the key's text,
+    /// if the file has this text in quotes and without escapes, or the whole value.
     pub(super) fn span_of(&self, error: &ConfigError) -> Option<Range<usize>> {
         let whole = self.locations.get(&error.key)?.clone();
         let within = error.place.clone().and_then(|bytes| {

@@ -58,8 +58,8 @@ fn assignment(config: &Config, key: &str) -> String {
     format!("{key} = {}", config.value(key).toml())
 }
 
-/// Returns the lines that set a key under the name `name`: one for each entry of a table, such as `operands.x = { fraction = 15
-/// }`, and one for any other key. If `name` is empty, the lines are below the heading of the table.
+/// Returns the lines that set a key under the name `name`. A table has one for each entry, such as `operands.x = { fraction = 15
+/// }`, and any other key has one. If `name` is empty, the lines are below the heading of the table.
 fn assignments(key: &Key, config: &Config, name: &str) -> Vec<String> {
     let value = config.value(key.name);
     if let (KeyKind::Table { shorthand, .. }, Value::Table(records)) = (&key.kind, value)

@@ -60,8 +60,8 @@ impl Enclosure {
         Self { low: low - margin(low), high: high + margin(high) }
     }
 
-    /// Returns the hull of the results of `of` at the four combinations of the intervals' limits, which contains all results
-    /// if the function is monotone in each operand.
+    /// Returns the hull of the results of `of` at the four combinations of the intervals' limits. It contains all results if
+    /// the function is monotone in each operand.
     fn corners(self, other: Self, of: impl Fn(f64, f64) -> Self) -> Self {
         let first = of(self.low, other.low);
         if self.low == self.high && other.low == other.high {

@@ -22,13 +22,13 @@ impl Expression {
     /// jump such as `floor` is undecided, the interval contains the values on both sides.
     ///
     /// # Errors
-    /// Fails at a part that may have no value: a pole, the root of a number that may be negative, an operand that `operands`
-    /// does not have, or a word of a ROM.
+    /// Fails at a part that may have no value: a pole, the root of a possibly negative number, an operand that `operands`
+    /// lacks, or a word of a ROM.
     pub fn enclose(&self, operands: &[(&str, Enclosure)]) -> Result<Enclosure, Fault> {
         self.evaluate(&Double, operands)
     }
 
-    /// Evaluates the formula for exact operands, with increasing precision until all comparisons and jumps are decided, and the
+    /// Evaluates the formula for exact operands. The precision increases until all comparisons and jumps are decided, and the
     /// `f64` limits of the result are at most two steps apart. With 1024 bits, it returns also wider limits.
     ///
     /// For example, `floor(x * 0.1)` is 3 for x = 30, although 0.1 is no `f64`. This is about a thousand times slower than

@@ -1,7 +1,7 @@
 //! Computes formulas without rounding if their values are rational numbers, multiples of π, or logarithms of rational numbers.
 //!
 //! For example, `0.1 * 10` is 1, `16 ^ (1 / 2)` is 4, and `sin(pi * 0.5)` is 1. Intervals alone cannot decide on which side of a
-//! jump a value counts if it lies exactly on the jump: an interval around `0.1 * 10` also contains values below 1, whose floor is
+//! jump a value counts if it lies exactly on the jump. An interval around `0.1 * 10` also contains values below 1, with the floor
 //! 0. The exact value decides it.
 
 use dashu_base::{Abs, BitTest, Signed, SquareRootRem};

@@ -118,7 +118,7 @@ const MOST_CONDITIONS: usize = 400;
 const MOST_PARTS: usize = 4096;
 
 /// Parses a formula. It may have sums, products, powers (`^` or `**`), parentheses, numbers, `pi`, `e`, names of operands,
-/// functions, `if(a < b, x, y)`, and the same in the notations of Python and C, `x if a < b else y` and `a < b ? x : y`.
+/// functions, and `if(a < b, x, y)`. A choice may also have the notation of Python or C: `x if a < b else y` or `a < b ? x : y`.
 ///
 /// # Errors
 /// Fails at the first mistake, with its location.

@@ -1,8 +1,8 @@
 //! Interval arithmetic of any precision, which also stores a value exactly if the value is known exactly.
 //!
 //! The arithmetic is slow. Glint uses it for constants, such as the ends of a domain, and for questions that `f64` intervals
-//! leave open: the side of a jump on which a value lies, for example of `floor` at 1, and values beyond the range of `f64`,
-//! such as `exp(1000)` in `1 / (1 + exp(1000))`.
+//! leave open. One is the side of a jump on which a value lies, for example of `floor` at 1. Others are values beyond the range
+//! of `f64`, such as `exp(1000)` in `1 / (1 + exp(1000))`.
 
 use std::cmp::Ordering;
 
@@ -62,8 +62,8 @@ impl Precise {
         self.exactly(Exact::Rational(value.clone()))
     }
 
-    /// Returns the smallest integer that is not below `value` · 2^`fraction`, and whether both are equal, if the interval
-    /// decides it and the integer has at most 127 bits.
+    /// Returns the smallest integer that is not below `value` · 2^`fraction`, and whether both are equal. The interval must
+    /// decide it, and the integer have at most 127 bits.
     pub(super) fn ceiling(&self, value: &PreciseValue, fraction: u32) -> Option<(i128, bool)> {
         if let Some(exact) = value.rational() {
             let scaled = exact * RBig::from(IBig::ONE << fraction as usize);
@@ -169,7 +169,7 @@ impl Precise {
         Self::rounded(down(&self.down, &a.low), up(&self.up, &a.high))
     }
 
-    /// Returns the interval of a sine or a cosine, whose slope is never steeper than 1: adds the length of the interval, in
+    /// Returns the interval of a sine or a cosine. The slope is never steeper than 1, so the interval's length is added, in
     /// both directions, to the value at its lower limit.
     fn wave(
         &self,

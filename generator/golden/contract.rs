@@ -31,8 +31,8 @@ pub fn control(name: &str, format: Format, domain: (i64, i64), doc: &str) -> Ope
     Operand { name: name.to_owned(), format, domain, clamped: false, colour: false, doc }
 }
 
-/// Returns the error bounds of a device that multiplies colours by a reflectance `f` with `frac` fraction bits: the bound of `f`,
-/// and the bound of each output. `shares` are the contributions to the error of `f`.
+/// Returns the error bounds of a device that multiplies colours by a reflectance `f` with `frac` fraction bits. They are the
+/// bound of `f`, and the bound of each output. `shares` are the contributions to the error of `f`.
 ///
 /// An output is `f` times a colour of `colour_bits` bits, rounded by `output_rounding`. Its bound is therefore the error of `f`
 /// times the largest colour, plus the error of that rounding. Both `f` and the formula lie in 0 … 1, so shares whose sum exceeds

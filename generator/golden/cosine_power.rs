@@ -131,8 +131,8 @@ impl Reflectance for PowerArithmetic {
         Some(Variation { slope: most as f64, jump: libm::pow(base, power) })
     }
 
-    /// Derives the contributions to the error of f. Every quantity here lies in 0 … 1, hardware's and formula's alike, so by
-    /// the mean value theorem an error ε before a power p grows to at most p·ε.
+    /// Derives the contributions to the error of f. Every quantity here lies in 0 … 1, hardware's and formula's alike. By the
+    /// mean value theorem, an error ε before a power p therefore grows to at most p·ε.
     ///
     /// - Base: the hardware uses the inverse, 1.0 − ulp − t, instead of 1.0 − t. If t is truncated, its error is in (−ulp, 0],
     ///   and the base is low by (0, ulp]. If t is rounded to the nearest, its error is ±ulp/2, and the base is low by up to 3/2
@@ -157,7 +157,7 @@ impl Reflectance for PowerArithmetic {
         ]
     }
 
-    /// Remarks that a smaller m approximates cosⁿγ better than the configured m, for some n below m: the base of W is then
+    /// Remarks that a smaller m approximates cosⁿγ better than the configured m, for some n below m. The base of W is then
     /// above 0 at a right angle, where cosⁿγ is 0.
     fn remarks(&self) -> Vec<String> {
         let power = self.keys.power;

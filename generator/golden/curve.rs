@@ -1,7 +1,7 @@
 //! Builds a table of straight segments that approximates an increasing, concave function, such as the square root. The golden
 //! model of the device `rough` uses it for its sines; the hardware description computes that table with other code.
 //!
-//! The operand u is an unsigned integer of C bits. The upper three quarters of the operands are the first range; the upper
+//! The operand u is an unsigned integer of C bits. The upper three quarters of the operands are the first range. The upper
 //! three quarters of the remaining quarter are the second range, and so on. The operands below all ranges are called the tail.
 //! The segments of one range have the same length, and so have the segments of the tail. A value of the table is a raw number
 //! in the format u0.S.

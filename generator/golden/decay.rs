@@ -137,8 +137,8 @@ impl DecayArithmetic {
         }
     }
 
-    /// Returns upper limits of three errors of f, as values, for all raw distances from `from` to `to` in an octave: from the
-    /// error of the ratio, from the rounding of the decay, and from the bits that a coarse decay loses.
+    /// Returns upper limits of three errors of f, as values, for all raw distances from `from` to `to` in an octave. They come
+    /// from the error of the ratio, from the rounding of the decay, and from the bits that a coarse decay loses.
     fn of_distances(&self, (from, to): (i64, i64), octave: f64) -> [f64; 3] {
         let keys = &self.keys;
         let [from, to] = [from, to].map(|raw| raw as f64 * keys.operands.cosine.ulp());

@@ -1,9 +1,9 @@
 //! Makes the golden model and the accuracy contract of a device from one list of its microinstructions.
 //!
 //! The author of a device declares operands and registers in a [`Frame`] and states the operation of each microinstruction. The
-//! golden model executes these operations clock by clock. The contract runs the golden model to get the results of the device,
-//! and compares them with a [`Formula`], which the author adds, with a bound on the error if the author has proved one. For
-//! example, this device squares its operand:
+//! golden model executes these operations clock by clock. The contract runs the golden model to get the results of the device. It
+//! compares them with a [`Formula`], which the author adds, with a bound on the error if the author has proved one. For example,
+//! this device squares its operand:
 //!
 //! ```
 //! use glint_base::fixed::Format;
@@ -77,8 +77,8 @@ impl Frame {
         Device { model: self.model(program), operands, outputs }
     }
 
-    /// Returns the device that runs the parts of the frame one after the other, in the order in which [`Frame::part`] added them,
-    /// with a register behind each output that is combinational logic. Never panics: its program ends unconditionally with the
+    /// Returns the device that runs the parts of the frame one after the other, in the order in which [`Frame::part`] added them.
+    /// Each output that is combinational logic gets a register behind it. Never panics: its program ends unconditionally with the
     /// microinstruction that raises `valid`, so that output registers can be added.
     pub fn dataflow(mut self) -> Device {
         let device = match std::mem::take(&mut self.parts) {

@@ -1,7 +1,7 @@
 //! The golden model and the accuracy contract of the device `dot-product`, which computes cos γ = max(0, N·H / |N|).
 //!
-//! N is a vector of any length, such as an interpolated normal (operands `nx`, `ny`, `nz`); H is a unit vector, such as the half
-//! vector (`hx`, `hy`, `hz`); γ is the angle between them. With the key `two_sided` the result is |N·H| / |N|. It is at most 1,
+//! N is a vector of any length, such as an interpolated normal (operands `nx`, `ny`, `nz`). H is a unit vector, such as the half
+//! vector (`hx`, `hy`, `hz`). γ is the angle between them. With the key `two_sided` the result is |N·H| / |N|. It is at most 1,
 //! and 0 if N = 0. The device multiplies N·H by 1/√(N·N), which it interpolates in a table. For example, N = (0, 0, 0.5) and H =
 //! (0, 0, 1) give 1.
 
@@ -170,8 +170,8 @@ impl Formula for CosineFormula {
         Some(self.root.sweep())
     }
 
-    /// Returns an upper limit of the error, in units: the actual error of the inverse root for this sum of squares, plus the
-    /// largest possible errors of the factors and of the rounding.
+    /// Returns an upper limit of the error, in units. It is the actual error of the inverse root for this sum of squares, plus
+    /// the largest possible errors of the factors and of the rounding.
     fn sweep_error(&self, place: &[i64]) -> Option<f64> {
         let [_, factors, rounding] = self.errors();
         let error = self.root.relative_error(place[0]) + factors + rounding;

@@ -36,8 +36,8 @@ pub(super) fn at(formula: &str, x: f64) -> f64 {
     value.map_or(f64::NAN, Enclosure::middle)
 }
 
-/// Returns a proven limit of the absolute slope of the formula over its domain, from interval derivatives, unless the formula
-/// may jump or be infinitely steep, or samples give the function.
+/// Returns a proven limit of the absolute slope of the formula over its domain, from interval derivatives. There is no limit if
+/// the formula may jump or be infinitely steep, or if samples give the function.
 pub(super) fn slope(planned: &FunctionPlan) -> Option<f64> {
     let FunctionPlan { function, polynomials: it, .. } = planned;
     let Curve::Formula(formula) = &function.curve else { return None };

@@ -1,5 +1,5 @@
-//! The golden model and the accuracy contract of the device `gauss`, which computes f = exp(−n·γ²/2) with γ = arccos c, or 0
-//! if c ≤ 0 ([symbols](crate#symbols)). The source is seed 002. The module [`decay`] computes the formula as 2^(−n·decay), for
+//! The golden model and the accuracy contract of the device `gauss`. It computes f = exp(−n·γ²/2) with γ = arccos c, or 0 if c
+//! ≤ 0 ([symbols](crate#symbols)). The source is seed 002. The module [`decay`] computes the formula as 2^(−n·decay), for
 //! `blinn` and `gauss`, here with the decay γ²/(2 ln 2).
 
 use super::decay;

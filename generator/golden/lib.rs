@@ -1,10 +1,10 @@
 //! The golden models and the accuracy contracts of the devices.
 //!
-//! A golden model is a second implementation of a device, written from the formula and the text of its source; it predicts the
+//! A golden model is a second implementation of a device, written from the formula and the text of its source. It predicts the
 //! architectural registers and the outputs on every clock. An accuracy contract states the exact formula of the device, and a
 //! bound on its error if the author of the device has proved one.
 //!
-//! A golden model never sees the hardware description, the netlist or the microcode, so that an error in one of them shows as a
+//! A golden model never sees the hardware description, the netlist or the microcode. An error in one of them therefore shows as a
 //! difference in simulation. It also computes its own tables, except in four devices. In `blinn` and `gauss` the description and
 //! the golden model read the same polynomials ([`glint_keys::decay`]), and in `function` and `expression` the same plan
 //! ([`glint_plan`]). Exhaustive checks or proofs compare polynomials and plan with the formulas instead.
@@ -67,10 +67,10 @@ pub trait Model: CloneModel + Send + Sync {
 
     /// Returns the names of all signals that the model predicts, in the order of [`Model::values`].
     ///
-    /// A model must predict everything that a device shows: the outputs (`valid`, `busy`, `done`, results and flags); the
-    /// sequencer's registers `run` and `word_address`; the register `<operand>_reg` of each operand; and the registers and
-    /// counters that the description names. It may leave out registers inside a block, such as pipeline stages and synchronous
-    /// ROMs.
+    /// A model must predict everything that a device shows. This includes the outputs (`valid`, `busy`, `done`, results and
+    /// flags), and the sequencer's registers `run` and `word_address`. It also includes the register `<operand>_reg` of each
+    /// operand, and the registers and counters that the description names. It may leave out registers inside a block, such as
+    /// pipeline stages and synchronous ROMs.
     fn signals(&self) -> &[String];
 
     /// Performs one rising edge with the bit patterns of the inputs just before it.
@@ -174,12 +174,12 @@ pub trait Contract: Send + Sync {
     /// Appends the exact values of each output: the formula in f64, unrounded.
     ///
     /// There are two values for each output, normally equal. If the formula jumps and rounding may lead to either side of the
-    /// jump, they are the values on both sides, and an error is measured from the nearer one. [`ANY_VALUE`] means that the
+    /// jump, they are the values on both sides. An error is then measured from the nearer one. [`ANY_VALUE`] means that the
     /// contract promises nothing.
     fn exact(&self, operands: &[i64], index: u64, values: &mut Vec<[f64; 2]>);
 
     /// Appends the value of the formula of each output, also where the contract promises nothing, or NaN if the formula has none.
-    /// For example, x / y has the value 9 for x = 0.9 and y = 0.1, even if the contract promises results only where x < y.
+    /// For example, x / y is 9 for x = 0.9 and y = 0.1, even if the contract promises results only where x < y.
     fn formula_values(&self, operands: &[i64], index: u64, values: &mut Vec<f64>) {
         let mut exact = Vec::new();
         self.exact(operands, index, &mut exact);
@@ -294,7 +294,7 @@ pub const ANY_VALUE: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 /// The cases of an exhaustive check: every combination of the values on its axes.
 ///
 /// An axis is usually an operand. A device with too many combinations may use intermediate values that determine the result as
-/// axes; [`Contract::sweep_error`] then returns the largest error over all operands that lead to them. An axis may also be a list
+/// axes. [`Contract::sweep_error`] then returns the largest error over all operands that lead to them. An axis may also be a list
 /// of settings.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sweep {
@@ -436,8 +436,8 @@ impl Bounds {
         self.outputs.iter().map(|bound| bound.units).fold(0.0, f64::max)
     }
 
-    /// Returns for each output the factor that makes its error comparable with the errors of other outputs: the largest bound
-    /// divided by the bound of the output. A bound below `least` counts as `least`, so that no factor is infinite.
+    /// Returns for each output the factor that makes its error comparable with other outputs' errors: the largest bound divided
+    /// by the output's own. A bound below `least` counts as `least`, so that no factor is infinite.
     pub fn weights(&self, least: f64) -> Vec<f64> {
         let largest = self.governing_units();
         let weight = |own: f64| if own == largest { 1.0 } else { largest / own.max(least) };

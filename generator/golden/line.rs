@@ -1,5 +1,5 @@
-//! Models two blocks of [seed 000](crate#symbols) that the devices `quad-cosine` and `cosine-squared` share: the accumulator that
-//! computes the angles of the points along a scan line, and the table of powers of a cosine.
+//! Models two blocks of [seed 000](crate#symbols) that the devices `quad-cosine` and `cosine-squared` share. They are the
+//! accumulator that computes the angles of the points along a scan line, and the table of powers of a cosine.
 //!
 //! The accumulator begins with the operand `zeta_start` and adds `delta_zeta` for every further point. Angles are in right
 //! angles: with F fraction bits, the raw value 2^F is 90°.

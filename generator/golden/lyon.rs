@@ -1,7 +1,7 @@
 //! The golden model and the accuracy contract of the device `lyon`, which computes f = max(0, 1 − β·D²)^m.
 //!
 //! D² is the squared length of the difference D = N − H between the unit normal N and the unit half vector H (operands `dx`,
-//! `dy`, `dz`). β = n/(2·m) with the specular exponent n; the configuration chooses m, a power of two. The device takes n
+//! `dy`, `dz`). β = n/(2·m) with the specular exponent n. The configuration chooses m, a power of two. The device takes n
 //! itself as the operand `exponent`, or log₂ n, rounded, as the operand `shift`. The source is the patent US 5 739 820, which
 //! [seed 000](crate#symbols) cites.
 
@@ -41,8 +41,8 @@ impl Keys {
         }
     }
 
-    /// Returns the operand for the exponent n: n itself, or the shift log₂ n rounded to the nearest integer (0 for n = 0),
-    /// such as 3 for n = 6.
+    /// Returns the operand for the exponent n. It is n itself, or the shift log₂ n rounded to the nearest integer (0 for n =
+    /// 0), such as 3 for n = 6.
     fn scale_operand(&self, n: i64) -> i64 {
         match self.scale {
             Scale::Multiplier => n,

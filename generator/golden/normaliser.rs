@@ -135,8 +135,8 @@ impl Formula for Normaliser {
         Some(self.root.sweep())
     }
 
-    /// Returns an upper limit of the error, in units, of a component that is as long as the vector: the error of the inverse
-    /// root for this sum of squares, plus the error of the rounding.
+    /// Returns an upper limit of the error, in units, of a component that is as long as the vector. It is the error of the
+    /// inverse root for this sum of squares, plus the error of the rounding.
     fn sweep_error(&self, place: &[i64]) -> Option<f64> {
         let error = self.root.relative_error(place[0]) + self.rounding_error();
         Some(error * exp2(self.keys.kept as i32))

@@ -1,7 +1,7 @@
 //! The golden model and the accuracy contract of the device `quad-cosine`, which computes f = cosᵏ(√(n/k)·δ) for the points of a
 //! scan line.
 //!
-//! δ is the angle at a point of the line; the specular exponent n decides whether k is 1, 2, 4 or 16. f approximates cosⁿδ: for
+//! δ is the angle at a point of the line. The specular exponent n decides whether k is 1, 2, 4 or 16. f approximates cosⁿδ: for
 //! example, n = 4 gives k = 4 and exactly cos⁴δ. f is 0 if |δ| or |√(n/k)·δ| exceeds a right angle. The source is [seed
 //! 000](crate#symbols).
 

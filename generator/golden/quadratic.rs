@@ -1,6 +1,6 @@
-//! The golden model and the accuracy contract of the device `quadratic`, which computes f = max(0, c + a(n)·(c² − c)), or 0 if
-//! c ≤ 0 ([symbols](crate#symbols)). The device reads the coefficient a(n) from a table, ROM(n). The source is the patent UA
-//! 20998, which seed 001 cites.
+//! The golden model and the accuracy contract of the device `quadratic`. It computes f = max(0, c + a(n)·(c² − c)), or 0 if c ≤
+//! 0 ([symbols](crate#symbols)). The device reads the coefficient a(n) from a table, ROM(n). The source is the patent UA 20998,
+//! which seed 001 cites.
 
 pub mod coefficient;
 #[cfg(test)]
@@ -109,8 +109,8 @@ impl Reflectance for QuadraticArithmetic {
         Some(formulas::quadratic(cosine, self.exact[exponent as usize]))
     }
 
-    /// The slope is at most 1 + |a| for the largest |a| of the domain: if the formula is not clamped, it is 1 − a + 2·a·c. At a
-    /// right angle the formula is 0, so it has no jump.
+    /// The slope is at most 1 + |a| for the largest |a| of the domain. If the formula is not clamped, the slope is 1 − a +
+    /// 2·a·c. At a right angle the formula is 0, so it has no jump.
     fn variation(&self) -> Option<Variation> {
         let (least, most) = self.keys.domain.exponents();
         let exact = self.exact[least as usize..=most as usize].iter();

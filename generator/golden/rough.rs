@@ -206,8 +206,8 @@ impl RoughArithmetic {
         }
     }
 
-    /// Returns the first value of register 13: n/2·(cos(γ ± dγ) − 1), or, in the exact arithmetic, −1.0 for a surface that
-    /// faces away, which has cos γ = 0.
+    /// Returns the first value of register 13: n/2·(cos(γ ± dγ) − 1). In the exact arithmetic, a surface that faces away, which
+    /// has cos γ = 0, gets −1.0.
     #[inline]
     fn scaled(&self, adder_15: i64, exponent: i64, cos_gamma: i64) -> i64 {
         match &self.kind {
@@ -219,8 +219,8 @@ impl RoughArithmetic {
         }
     }
 
-    /// Returns the second value of register 13: the square of the output of adder 16, which is register 13 + 1.0, or, in the
-    /// exact arithmetic, −1.0 for a surface that faces away.
+    /// Returns the second value of register 13: the square of the output of adder 16, which is register 13 + 1.0. In the exact
+    /// arithmetic, a surface that faces away gets −1.0.
     #[inline]
     fn squared(&self, result: i64, cos_gamma: i64) -> i64 {
         match &self.kind {

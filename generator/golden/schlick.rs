@@ -1,4 +1,4 @@
-//! The golden model and the accuracy contract of the device `schlick`, which computes f = c / (n − n·c + c), or 0 if c ≤ 0
+//! The golden model and the accuracy contract of the device `schlick`. It computes f = c / (n − n·c + c), or 0 if c ≤ 0
 //! ([symbols](crate#symbols)). This is Schlick's approximation of cⁿ; the source is seed 002. For example, c = 0.5 and n = 1
 //! give 0.5.
 
@@ -40,8 +40,8 @@ fn products(keys: &Keys) -> Products {
 }
 
 /// The hardware divides one bit a clock; the model divides once and derives the divider's registers from that division. After k
-/// clocks the low bits of the quotient register are the first k bits of the quotient, and the remainder register holds the
-/// remainder after these bits.
+/// clocks, the low bits of the quotient register are the first k bits of the quotient. The remainder register has the remainder
+/// after these bits.
 pub fn model(config: &Config) -> Box<dyn Model> {
     let it = SchlickArithmetic(Keys::of(config));
     let (bits, cosine_fraction) = (it.0.fraction, it.0.operands.cosine.fraction);
@@ -105,9 +105,9 @@ impl Reflectance for SchlickArithmetic {
         Some(formulas::schlick(cosine, exponent as f64))
     }
 
-    /// The largest n is an upper limit of the slope n/(n − n·c + c)², which is largest at an end: n at c = 1, and 1/n at c = 0.
-    /// At c = 0 the formula is 0, as it is beyond a right angle. With n = 0 the formula is 1 for every c above 0, and jumps to
-    /// 0 at a right angle.
+    /// The largest n is an upper limit of the slope n/(n − n·c + c)². The slope is largest at an end: n at c = 1, and 1/n at c
+    /// = 0. At c = 0 the formula is 0, as it is beyond a right angle. With n = 0 the formula is 1 for every c above 0, and
+    /// jumps to 0 at a right angle.
     fn variation(&self) -> Option<Variation> {
         let (least, most) = self.0.domain.exponents();
         Some(Variation { slope: most as f64, jump: if least > 0 { 0.0 } else { 1.0 } })

@@ -399,8 +399,8 @@ mod tests {
     use glint_config::Value;
     use glint_keys::shading::schema;
 
-    /// With a cosine of 12 fraction bits, the largest error is above the bound that falsely small bounds of the parts would
-    /// give, and below the true bound.
+    /// With a cosine of 12 fraction bits, the largest error is below the true bound. It is above the bound that falsely small
+    /// bounds of the parts would give.
     #[test]
     fn the_bound_of_the_whole_falls_with_that_of_a_part() {
         let keys = [("cosine.fraction", 12), ("domain.exponent_max", 1000)];

@@ -1,7 +1,7 @@
 //! Makes the table of sines of the device `rough`, ROM 18, for its golden model; the hardware description computes its own.
 //!
-//! The table maps a cosine x to the sine √(1 − x²), by one entry for each bucket (an interval of x), or by straight segments that
-//! become shorter toward x = 1. x is a raw value with C fraction bits from 0 to 2^C; a sine has the format u0.S.
+//! The table maps a cosine x to the sine √(1 − x²). It has one entry for each bucket (an interval of x), or straight segments
+//! that become shorter toward x = 1. x is a raw value with C fraction bits from 0 to 2^C. A sine has the format u0.S.
 
 use super::curve::{self, SegmentedCurve};
 use glint_base::fixed::exp2;
@@ -40,8 +40,8 @@ pub struct ErrorRange {
     pub cosines: (f64, f64),
     /// The largest `|table − √(1 − x²)|`.
     pub error: f64,
-    /// The error that words of unlimited width would leave: the distance of √(1 − x²) from the constant of the bucket, or from
-    /// the straight line of the segment.
+    /// The error that words of unlimited width would leave: the distance of √(1 − x²) from the bucket's constant, or from the
+    /// segment's line.
     pub shape: f64,
 }
 

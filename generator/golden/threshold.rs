@@ -1,5 +1,5 @@
-//! The golden model and the accuracy contract of the device `threshold`, which computes f = (n/2·(c − 1) + 1)², or 0 if the
-//! square is below a level ([symbols](crate#symbols)).
+//! The golden model and the accuracy contract of the device `threshold`. It computes f = (n/2·(c − 1) + 1)², or 0 if the square
+//! is below a level ([symbols](crate#symbols)).
 //!
 //! The level of n is a word of the table ROM(n): a darker highlight is invisible. f is also 0 if the base of the square is
 //! negative, or if c ≤ 0. The source is the patent UA 30041, which seed 001 cites.
@@ -50,8 +50,8 @@ impl ThresholdArithmetic {
         it
     }
 
-    /// Returns the words of ROM(n), one for each octave of n: the smallest f at which the largest colour reaches `level / 100`
-    /// units, and at most 1.0 − ulp. The level 100 gives 258 for colours of 8 bits and an f of 16 fraction bits.
+    /// Returns the words of ROM(n), one for each octave of n. A word is the smallest f at which the largest colour reaches
+    /// `level / 100` units, and at most 1.0 − ulp. The level 100 gives 258 for colours of 8 bits and an f of 16 fraction bits.
     fn thresholds(keys: &Keys) -> Vec<i64> {
         // The smallest word with 100 · largest · word ≥ level · 2^F. The right side is less than 2^30 · 2^24, so that an `i64`
         // holds it.

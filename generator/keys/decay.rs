@@ -1,8 +1,8 @@
 //! Declares the configuration keys of the devices `blinn` and `gauss`, and computes their tables of polynomials.
 //!
 //! Both devices compute f = 2^(−n·decay(c)), where c = cos γ and n is the specular exponent. The decay is −log₂ c in `blinn` and
-//! γ²/(2 ln 2) in `gauss`. One table gives the ratio of the decay to the distance 1 − c, in `blinn` for the mantissa m of the
-//! cosine, from 1/2 to 1, instead of c. The other table gives 2^−x.
+//! γ²/(2 ln 2) in `gauss`. One table gives the ratio of the decay to the distance 1 − c. In `blinn`, the mantissa m of the
+//! cosine, from 1/2 to 1, takes the place of c. The other table gives 2^−x.
 
 use std::sync::Arc;
 
@@ -86,7 +86,7 @@ impl Decay {
 
 impl Keys {
     /// Returns the number of bits of u, whose leading bits are the operand of the ratio's table. In `gauss`, u is the distance 1
-    /// − c minus one unit in the last place of the cosine c; in `blinn`, the mantissa replaces c. For a cosine with 20 fraction
+    /// − c minus one unit in the last place of the cosine c. In `blinn`, the mantissa replaces c. For a cosine with 20 fraction
     /// bits u has 19 bits in `blinn` and 20 bits in `gauss`.
     pub fn distance(&self, decay: Decay) -> u32 {
         self.operands.cosine.fraction - decay.known()
@@ -118,14 +118,14 @@ impl Keys {
         Format::unsigned(whole as i32, self.argument as i32)
     }
 
-    /// Returns the number of low bits of u that do not address the table of the ratio, which reads one fraction bit of 1 − c more
-    /// than the ratio has. 20 cosine bits and 16 ratio bits leave 3.
+    /// Returns the number of low bits of u that do not address the table of the ratio. The table reads one fraction bit of 1 − c
+    /// more than the ratio has. 20 cosine bits and 16 ratio bits leave 3.
     pub fn unseen(&self) -> u32 {
         self.operands.cosine.fraction.saturating_sub(self.ratio_fraction + 1)
     }
 
-    /// Returns the table of the ratio. Its operand is u without the low bits that it does not read, and its value the ratio at
-    /// the middle of all distances with the same operand. Fails with the key `ratio.fraction` if no approximation can be found.
+    /// Returns the table of the ratio. Its operand is u without the low bits that it does not read. Its value is the ratio at the
+    /// middle of all distances with the same operand. Fails with the key `ratio.fraction` if no approximation can be found.
     pub fn ratio(&self, decay: Decay) -> Result<Arc<Piecewise>, ConfigError> {
         let unseen = self.unseen();
         let fraction = self.operands.cosine.fraction - unseen;

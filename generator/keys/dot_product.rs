@@ -1,5 +1,5 @@
 //! Declares the configuration keys of the device `dot-product`, which computes the cosine of the angle γ between a vector N of
-//! any length and a unit vector H; a negative cosine becomes 0. With the key `two_sided` it computes |cos γ|.
+//! any length and a unit vector H. A negative cosine becomes 0. With the key `two_sided` it computes |cos γ|.
 
 use super::normaliser;
 use glint_base::fixed::{Format, Rounding};

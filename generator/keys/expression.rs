@@ -1,8 +1,8 @@
 //! Declares the configuration keys of the device `expression`, and finds the plan of its formulas.
 //!
-//! The table `operands` of a configuration states the operands, the table `let` named parts of formulas, and the table `results`
-//! the results with their formulas, such as `sqrt(x^2 + y^2)`. A plan is a list of fixed-point operations that computes the
-//! formulas ([`glint_plan`]).
+//! The table `operands` of a configuration states the operands, and the table `let` named parts of formulas. The table `results`
+//! states the results with their formulas, such as `sqrt(x^2 + y^2)`. A plan is a list of fixed-point operations that computes
+//! the formulas ([`glint_plan`]).
 
 use std::sync::Arc;
 
@@ -153,8 +153,8 @@ fn misread(key: String, fault: Fault) -> ConfigError {
 /// Plans the formulas of a configuration, and proves an error bound for each result. This can take some seconds.
 ///
 /// # Errors
-/// Fails if a name, an operand, a formula or an allowed error is wrong, if no result depends on some operand, or if no plan can
-/// be found.
+/// Fails if a name, an operand, a formula or an allowed error is wrong, no result depends on some operand, or no plan can be
+/// found.
 pub fn plan(config: &Config) -> Result<ProvedPlan, ConfigError> {
     let keys = Keys::of(config);
     let statement = statement(&keys)?;
@@ -187,8 +187,7 @@ fn check_operands_have_readers(found: &ProvedPlan) -> Result<(), ConfigError> {
     Ok(())
 }
 
-/// Turns the refusal of a plan into an error in the formula that it concerns, which may be a named part's, or in the table
-/// `results`.
+/// Turns the refusal of a plan into an error in the formula that it concerns, also of a named part, or in the table `results`.
 fn refused(keys: &Keys, statement: &ExpressionStatement, refusal: PlanRefusal) -> ConfigError {
     let of_part = |place: &TextSpan| Some(&keys.parts.0.get(place.text.checked_sub(1)?)?.name);
     let key = match (refusal.place.as_ref().and_then(of_part), refusal.result) {

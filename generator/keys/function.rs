@@ -1,7 +1,7 @@
 //! Declares the configuration keys of the device `function`, and finds the piecewise polynomial for its function.
 //!
-//! The keys state a function of one operand x, as a formula such as `1 / sqrt(x)` or as samples (measured points), its domain and
-//! the allowed error.
+//! The keys state a function of one operand x, its domain and the allowed error. The function is a formula such as `1 / sqrt(x)`,
+//! or samples (measured points).
 
 use std::sync::Arc;
 

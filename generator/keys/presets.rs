@@ -1,4 +1,4 @@
-//! Lists the configurations from which a user can start, by name: a function, such as `exp2` or `sigmoid`, for the device
+//! Lists the configurations from which a user can start, by name. A function, such as `exp2` or `sigmoid`, is for the device
 //! `function`, and a computation, such as `divide` or `rotate`, for `expression`. A preset states some keys; the others have
 //! their defaults.
 
@@ -45,8 +45,8 @@ struct ExpressionPreset {
     name: &'static str,
     operands: &'static [(&'static str, OperandFormat)],
     parts: &'static [(&'static str, &'static str)],
-    /// Each with its name, its formula, its number of fraction bits, and the condition under which the error bound is promised;
-    /// an empty one promises it for all operands.
+    /// The results, each with its name, its formula, its number of fraction bits, and the condition under which the error bound
+    /// is promised. An empty condition promises it for all operands.
     results: &'static [(&'static str, &'static str, i64, &'static str)],
 }
 

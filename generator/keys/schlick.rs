@@ -1,4 +1,4 @@
-//! Declares the configuration keys of the device `schlick`, which computes f = c / (n − n·c + c) with c = cos γ and
+//! Declares the configuration keys of the device `schlick`. It computes f = c / (n − n·c + c) with c = cos γ and
 //! the specular exponent n.
 
 use super::common::{self, Domain, Operands};

@@ -16,9 +16,9 @@
 
 use super::{BlockMemory, Chip, Estimate, Family, Timing};
 
-/// Returns the number of look-up tables of a product: two for each CPE that nextpnr makes. The formula is exact for the products
-/// of 4 × 4, 8 × 8, 9 × 9, 12 × 8, 16 × 8, 16 × 16 and 18 × 18 bits, which were placed. For example, 8 by 8 bits take 73 CPEs,
-/// and so 146 look-up tables.
+/// Returns the number of look-up tables of a product: two for each CPE that nextpnr makes. These products were placed, and the
+/// formula is exact for them: 4 × 4, 8 × 8, 9 × 9, 12 × 8, 16 × 8, 16 × 16 and 18 × 18 bits. For example, 8 by 8 bits take 73
+/// CPEs, and so 146 look-up tables.
 fn product_luts(first: u64, second: u64) -> u64 {
     let (columns, rows) = (first.max(second) / 2, first.min(second) / 2);
     let cells = columns * rows + 3 * columns + 7 * rows + 17;

@@ -1,6 +1,6 @@
 //! Data of Lattice iCE40. The delays are estimates. `benches/tune/fit` computed the weights for the cost from 20 of the cores
 //! in `records/synthesis/`, sequential and pipelined. For half of these cores, the estimate of look-up tables is within 9 % of
-//! the number after synthesis; the worst is `threshold` (33 % too many). Three pipelines are no part of the fit: the estimate
+//! the number after synthesis. The worst is `threshold` (33 % too many). Three pipelines are no part of the fit: the estimate
 //! of `lyon_up5k_pipelined` is 51 % too high, of `rough_up5k_pipelined` 10 % too high, and of `shading_pipelined` 31 % too low.
 
 use super::{BlockMemory, Chip, Estimate, Family, Timing};

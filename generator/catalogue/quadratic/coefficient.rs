@@ -2,8 +2,8 @@
 //! ([symbols](crate#symbols)).
 //!
 //! With x = 1 − c the parabola is `(1 − x)·(1 − a·x)`, with a zero at x = 1/a. For 1 < a < n − 1 the parabola lies above cⁿ near
-//! the peak c = 1, and the error is largest where both curves have the same slope. Farther from the peak the parabola lies below
-//! cⁿ, and the error is largest at the zero. For n ≤ 2 the parabola with a = n − 1 (0 for n = 0) is used.
+//! the peak c = 1. The error is largest where both curves have the same slope. Farther from the peak the parabola lies below cⁿ,
+//! and the error is largest at the zero. For n ≤ 2 the parabola with a = n − 1 (0 for n = 0) is used.
 
 /// Returns n − 1, with which the parabola and cⁿ have the same value and slope at c = 1, or 0 for n = 0.
 pub fn taylor(n: u32) -> f64 {
@@ -44,7 +44,7 @@ fn touching(n: f64, x: f64) -> f64 {
 
 /// Returns the error of the parabola with the coefficient `a` at its zero, which is the value of cⁿ there. This is the largest
 /// error below cⁿ, and for the coefficients of [`taylor`] and [`minimax`] the largest error of all. For n ≤ 2 these coefficients
-/// make no error, and for a ≤ 1 the zero is not within 0 < c < 1; both give 0.
+/// make no error, and for a ≤ 1 the zero is not within 0 < c < 1. Both give 0.
 pub fn error(a: f64, n: u32) -> f64 {
     if n <= 2 || a <= 1.0 { 0.0 } else { libm::exp(f64::from(n) * libm::log1p(-1.0 / a)) }
 }

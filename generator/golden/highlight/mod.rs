@@ -35,8 +35,8 @@ pub trait Reflectance: Send + Sync {
     /// Returns the values of [`Reflectance::references`] as Python expressions, if somebody has written them. Test benches use
     /// them as an independent second opinion.
     ///
-    /// The expressions may use the names of control operands (as values, not raw), `index` (the number of the result, from 0),
-    /// the words of a ROM (as values, by the ROM's name), and the functions of `math`.
+    /// The expressions may use the names of control operands (as values, not raw), and `index` (the number of the result, from
+    /// 0). They may also use the words of a ROM (as values, by the ROM's name), and the functions of `math`.
     fn expressions(&self) -> Vec<String> {
         Vec::new()
     }
@@ -66,8 +66,8 @@ pub trait Reflectance: Send + Sync {
         first.to_vec()
     }
 
-    /// Returns the exact f at a cosine that is not rounded to the operand's format, and at a raw exponent, if the device has
-    /// these operands and somebody has written this method for it.
+    /// Returns the exact f at a raw exponent and at a cosine that is not rounded to the operand's format. A device without these
+    /// operands, or without an own version of this method, returns `None`.
     fn at_cosine(&self, cosine: f64, exponent: i64) -> Option<f64> {
         let _ = (cosine, exponent);
         None
@@ -84,7 +84,7 @@ pub trait Reflectance: Send + Sync {
     }
 
     /// Returns the control operands that come nearest to the angle `gamma`, in radians from 0 to π/2, and to the specular
-    /// exponent `n`, if the domain represents this exponent. `operands` are the operands of the contract.
+    /// exponent `n`. The domain must represent this exponent. `operands` are the operands of the contract.
     ///
     /// By default the device must have the operands `cos_gamma` and `exponent`; any other operand gets the value of its domain
     /// that is nearest to 0. A device with other operands must override this.

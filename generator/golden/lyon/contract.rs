@@ -131,16 +131,16 @@ impl Reflectance for LyonArithmetic {
         Some((f - nearest).abs().max((f - formula(high)).abs()))
     }
 
-    /// Derives the contributions to the error of f. Base and powers lie in 0 … 1, hardware's and formula's alike, so by the mean
-    /// value theorem an error ε before a power p grows to at most p·ε.
+    /// Derives the contributions to the error of f. Base and powers lie in 0 … 1, hardware's and formula's alike. By the mean
+    /// value theorem, an error ε before a power p therefore grows to at most p·ε.
     ///
     /// - An error of D² is multiplied by β = n/(2·m), and by at most m when the base is raised to m: n/2 in all.
     /// - Base: as in `cosine-power`, the hardware uses the inverse, 1.0 − ulp − t, instead of 1.0 − t. If t is truncated, the
     ///   base is low by at most an ulp; if t is rounded to the nearest, by at most 3/2 ulp.
     /// - The result of squaring number i is rounded, and then raised to m/2^i. The factors of these errors add up to m − 1.
     ///
-    /// If every rounding truncates, the error of D² makes f too large, and the other errors make f too small. Only the larger
-    /// of these two sums counts then.
+    /// If every rounding truncates, the error of D² makes f too large, and the other errors make f too small. Only the larger of
+    /// these two sums counts then.
     fn shares(&self) -> Vec<ErrorShare> {
         let keys = &self.keys;
         let (f, power) = (keys.f.fraction, f64::from(keys.power));

@@ -28,12 +28,12 @@ pub fn contract(config: &Config) -> Box<dyn Contract> {
 }
 
 impl QuadCosineArithmetic {
-    /// Returns two upper limits of the error of the stretched angle √(n/k)·δ for n, in right angles: from the low bits that
-    /// multiplier 11 does not read, and from the rounding of ROM 9.
+    /// Returns two upper limits of the error of the stretched angle √(n/k)·δ for n, in right angles. One is from the low bits
+    /// that multiplier 11 does not read, and one from the rounding of ROM 9.
     ///
-    /// The magnitude m denotes angles from m to m + u. With s = √(n/k) and s' = ROM 9's word, s'·m is less than s·(m + u) by at
-    /// most s·u + (s − s')·m, and more than s·m by at most (s' − s)·m. An angle beyond 1/s is in the table's last word anyway,
-    /// and so is an angle beyond 1/s'.
+    /// The magnitude m denotes angles from m to m + u. Let s = √(n/k), and s' be ROM 9's word. s'·m is less than s·(m + u) by
+    /// at most s·u + (s − s')·m, and more than s·m by at most (s' − s)·m. An angle beyond 1/s is in the table's last word
+    /// anyway, and so is an angle beyond 1/s'.
     fn stretching(&self, n: i64) -> (f64, f64) {
         let s = (n as f64 / POWERS[range_of(n)] as f64).sqrt();
         let word = self.root(n) as f64 * exp2(-(self.keys.root_fraction as i32));
@@ -115,8 +115,8 @@ impl Reflectance for QuadCosineArithmetic {
         Some((end(magnitude) - f).max(f - end(magnitude + 1)))
     }
 
-    /// Returns the contributions for the n with the largest sum: the distance of ROM 12 from the formula within a step, the
-    /// rounding of ROM 12, and two errors of the stretched angle, times the steepest slope of the power.
+    /// Returns the contributions for the n with the largest sum. They are the distance of ROM 12 from the formula within a
+    /// step, the rounding of ROM 12, and two errors of the stretched angle, times the steepest slope of the power.
     fn shares(&self) -> Vec<ErrorShare> {
         let keys = &self.keys;
         let (low, high) = keys.domain.exponents();

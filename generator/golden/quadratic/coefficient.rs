@@ -1,7 +1,7 @@
 //! Computes the coefficients a(n) of the device `quadratic` (its table ROM(n)), independently of the hardware description.
 //!
 //! The device computes c + a·(c² − c), a parabola in c = cos γ that approximates cⁿ. With x = 1 − c, the parabola exceeds cⁿ by
-//! `h(x) = (1 − x)·(1 − a·x) − (1 − x)ⁿ` up to its zero at x = 1/a; beyond the zero the result is 0 and cⁿ exceeds it. The
+//! `h(x) = (1 − x)·(1 − a·x) − (1 − x)ⁿ` up to its zero at x = 1/a. Beyond the zero the result is 0 and cⁿ exceeds it. The
 //! minimax a makes the maximum of h equal to the error at the zero, (1 − 1/a)ⁿ.
 
 use glint_keys::quadratic::Scheme;

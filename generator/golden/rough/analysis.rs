@@ -60,8 +60,8 @@ impl Errors {
 
 /// The factor n·b by which an error of cos(γ ± dγ) changes f, for bins of γ and dγ that are a certain number of bins apart.
 pub struct Weight {
-    /// The largest weight n·b for any n of the domain and any angles in these bins. The base is b = n/2·(cos(γ ± dγ) − 1) + 1,
-    /// and an error of cos(γ ± dγ) changes f = b² by at most this factor.
+    /// The largest weight n·b for any n of the domain and any angles in these bins. With the base b = n/2·(cos(γ ± dγ) − 1) + 1,
+    /// an error of cos(γ ± dγ) changes f = b² by at most this factor.
     pub linear: f64,
     /// The largest n of the domain for which the square is not constant, or 0.
     exponent: f64,

@@ -54,8 +54,8 @@ impl Reflectance for RoughArithmetic {
         })]
     }
 
-    /// Returns the operands of γ and n with dγ = 0 (in the patent's arithmetic, which has no cosine 1.0, with the largest
-    /// cosine), if the domain represents `n`.
+    /// Returns the operands of γ and n with dγ = 0, if the domain represents `n`. The patent's arithmetic has no cosine 1.0,
+    /// and so has the largest cosine instead.
     fn at(&self, operands: &[Operand], gamma: f64, n: f64) -> Option<Vec<i64>> {
         let no_deviation = [("cos_dgamma", self.keys.largest_cosine())];
         shared::operands_at(operands, gamma, n, &no_deviation)

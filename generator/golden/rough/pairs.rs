@@ -1,11 +1,11 @@
 //! Finds a bound on the error of f of the device `rough` by branch and bound over pairs of angles γ and dγ.
 //!
 //! **Bounds.** A bin is a small interval of angles. The analysis in [`super::bound`] gives a bound for each pair of bins, one
-//! for γ and one for dγ. For a pair of operands in these bins, the same formula gives a smaller bound, because the errors of
-//! the table of sines are known at these operands. If the output of the hardware's adder 15 is computed too, its distance D
-//! from cos(γ ± dγ) − 1 is known, and the error of f is at most n·b·D plus the roundings of register 13. Here b is the base of
-//! the square, and n·b is largest at n = 1/(1 − cos(γ − dγ)) or at an end of the domain of n. For a pair of operands and one n,
-//! the error itself is computed, with the hardware's roundings.
+//! for γ and one for dγ. For a pair of operands in these bins, the same formula gives a smaller bound. The reason is that the
+//! errors of the table of sines are known at these operands. If the output of the hardware's adder 15 is computed too, its
+//! distance D from cos(γ ± dγ) − 1 is known. The error of f is then at most n·b·D plus the roundings of register 13. Here b is
+//! the base of the square. n·b is largest at n = 1/(1 − cos(γ − dγ)) or at an end of the domain of n. For a pair of operands
+//! and one n, the error itself is computed, with the hardware's roundings.
 //!
 //! **The search.** The search remembers the largest error that it has computed. It skips every pair whose bound is no larger,
 //! because such a pair has no larger error, and examines all other pairs. If that takes more than 2²¹ steps, the result is the

@@ -62,7 +62,7 @@ pub fn address<'d>(
     d.choose(name, within, [last, step])
 }
 
-/// Returns the words of a table of `cosᵏ` over a right angle, for the power k = `power`, as raw values in `u0.F` with F =
+/// Returns the words of a table of `cosᵏ` over a right angle, for the power k = `power`. They are raw values in `u0.F` with F =
 /// `fraction`.
 ///
 /// The table has 2^`bits` steps. A word is the mean of the values at the two ends of its step. The last word is 0, because it

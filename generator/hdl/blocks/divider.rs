@@ -1,7 +1,7 @@
 //! Builds an iterative divider, which computes one bit of the quotient a clock by trial subtraction (restoring division).
 //!
-//! The first remainder is the dividend. A step doubles the remainder and subtracts the divisor if the difference is not negative;
-//! its bit of the quotient, from the top bit down, is 1 if it subtracted. The last remainder is exact, so every bit of the
+//! The first remainder is the dividend. A step doubles the remainder and subtracts the divisor if the difference is not negative.
+//! Its bit of the quotient, from the top bit down, is 1 if it subtracted. The last remainder is exact, so every bit of the
 //! quotient is correct. Only a quotient of 1.0 becomes the largest fraction below 1.
 
 use crate::dsl::{Counter, Designer, Mux, Register, Signal, StepSetting};

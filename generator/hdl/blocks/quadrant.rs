@@ -35,7 +35,7 @@ pub fn quadrant<'d>(d: &'d Designer, name: &str, turn: Signal<'d>, ahead: u32) -
     Quadrant { way, negative: number.bit(1) }
 }
 
-/// Returns 2^w − `way` for the w bits of the unsigned integer `way`, or the largest number for `way` 0: with 4 bits 5 gives 11,
+/// Returns 2^w − `way` for the w bits of the unsigned integer `way`, or the largest number for `way` 0. With 4 bits, 5 gives 11,
 /// and 0 gives 15.
 #[track_caller]
 pub fn mirrored<'d>(d: &'d Designer, name: &str, way: Signal<'d>) -> Signal<'d> {

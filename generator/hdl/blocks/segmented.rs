@@ -1,9 +1,9 @@
 //! Builds a table that approximates a function of one operand by linear interpolation, in segments that become shorter toward 0.
 //! For example, `rough` has such a table of sines.
 //!
-//! The operand u is an integer of C bits, or exactly 2^C. Range j has the values of u in [2^(C−2j−2), 2^(C−2j)): range 0 is
-//! the upper three quarters of all values, range 1 the upper three quarters of the rest. In range j, the upper k_j of the
-//! C−2j bits of u select a segment; below the last range, every value of u has its own entry.
+//! The operand u is an integer of C bits, or exactly 2^C. Range j has the values of u in [2^(C−2j−2), 2^(C−2j)). Range 0 is the
+//! upper three quarters of all values, range 1 the upper three quarters of the rest. In range j, the upper k_j of the C−2j bits
+//! of u select a segment. Below the last range, every value of u has its own entry.
 
 use crate::dsl::{Designer, Signal};
 use glint_base::fixed::{Format, Overflow, Rounding, exp2};

@@ -11,8 +11,8 @@ use glint_base::fixed::Format;
 pub struct Squarings<'d> {
     designer: &'d Designer,
     counter: Option<Counter<'d>>,
-    /// The mux for the start value of the counter, and its input for the squarings; `None` if the counter counts only squarings,
-    /// or if there is only one squaring.
+    /// The mux for the start value of the counter, and its input for the squarings. It is `None` if the counter counts only
+    /// squarings, or if there is only one squaring.
     start: Option<(Mux<'d>, Signal<'d>)>,
 }
 

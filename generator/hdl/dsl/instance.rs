@@ -57,9 +57,9 @@ impl Designer {
     /// part's first one loads its operand registers. A description with parts calls [`Designer::dataflow`] instead of writing a
     /// microprogram.
     ///
-    /// Reports a mistake if the names in `operands` differ from the part's operands, a signal does not fit its operand's format,
-    /// another part has the same name, or parts are nested more than 8 deep. A part must raise `valid` by a microinstruction, for
-    /// one result, and must not wait for `start`. The part's own mistakes are reported too.
+    /// Reports a mistake if the names in `operands` differ from the part's operands, or a signal does not fit its operand's
+    /// format. It is also a mistake if another part has the same name, or parts are nested more than 8 deep. A part must raise
+    /// `valid` by a microinstruction, for one result, and must not wait for `start`. The part's own mistakes are reported too.
     ///
     /// ```
     /// use glint_rtl::dsl::{Designer, end, step, valid};
@@ -160,7 +160,7 @@ impl Designer {
         )
     }
 
-    /// Makes the microprogram from the parts: it executes them in the order of their instances, and then loads each output that
+    /// Makes the microprogram from the parts. It executes them in the order of their instances, and then loads each output that
     /// is no register yet into a register. All logic between the parts must be combinational. [`Designer::finish`] reports a
     /// mistake for a register or a synchronous ROM outside the parts that loads on every clock.
     #[track_caller]
@@ -189,7 +189,7 @@ impl Designer {
     }
 }
 
-/// Returns a mistake for each register and synchronous memory outside the parts that loads on every clock: the microprogram of a
+/// Returns a mistake for each register and synchronous memory outside the parts that loads on every clock. The microprogram of a
 /// dataflow does not wait for this clock.
 fn delayed(inner: &mut Inner) -> Vec<Diagnostic> {
     let Inner { design, placed, .. } = inner;

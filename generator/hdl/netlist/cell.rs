@@ -2,7 +2,7 @@
 
 use super::NetId;
 
-/// A combinational cell, such as a sum or a mux: the driver of one net. "Same width" means that the operands and the result have
+/// A combinational cell, such as a sum or a mux. It drives one net. "Same width" means that the operands and the result have
 /// equal widths. Operands are nets of a design, or other values of type `N`.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Op<N = NetId> {

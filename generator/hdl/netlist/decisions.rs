@@ -37,8 +37,8 @@ fn is_control(design: &Design, net: NetId) -> bool {
     }
 }
 
-/// Returns the smallest number of registers on a path from the control word to `net`, or a larger number than any path has if
-/// there is no such path. Returns `None` if an operand or an undriven net affects `net`.
+/// Returns the smallest number of registers on a path from the control word to `net`. Without such a path, returns a larger
+/// number than any path has. Returns `None` if an operand or an undriven net affects `net`.
 fn registers_from_control(design: &Design, net: NetId) -> Option<u32> {
     let inputs = |net| match is_control(design, net) {
         true => Vec::new(),

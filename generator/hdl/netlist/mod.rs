@@ -364,8 +364,8 @@ impl Design {
         self.ports.iter().find(|port| wanted(port.role))
     }
 
-    /// Returns the nets on which net `id` depends within one clock: operands of its cell, the address of an asynchronous ROM, or
-    /// the control word of a field.
+    /// Returns the nets on which net `id` depends within one clock. They are operands of its cell, the address of an asynchronous
+    /// ROM, or the control word of a field.
     pub fn combinational_inputs(&self, id: NetId) -> Vec<NetId> {
         match &self.net(id).driver {
             Driver::Op(op) => op.operands(),

@@ -90,8 +90,7 @@ pub struct Checkpoint {
 }
 
 impl Pipeline {
-    /// Returns the first clock in which a net has its value for a point that the pipeline accepts in clock 0: the stage of the
-    /// net.
+    /// Returns the stage of a net: the first clock in which it has its value for a point that the pipeline accepts in clock 0.
     pub fn clock_of(&self, net: NetId) -> usize {
         self.stage_of[net.index()]
     }

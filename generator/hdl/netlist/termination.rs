@@ -18,8 +18,9 @@ pub struct Left {
 /// Returns for each microinstruction an upper limit of the clocks from its execution to the clock with `done`. The caller must
 /// know that the register of each loop's condition counts down by one in each iteration.
 ///
-/// Returns `None` if a microinstruction waits for `start`, the last one does not end the computation, a loop has several
-/// microinstructions, or its condition depends on anything but one register. A jump forward has no such restriction.
+/// Returns `None` if a microinstruction waits for `start`, or the last one does not end the computation. It is also `None` if a
+/// loop has several microinstructions, or its condition depends on anything but one register. A jump forward has no such
+/// restriction.
 pub fn remaining(design: &Design) -> Option<Vec<Left>> {
     let microprogram = &design.control.microprogram;
     let mut left: Vec<Left> = Vec::with_capacity(microprogram.len());

@@ -32,7 +32,7 @@ pub fn of_choice(timing: &Timing, values: usize) -> f64 {
 }
 
 /// Returns the delay from the operands of a node to its value. For an operand of the design, this is the time that the
-/// environment takes to deliver it; for a word of a block memory, the time from the clock edge.
+/// environment takes to deliver it. A word of a block memory has the time from the clock edge.
 pub fn node_delay(timing: &Timing, graph: &Graph, id: NodeId) -> f64 {
     match &graph.node(id).cell {
         Cell::Operand(_) => timing.input,

@@ -61,7 +61,7 @@ impl Label {
     }
 
     /// Returns the label of a part, such as the low bits. A part of a part is named after the whole value, so that names stay
-    /// short: the part `low` of `base` is `base_low`, and the part `high` of that part `base_high`.
+    /// short. The part `low` of `base` is `base_low`, and the part `high` of that part `base_high`.
     pub fn part(&self, name: &str) -> Self {
         let whole = self.part_of.as_ref().unwrap_or(&self.name);
         let part_of = Some(whole.clone());

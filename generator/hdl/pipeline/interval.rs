@@ -23,12 +23,12 @@ pub enum IntervalGoal {
 /// Returns the interval in clocks that `options.interval` requests. `most` is the number of clocks in which the sequential core
 /// computes a point. `problems` makes the scheduling problem for an interval.
 ///
-/// A rate gets the longest interval up to `most` that reaches the rate and the clock, and a number of multipliers the shortest
+/// A rate gets the longest interval up to `most` that reaches the rate and the clock. A number of multipliers gets the shortest
 /// one that reaches the clock. If no interval reaches the clock, both get 1, and the scheduler reports the error.
 ///
 /// # Errors
-/// Fails if the requested interval exceeds `most`, the rate exceeds one point a clock or lacks a clock frequency, or every
-/// interval that reaches the clock needs more multipliers than the options allow.
+/// Fails if the requested interval exceeds `most`, or the rate exceeds one point a clock or lacks a clock frequency. Also fails
+/// if every interval that reaches the clock needs more multipliers than the options allow.
 pub fn clocks<'a>(
     sequential: &Design,
     options: &Options,

@@ -89,9 +89,9 @@ pub fn pass_results(
 /// Turns a sequential design, which executes a microprogram, into a pipeline with the same results.
 ///
 /// # Errors
-/// Fails if the microprogram cannot be unrolled into a computation without loops, or if the requested clock, number of stages,
-/// interval, rate or number of multipliers cannot be reached. The latter errors state the nearest value that can be reached.
-/// Fails without such a value if a rate comes without a clock frequency, or if the solver finds no schedule.
+/// Fails if the microprogram cannot be unrolled into a computation without loops. Also fails if a pipeline cannot have the
+/// requested clock, number of stages, interval, rate or number of multipliers. The latter errors state the nearest value that can
+/// be reached. Fails without such a value if a rate comes without a clock frequency, or if the solver finds no schedule.
 pub fn pipeline(sequential: &Design, options: &Options) -> Result<Design, PipelineError> {
     let mut results = pass_results(sequential, options)?;
     let Some(PassResult { computation, .. }) = results.pop() else {

@@ -24,7 +24,7 @@ pub fn ever(graph: &Graph, condition: NodeId, free: &[NodeId]) -> Option<bool> {
     Some(cases.any(|values| values[&condition] == [1]))
 }
 
-/// Counts the `conditions` that are 1, for each bit pattern of the one leaf on which all of them depend; `None` marks patterns
+/// Counts the `conditions` that are 1, for each bit pattern of the one leaf on which all of them depend. `None` marks patterns
 /// outside its range. For example, the conditions `count > 0` and `count > 1` give 0, 1, 2 and 2 for a `count` of two bits.
 /// Leaves are as in [`ever`].
 ///

@@ -50,9 +50,9 @@ impl<'a> Request<'a> {
     /// Returns the schedule that reaches the requested clock frequency or number of stages.
     ///
     /// # Errors
-    /// Fails if one operation takes longer than the clock period, or if the requested number of stages is more than useful, or
-    /// fewer than memories and multipliers need. These errors have the nearest value that can be reached. Fails if the solver
-    /// finds no schedule.
+    /// Fails if one operation takes longer than the clock period. Also fails if the requested number of stages is more than
+    /// useful, or fewer than memories and multipliers need. These errors have the nearest value that can be reached. Fails if the
+    /// solver finds no schedule.
     pub fn schedule(
         &self,
         problems: &ScheduleProblem<'_>,

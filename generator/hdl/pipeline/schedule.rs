@@ -1,10 +1,10 @@
 //! Assigns each node of a computation to a stage of the pipeline, with the fewest register bits.
 //!
-//! A node must be in a later stage than its operand if a block memory lies between them, or if the logic between them is too slow
-//! for the clock. A value takes one register bit for each of its bits and for each boundary between stages up to its last use.
-//! All constraints are on differences of two stages, so a linear program finds an integer solution. (The method is from Cong and
-//! Zhang, "An efficient and versatile scheduling algorithm based on SDC formulation", 2006.) Products that share multipliers
-//! (`sharing`) get their stages before the linear program runs.
+//! A node must be in a later stage than its operand if a block memory lies between them, or too much logic for the clock. A value
+//! takes one register bit for each of its bits and for each boundary between stages up to its last use. All constraints are on
+//! differences of two stages, so a linear program finds an integer solution. (The method is from Cong and Zhang, "An efficient
+//! and versatile scheduling algorithm based on SDC formulation", 2006.) Products that share multipliers (`sharing`) get their
+//! stages before the linear program runs.
 
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
@@ -70,7 +70,7 @@ pub struct ScheduleProblem<'a> {
     kinds: Vec<ProductGroup>,
 }
 
-/// The timing of a node that gets its value at a rising edge: a word of a block memory, a product in the register of a
+/// The timing of a node that gets its value at a rising edge. It is a word of a block memory, a product in the register of a
 /// multiplier, or a product of a shared multiplier.
 #[derive(Clone, Copy, Debug)]
 struct ClockedNode {
@@ -276,7 +276,7 @@ impl<'a> ScheduleProblem<'a> {
         }
     }
 
-    /// Returns the schedule for a clock period in nanoseconds, with as few stages as possible, and then with the fewest register
+    /// Returns the schedule for a clock period in nanoseconds. It has as few stages as possible, and then the fewest register
     /// bits; some muxes count as bits too (`solve`). Products that share multipliers get their stages first. The schedule may
     /// then have more stages or bits than necessary.
     ///
@@ -432,8 +432,8 @@ impl<'a> ScheduleProblem<'a> {
         earliest
     }
 
-    /// Gives the products that share multipliers their stages, one after another: first the product that can have the earliest
-    /// stage, and among several the one that the most stages must follow.
+    /// Gives the products that share multipliers their stages, one after another. The product that can have the earliest stage
+    /// comes first, and among several the one that the most stages must follow.
     fn taken(&self, differences: &[StageDifference]) -> Taken {
         let mut after = vec![0; self.graph.nodes.len()];
         for &(from, to, apart) in differences.iter().rev() {

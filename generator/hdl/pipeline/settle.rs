@@ -6,8 +6,8 @@
 use super::graph::{Cell, Graph, Label, NodeId, NodeOp};
 use glint_base::fixed::Format;
 
-/// Returns a node with the value of node `id`. If `id` is a mux `over ? most : rest` with a constant `most`, it bypasses those
-/// muxes of this kind in `rest` whose condition must be 0 if the new condition is 0.
+/// Returns a node with the value of node `id`. For a mux `over ? most : rest` with a constant `most`, bypasses the muxes of this
+/// kind in `rest` that then cannot matter: if the new condition is 0, so is theirs.
 pub fn settled(graph: &mut Graph, id: NodeId) -> NodeId {
     let node = graph.node(id).clone();
     let Some((over, rest, most)) = limit(graph, id) else { return id };
@@ -25,8 +25,8 @@ fn limit(graph: &Graph, id: NodeId) -> Option<(NodeId, NodeId, NodeId)> {
     }
 }
 
-/// Rewrites the condition `id` if it is one bit of a mux `over ? most : rest` whose constant `most` has a 1 at this bit: it is 1
-/// if `over` or the same bit of `rest` is, and so need not wait for the mux.
+/// Rewrites the condition `id` if it is one bit of a mux `over ? most : rest` whose constant `most` has a 1 at this bit. The
+/// condition is 1 if `over` or the same bit of `rest` is, and so need not wait for the mux.
 fn flag(graph: &mut Graph, id: NodeId) -> NodeId {
     let node = graph.node(id).clone();
     let Cell::Op(NodeOp::Slice { of, low }) = node.cell else { return id };

@@ -2,8 +2,8 @@
 //!
 //! A factor that is too wide is divided into as many upper bits as a multiplier takes, and the remaining lower bits. A few lower
 //! bits are multiplied row by row in look-up tables; more lower bits become a product of their own. In a square, the two partial
-//! products with the lower bits l become one product: `(u·2^r + l)² = u²·4^r + l·(u·2^(r+1) + l)`. If a factor's highest bit is 1
-//! only if all other bits are 0, the product is either the other factor, shifted, or a product without this bit.
+//! products with the lower bits l become one product: `(u·2^r + l)² = u²·4^r + l·(u·2^(r+1) + l)`. A factor's highest bit may be
+//! 1 only if all its other bits are 0. The product is then either the other factor, shifted, or a product without this bit.
 
 use super::graph::{Graph, Label, NodeId, NodeOp};
 use super::rebuild::rebuilt;

@@ -340,7 +340,7 @@ impl StageBuilder<'_> {
         self.inner("slot_is", Format::BIT, Driver::Op(Op::Equal(slot, number)))
     }
 
-    /// Returns the enable of the registers behind `stage`, which store its values until the next point arrives there: it is 1
+    /// Returns the enable of the registers behind `stage`, which store its values until the next point arrives there. It is 1
     /// only in the slot in which a point leaves `stage`. With an interval of 1, it is `advance`, or `None` if points always move.
     fn load(&mut self, stage: usize) -> Option<NetId> {
         let Some(slot) = self.pipeline.slot else { return self.advance };

@@ -4,8 +4,8 @@
 //! of raw values is left out if the format allows no other values. An operand of the computation, or an unknown value, is a
 //! line without an operation. The last lines are `result name`.
 //!
-//! `constant` is followed by a bit pattern, `read` by the number of a ROM and its address, `slice` by its value and its lowest
-//! bit, `mux` by its select and its inputs. `add` has a third operand if it has a carry input.
+//! A bit pattern follows `constant`, and the number of a ROM and its address follow `read`. The value and the lowest bit
+//! follow `slice`, and the select and the inputs follow `mux`. `add` has a third operand if it has a carry input.
 
 use std::collections::{HashMap, HashSet};
 use std::fmt::Write;

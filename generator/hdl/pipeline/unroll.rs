@@ -73,9 +73,9 @@ pub fn unroll(design: &Design) -> Result<Unrolled, Diagnostics> {
     run(design, Iterations::OneByOne).map_err(|diagnostic| Diagnostics(vec![diagnostic]))
 }
 
-/// Unrolls as [`unroll`] does, but with fewer muxes for loops whose number of iterations depends on an operand: blocks of 8, 4, 2
-/// and 1 iterations, each enabled by one bit of the number. Single iterations remain if a loop has at most four, if they are not
-/// alike, or if their number depends on several values or on more than 6 bits.
+/// Unrolls as [`unroll`] does, but with fewer muxes for loops whose number of iterations depends on an operand. They become
+/// blocks of 8, 4, 2 and 1 iterations, and one bit of the number enables each. Single iterations remain if a loop has at most
+/// four, they are not alike, or their number depends on several values or on more than 6 bits.
 ///
 /// # Errors
 /// Fails as [`unroll`] does.
@@ -286,8 +286,8 @@ impl<'a> Executor<'a> {
     /// of this number enables each block. `counters` marks the registers that count iterations; their values in the returned
     /// state are wrong.
     ///
-    /// Returns `None` if an iteration depends on these registers or changes a memory's output, if there are fewer than four
-    /// conditions, if the number depends on several nodes or on more than 6 bits, or if an iteration cannot be executed.
+    /// Returns `None` if an iteration depends on these registers, changes a memory's output or cannot be executed. It is also
+    /// `None` with fewer than four conditions, and if the number depends on several nodes or on more than 6 bits.
     fn in_powers(
         &mut self,
         first: &State,

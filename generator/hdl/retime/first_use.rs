@@ -1,4 +1,4 @@
-//! Finds, for each net, the first clock of a computation in which its value is used, so that `operands` knows how long the logic
+//! Finds, for each net, the first clock of a computation in which its value is used. `operands` thus knows how long the logic
 //! before it may take.
 
 use std::collections::{HashSet, VecDeque};

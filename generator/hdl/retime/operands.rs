@@ -51,9 +51,9 @@ enum OperandReader {
 }
 
 /// Two ascending limits that divide steady logic among three clocks. A limit is a delay from the operand registers in hundredths
-/// of a nanosecond. A cell whose value arrives by the first limit is computed in clock 0, by the second limit in clock 1, and any
-/// other cell in clock 2. The third entry is always 0. For example, with `[500, 900, 0]` a cell whose value arrives after 6 ns is
-/// computed in clock 1.
+/// of a nanosecond. A cell whose value arrives by the first limit is computed in clock 0, by the second in clock 1, and any other
+/// in clock 2. The third entry is always 0. For example, with `[500, 900, 0]` a cell whose value arrives after 6 ns is computed
+/// in clock 1.
 type CutPlaces = [u32; 3];
 
 /// The numbers that determine in which clock a cell is computed or a register is loaded. The clock is the number of entries that
@@ -90,7 +90,7 @@ struct Steady<'a> {
     holds: Vec<bool>,
     /// Each register with the net that it loads and the thresholds of its load.
     registers: Vec<(RegId, NetId, Thresholds)>,
-    /// The estimated delays from the operand registers to the steady nets that may be computed later than in clock 0, in
+    /// The estimated delays from the operand registers to the steady nets that may be computed later than in clock 0. They are in
     /// hundredths of a nanosecond, ascending from 0.
     places: Vec<u32>,
 }

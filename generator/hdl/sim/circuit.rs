@@ -1,5 +1,5 @@
 //! Wraps a compiled design as one block of the simulation kernel rust_hdl. rust_hdl drives the clock, checks the ports and writes
-//! waveforms; Glint computes the nets.
+//! waveforms. Glint computes the nets.
 
 use std::sync::Arc;
 

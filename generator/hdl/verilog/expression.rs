@@ -43,8 +43,8 @@ impl<'a> Expressions<'a> {
         self.names.fresh(wish)
     }
 
-    /// Returns the right-hand side of the assignment that drives a net, such as `a + b`; for a register, a ROM, an input, or a
-    /// mux of more than two inputs, the name of the net.
+    /// Returns the right-hand side of the assignment that drives a net, such as `a + b`. A register, a ROM, an input, or a mux of
+    /// more than two inputs gives the name of the net.
     pub fn driver(&mut self, id: NetId) -> String {
         match &self.plan.design.net(id).driver {
             Driver::Op(op) => self.cell(id, op),
@@ -65,7 +65,7 @@ impl<'a> Expressions<'a> {
         }
     }
 
-    /// Returns the text that reads a net within a larger expression: a name, a selection, a concatenation, or a cell in
+    /// Returns the text that reads a net within a larger expression. It is a name, a selection, a concatenation, or a cell in
     /// parentheses, such as `(a + b)`.
     pub fn operand(&mut self, id: NetId) -> String {
         if let Some(constant) = self.constant(id) {

@@ -28,8 +28,8 @@ use interface::Interface;
 use naming::Naming;
 use plan::Plan;
 
-/// Returns the files for a design as pairs of file name and text: the Verilog modules (`.v`), and the contents of ROMs (`.mem`)
-/// for `$readmemh` and `$readmemb`.
+/// Returns the files for a design as pairs of file name and text. They are the Verilog modules (`.v`), and the contents of ROMs
+/// (`.mem`) for `$readmemh` and `$readmemb`.
 ///
 /// # Errors
 /// Fails with the mistakes of [`Design::verify_structure`], or if the words of the control ROM are not as wide as all fields
@@ -53,7 +53,7 @@ pub struct ModuleFile {
 }
 
 /// Returns the Verilog files of a design, the top module first. A pipeline has one file for its module, and another one for delay
-/// lines; other designs have the top module, the control unit and the datapath.
+/// lines. Other designs have the top module, the control unit and the datapath.
 pub fn modules(plan: &Plan, naming: &Naming, origin: &Origin) -> Vec<ModuleFile> {
     if let Some(pipeline) = &plan.design.pipeline {
         let name = &plan.design.name;

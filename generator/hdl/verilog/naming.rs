@@ -134,8 +134,9 @@ pub fn is_control_rom(design: &Design, rom: RomId) -> bool {
     design.control.rom == rom
 }
 
-/// Returns the comment behind the declaration of a net, such as `mux 8, s1.20: first operand`: its block number, format and
-/// description, as far as it has them. A field of the control word has its lines in place of a block number, such as `line 4`.
+/// Returns the comment behind the declaration of a net, such as `mux 8, s1.20: first operand`. It has the net's block number,
+/// format and description, as far as they exist. A field of the control word has its lines in place of a block number, such as
+/// `line 4`.
 pub fn remark(design: &Design, id: NetId) -> String {
     let net = design.net(id);
     // The declared width already states the format of an unsigned integer.

@@ -88,7 +88,7 @@ fn is_written_in(design: &Design, pipeline: &Pipeline, net: NetId, stage: usize)
     pipeline.clock_of(net) - usize::from(is_clocked) == stage
 }
 
-/// Returns the comment on a shared multiplier, such as `multiplier_1: in slots 0, 1 it loads the factors of base, -`: its
+/// Returns the comment on a shared multiplier, such as `multiplier_1: in slots 0, 1 it loads the factors of base, -`. Its
 /// operand registers load the factors of a product in the slot before the product.
 fn reservations(unit: &Unit) -> Vec<String> {
     let slots = unit.serves.len();

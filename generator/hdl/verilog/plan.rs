@@ -1,9 +1,9 @@
 //! Decides how each net appears in the Verilog.
 //!
-//! Wiring (slices, extensions, concatenations) that the description's author did not name is written as [`Bits`] wherever it is
-//! used, and so is a constant that is no port. Any other cell without such a name is written into the expression that uses it,
-//! if it is used once, as a whole and in the same module, and if the expression stays short. In a pipeline, some named wiring
-//! and cells are treated in the same way. Cells without a name that no written part reads are left out, and so are products and
+//! Wiring (slices, extensions, concatenations) without a name from the description's author is written as [`Bits`] wherever it is
+//! used, and so is a constant that is no port. Any other cell without such a name is written into the expression that uses it. It
+//! must be used once, as a whole and in the same module, and the expression must stay short. In a pipeline, some named wiring and
+//! cells are treated in the same way. Cells without a name that no written part reads are left out, and so are products and
 //! registers inside multipliers and delay lines. All other nets are declared.
 
 use std::collections::{BTreeMap, HashSet};

@@ -130,8 +130,8 @@ fn cone(design: &Design, at: usize, net: NetId) -> HashSet<NetId> {
     })
 }
 
-/// Finds loops that cannot end: no microinstruction of the loop changes a register on which the condition depends, and no other
-/// microinstruction leaves the loop or waits for `start`.
+/// Finds loops that cannot end. In such a loop, no microinstruction changes a register on which the condition depends, and no
+/// other one leaves the loop or waits for `start`.
 fn endless(design: &Design) -> Vec<Diagnostic> {
     let control = &design.control;
     let mut found = Vec::new();

@@ -1,5 +1,5 @@
-//! Finds superfluous hardware in a description without mistakes: logic on which no output depends, muxes that always pass the
-//! same input, and choices that no microinstruction makes.
+//! Finds superfluous hardware in a description without mistakes. It is logic on which no output depends, a mux that always
+//! passes the same input, or a choice that no microinstruction makes.
 
 use std::collections::HashSet;
 

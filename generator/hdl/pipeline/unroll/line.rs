@@ -1,5 +1,5 @@
-//! Unrolls a computation with several results, such as the points of a scan line, into the first point and the step from a point
-//! to the next.
+//! Unrolls a computation with several results, such as the points of a scan line. The parts are the first point, and the step
+//! from a point to the next.
 //!
 //! The registers that carry state from one point to the next are called the *walk*, for example the register with the current
 //! angle. The module proves by induction that every point is the same function of the operands and the walk. The first point
