@@ -126,7 +126,7 @@ impl ClockedModel {
         self.values[0] == 1
     }
 
-    /// Returns the variant of [`Model::with_output_registers`](crate::Model::with_output_registers), if it exists.
+    /// Returns the variant of [`Model::with_output_registers`], if it exists.
     pub(crate) fn registered(&self) -> Option<Self> {
         let mut it = ModelConstants::clone(&self.fixed);
         let mut slots = self.state.len();

@@ -15,7 +15,7 @@ use glint_base::target::Timing;
 /// The name of the computation before all passes.
 const UNROLL: &str = "unroll";
 
-/// A rewriting of a computation that keeps its results.
+/// A rewrite of a computation that keeps its results.
 pub struct Pass {
     /// The directory with the files that test the pass has the same name.
     pub name: &'static str,

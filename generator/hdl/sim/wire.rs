@@ -30,7 +30,7 @@ pub(super) enum ProbeView<'a> {
 /// The value of one net in lane 0.
 #[derive(Debug)]
 pub(super) struct Wire<'a> {
-    /// From rust_hdl's counter, so that the id differs from the ids of rust_hdl's own signals.
+    /// The id comes from rust_hdl's counter, so that it differs from the ids of rust_hdl's own signals.
     pub id: usize,
     pub connected: bool,
     pub changed: bool,
