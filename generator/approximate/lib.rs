@@ -48,7 +48,7 @@ pub const FULL_CELL: usize = 16;
 /// An overhang (the operands of a domain beyond a power of two) may have at most 2^−5 of the domain's operands.
 const SMALL_PART: u32 = 5;
 
-/// Up to 2 to this power, a proof computes the operands one by one. The proof for a larger domain uses intervals.
+/// A proof computes at most 2 to this power operands one by one. The proof for a larger domain uses intervals.
 pub const MOST_BITS: u32 = 26;
 
 glint_config::choices! {
@@ -121,7 +121,7 @@ pub struct Piecewise {
     pub reduction: Option<Reduction>,
     /// The raw operand with the number 0 in [`Segments`].
     pub origin: i64,
-    /// They map the number of an operand to a word of the table.
+    /// The segments, which map the number of an operand to a word of the table.
     pub segments: Segments,
     /// The formats of the coefficients, in order of rising powers: entry 0 is the constant.
     pub coefficients: Vec<Format>,
@@ -132,7 +132,7 @@ pub struct Piecewise {
     /// The formats of the partial sums. Entry k includes coefficient k and all higher ones, so that entry 0 is the polynomial's
     /// value.
     pub sums: Vec<Format>,
-    /// Without a range reduction, the format of the polynomial's value.
+    /// The format of the result. Without a range reduction, it is the format of the polynomial's value.
     pub result: Format,
     /// The proved bound of the error, in units of the last bit of the result, or infinity if no proof was made.
     pub bound: f64,
@@ -257,7 +257,7 @@ impl TargetFunction {
         Numbering { origin: self.operand.min_raw() as i64, bits: whole, overhang: 0 }
     }
 
-    /// The message names the operand at which the formula has the fault as a real number.
+    /// The message states the operand at which the formula has the fault, as a real number.
     fn refusal(&self, raw: i64, fault: &Fault) -> Refusal {
         let x = self.operand.to_f64(raw.into());
         Refusal {

@@ -90,7 +90,7 @@ pub enum Rule {
 /// operand.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Restore {
-    /// Added to the polynomial's value.
+    /// This number is added to the polynomial's value.
     addend: i64,
     /// The sum is then shifted to the right by this number of bits, and rounded to the nearest integer.
     shift: u32,

@@ -5,7 +5,8 @@
 
 use glint_formula::Enclosure;
 
-/// In the order of rising operands: the raw operand, the value, and the slope of the curve per step of the raw operand.
+/// The points in the order of rising operands: the raw operand, the value, and the slope of the curve per step of the raw
+/// operand.
 #[derive(Clone, Debug)]
 pub struct Samples(Vec<(i64, Enclosure, f64)>);
 

@@ -5,11 +5,11 @@
 /// of the domain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Layout {
-    /// All the same.
+    /// All segments are equally long.
     Uniform,
-    /// Half as long in each octave toward the low end of the domain, for functions that are steep there.
+    /// In each octave toward the low end of the domain, segments are half as long, for functions that are steep there.
     Octaves,
-    /// Half as long in each octave toward the high end of the domain.
+    /// In each octave toward the high end of the domain, segments are half as long.
     Halving,
 }
 

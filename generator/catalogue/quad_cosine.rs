@@ -21,7 +21,7 @@ use glint_rtl::netlist::{About, Topic};
 
 use super::common;
 
-/// In the order of ROM 12's tables and of the decoder's outputs 30 to 33.
+/// The powers k, in the order of ROM 12's tables and of the decoder's outputs 30 to 33.
 const POWERS: [u32; 4] = [1, 2, 4, 16];
 
 /// The numbers of the amplitude's blocks in the patent's figure.

@@ -7,8 +7,8 @@ use glint_base::keywords::is_keyword;
 /// The limit is in characters. Derived modules and files append endings to the name.
 const LONGEST: usize = 60;
 
-/// Fails unless the name has 1 to 60 ASCII letters, digits and `_`, does not begin with a digit, and is no keyword of Verilog or
-/// SystemVerilog. The remedy has a similar valid name.
+/// Returns an error unless the name has 1 to 60 ASCII letters, digits and `_`, does not begin with a digit, and is no keyword of
+/// Verilog or SystemVerilog. The remedy has a similar valid name.
 pub(super) fn error(name: &str) -> Option<ConfigError> {
     let message = complaint(name)?;
     let remedy = format!(

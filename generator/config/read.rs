@@ -19,8 +19,8 @@ const LARGEST: u64 = 1 << 16;
 /// Reads a configuration file, or standard input if the path is `-`. `schemas` must contain the schemas of all devices.
 ///
 /// # Errors
-/// Fails with all problems at once. The path may be a pipe, a device or a directory. The file may be unreadable, have more
-/// than 65,536 bytes, be no UTF-8, or have a problem that [`parse`](super::parse()) finds.
+/// Fails with all problems at once. Fails if the path is a pipe, a device or a directory, or if the file cannot be read.
+/// Also fails if the file has more than 65,536 bytes, is not UTF-8, or has a problem that [`parse`](super::parse()) finds.
 pub fn read(path: &Path, schemas: &[Schema]) -> Result<Config, Problems> {
     read_located(path, schemas).map(|(config, _)| config)
 }

@@ -59,7 +59,7 @@ impl Value {
 /// An entry of a table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TableEntry {
-    /// The user chose it.
+    /// The name that the user chose.
     pub name: String,
     /// The fields that the user gave.
     pub fields: Vec<(&'static str, Value)>,

@@ -14,7 +14,7 @@ use super::{Comparison, Enclosure, Expression, Fault, Function, Kind, Operator};
 /// exponents need logarithms.
 const LARGEST_PRODUCT: u32 = 64;
 
-/// In bits. They are tried one after the other until every comparison and every jump is decided.
+/// The precisions in bits, tried one after the other until every comparison and every jump is decided.
 const PRECISIONS: [usize; 3] = [128, 320, 1024];
 
 impl Expression {

@@ -10,7 +10,7 @@ use dashu_ratio::RBig;
 
 use super::{Function, Operator};
 
-/// In numerator and denominator together. A larger value is treated as not exactly known.
+/// The most bits of numerator and denominator together. A larger value is treated as not exactly known.
 const MOST_BITS: usize = 1 << 14;
 
 /// If a logarithm is divided by another logarithm, only exponents below this number are tried.

@@ -40,7 +40,7 @@ pub struct Expression {
     pub kind: Kind,
     /// The location in the text from which this part was parsed; empty if it comes from no text.
     pub span: TextSpan,
-    /// Equal for equal formulas, and nearly always different for different ones.
+    /// The hash is equal for equal formulas, and nearly always different for different ones.
     hash: u64,
     /// The number of parts, where a part that several operations read counts once for each. At most `u32::MAX`.
     size: u32,
@@ -53,7 +53,7 @@ pub struct Expression {
 
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct TextSpan {
-    /// 0 for the formula itself. A caller that puts formulas together numbers the other texts.
+    /// The number of the text, 0 for the formula itself. A caller that puts formulas together numbers the other texts.
     pub text: usize,
     /// The range of bytes in this text.
     pub bytes: Range<usize>,
@@ -67,11 +67,11 @@ impl From<Range<usize>> for TextSpan {
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum Kind {
-    /// Exactly as the text states it.
+    /// A number exactly as the text states it.
     Number(Literal),
-    /// Such as `pi`, with the largest `f64` that is not above its value.
+    /// A constant such as `pi`, with the largest `f64` that is not above its value.
     Constant(&'static str, f64),
-    /// Its value is a real number, not a raw integer.
+    /// An operand, whose value is a real number, not a raw integer.
     Operand(String),
     /// A word of a ROM as a real number: the name of the ROM, and the index of the word.
     Word(String, Arc<Expression>),

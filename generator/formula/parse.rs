@@ -100,14 +100,14 @@ const INSTEAD: [(&str, &str); 18] = [
     ("radians", "x * pi / 180"),
 ];
 
-/// Each with the largest `f64` that is not above it.
+/// The constants, each with the largest `f64` that is not above it.
 const CONSTANTS: [(&str, f64); 2] = [("pi", std::f64::consts::PI), ("e", std::f64::consts::E)];
 
 const SIGNS_OF_COMPARISONS: [&str; 6] = ["<", ">", "<=", ">=", "==", "!="];
 
 const PI: &str = "π";
 
-/// Nested parts recurse in the parser.
+/// The most parts inside each other, because the parser recurses for each.
 const DEEPEST: usize = 200;
 
 /// The most comparisons of a formula and signs that join them. Each can be a level of the tree.

@@ -30,7 +30,7 @@ impl Expression {
 struct Derivation<'d> {
     operand: &'d str,
     limits: Enclosure,
-    /// Of parts with at least [`FEW_PARTS`] parts of their own, so that no shared part is computed twice.
+    /// The results of parts with at least [`FEW_PARTS`] parts of their own, so that no shared part is computed twice.
     known: HashMap<*const Expression, ValueAndSlope>,
 }
 

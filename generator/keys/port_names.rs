@@ -88,7 +88,7 @@ impl NamedTable {
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct NameFault {
-    /// Its number in the list that was checked.
+    /// The entry's number in the list that was checked.
     pub(super) entry: usize,
     /// The reason.
     pub(super) message: String,

@@ -8,14 +8,14 @@ pub const FUNCTION: &str = "function";
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Preset {
-    /// `function` or `expression`.
+    /// The device `function` or `expression`.
     pub device: &'static str,
     /// The keys that the preset states.
     pub values: Vec<(String, Value)>,
 }
 
-/// The name, the formula, the ends of the domain, the value of `function.outside`, the numbers of fraction bits of operand and
-/// result, and the value of `approximation.reduction`.
+/// A preset of the device `function`: the name, the formula, the ends of the domain, the value of `function.outside`, the
+/// numbers of fraction bits of operand and result, and the value of `approximation.reduction`.
 type FunctionPreset =
     (&'static str, &'static str, [&'static str; 2], &'static str, [i64; 2], &'static str);
 

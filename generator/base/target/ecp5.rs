@@ -50,8 +50,8 @@ pub const ECP5: Family = Family {
     library: "read_verilog -lib +/ecp5/cells_sim.v +/ecp5/cells_bb.v; ",
     prepare: "",
     command: "synth_ecp5",
-    // A memory of 16 words of 4 bits takes four look-up tables, and two more for writing.
     least_yosys: (0, 23),
+    // A memory of 16 words of 4 bits takes four look-up tables, and two more for writing.
     luts: &[("LUT4", 1), ("CCU2C", 2), ("TRELLIS_DPR16X4", 6)],
     fabric_product: None,
     dsps: &[("MULT18X18D", 1)],

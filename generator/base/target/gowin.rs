@@ -31,8 +31,8 @@ const LUTS: Kinds = &[
     ("RAM16SDP4", 4),
 ];
 
-/// They multiply 18 by 18 bits. Two products of 9 by 9 bits share a block only if placement brings them together, so that each
-/// counts as one block.
+/// The DSP blocks multiply 18 by 18 bits. Two products of 9 by 9 bits share a block only if placement brings them together, so
+/// that each counts as one block.
 const DSPS: Kinds = &[("MULT9X9", 1), ("MULT18X18", 1), ("MULT36X36", 4)];
 
 const BLOCK_RAMS: Kinds = &[
