@@ -48,7 +48,8 @@ use super::{
 /// A computation may take this number of clocks at most.
 const LONGEST: u32 = 1 << 20;
 
-/// In units; a smaller bound counts as this one, so that errors of outputs with different bounds can be compared.
+/// The smallest bound, in units. A smaller one counts as this one, so that errors of outputs with different bounds can be
+/// compared.
 const LEAST_BOUND: f64 = 1e-6;
 
 /// Replaces a result that the device never shows.

@@ -298,7 +298,7 @@ pub const ANY_VALUE: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 /// of settings.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sweep {
-    /// The outermost loop first.
+    /// The axes, the outermost loop first.
     pub axes: Vec<Axis>,
     /// The operands that the sweep leaves to random tests, in a sentence; empty if it covers every combination.
     pub omits: String,

@@ -9,7 +9,7 @@ use glint_base::fixed::{Format, Rounding};
 /// rounded `s0.1` the raw value 5 gives 1, and so does 12.
 #[derive(Clone, Copy, Debug)]
 pub struct Narrow {
-    /// Added before the shift: half a unit in the last place of the result, or 0.
+    /// The number that is added before the shift: half a unit in the last place of the result, or 0.
     half: i64,
     right: u32,
     left: u32,

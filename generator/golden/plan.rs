@@ -20,7 +20,7 @@ struct PlanModel {
 
 /// The nodes between registers from which some nodes are computed in one clock.
 struct ClockCone {
-    /// In the order of the plan, so that each reads registers or nodes before it.
+    /// The nodes in the order of the plan, so that each reads registers or nodes before it.
     nodes: Vec<NodeId>,
     /// For each node of the plan, its place in `nodes`.
     places: Vec<Option<usize>>,

@@ -182,7 +182,7 @@ pub struct Frame {
     logic: Vec<(Slot, Value)>,
     edges: Vec<Does>,
     valid_delay: u32,
-    /// The steps of a computation, in the order of execution.
+    /// The microinstructions of the parts, in the order of execution.
     pub(super) parts: Vec<FrameStep>,
 }
 

@@ -101,7 +101,7 @@ fn bin(angle: f64) -> usize {
 
 pub struct Analysis {
     pub errors: Errors,
-    /// For γ − dγ indexed by the distance of the two bins, for γ + dγ by the sum of their numbers.
+    /// The weights, for γ − dγ by the distance of the two bins, and for γ + dγ by the sum of their numbers.
     pub weights: Vec<Weight>,
     /// The last bin that dγ can reach.
     deviation: usize,

@@ -8,7 +8,7 @@ use crate::highlight::{Highlight, Reflectance};
 use crate::{Axis, Contract, Operand, Sweep, Values};
 use glint_config::Config;
 
-/// In degrees. An exhaustive check visits those dγ that are below the largest dγ of the domain, and this one.
+/// Deviations dγ in degrees. An exhaustive check visits the ones below the largest dγ of the domain, and this largest one.
 const SWEPT_DEVIATIONS: [f64; 4] = [0.0, 1.0, 5.0, 15.0];
 
 /// The control operands are `cos_gamma`, `cos_dgamma`, `exponent` and `dgamma_negative`.
