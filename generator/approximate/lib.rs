@@ -156,8 +156,8 @@ impl TargetFunction {
     /// it is evaluated again with more bits.
     ///
     /// # Errors
-    /// Fails if the formula has no value at this operand, for example 1/x at 0, or if 1024 bits do not decide a comparison or a
-    /// jump. A curve through samples never fails.
+    /// Fails if the formula has no value at this operand (1/x at 0), or if 1024 bits do not decide a comparison or a jump. A
+    /// curve through samples never fails.
     pub fn limits(&self, raw: i64) -> Result<Enclosure, Fault> {
         let unit = exp2(self.fraction as i32);
         let Enclosure { low, high } = match &self.curve {

@@ -9,8 +9,8 @@ const EXCHANGES: usize = 30;
 
 /// Returns the polynomial of degree `degree`, at most 3, with the smallest largest distance from `values` at the points `at`,
 /// and this distance. If the search does not settle within [`EXCHANGES`] exchanges of a point, it is the best polynomial until
-/// then. The coefficients start with the constant; unused ones are 0. The points must be in rising order. If there are not more
-/// points than coefficients, the polynomial passes through all of them, with a lower degree if necessary, and the distance is 0.
+/// then. The coefficients start with the constant; unused ones are 0. The points must be in rising order. With no more points
+/// than coefficients, the polynomial passes through all points, with a lower degree if necessary, and the distance is 0.
 pub fn minimax(at: &[f64], values: &[f64], degree: usize) -> ([f64; MOST], f64) {
     let count = degree.min(at.len().saturating_sub(1)) + 1;
     if at.len() <= count {

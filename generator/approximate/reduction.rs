@@ -180,9 +180,9 @@ impl Reduction {
     /// number; otherwise it may share the next lower one.
     ///
     /// # Errors
-    /// Fails if the function is a curve through samples, or if the identity is `None`. Fails if the function has no value at one
-    /// of a few test points, the identity does not hold there, or the domain does not suit it. Also fails if a number would have
-    /// no bits or more than [`MOST`] bits.
+    /// Fails if the function is a curve through samples, or if the identity is `None`. Fails if the function has no value at a
+    /// test point, the identity does not hold there, or the domain does not suit it. Also fails if a number would have no bits or
+    /// more than [`MOST`] bits.
     pub(super) fn of(
         identity: Identity,
         function: &TargetFunction,

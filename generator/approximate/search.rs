@@ -222,10 +222,10 @@ fn most_words(seen: &AllowedResults, degree: u32, least: f64) -> usize {
     (((least - STEP * f64::from(degree)) / word).max(0.0) as usize).min(1 << ADDRESS)
 }
 
-/// Returns divisions of the domain into at most `most` segments that are fine enough for polynomials of degree `degree`, in order
-/// of rising numbers of segments. They are the coarsest division of a layout and a number of octaves, and the same with twice as
-/// many segments. The function leaves out numbers of octaves that make no coarser division than fewer octaves. A division is fine
-/// enough if polynomials with unrounded coefficients keep the error.
+/// Returns divisions of the domain into at most `most` segments, in order of rising numbers of segments. They are fine enough for
+/// polynomials of degree `degree`. The list has the coarsest division of a layout and a number of octaves, and the same with
+/// twice as many segments. The function leaves out numbers of octaves that make no coarser division than fewer octaves. A
+/// division is fine enough if polynomials with unrounded coefficients keep the error.
 fn cuts(seen: &AllowedResults, degree: u32, layout: Option<Layout>, most: usize) -> Vec<Segments> {
     let mut search = CutSearch { seen, degree, most, worst: None };
     let mut cuts: Vec<Segments> = Vec::new();

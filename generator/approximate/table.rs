@@ -1,5 +1,5 @@
-//! Finds the table of coefficients for given segments. The search lowers the bit widths one bit at a time, as long as it finds
-//! coefficients with an allowed result at every operand that it evaluates.
+//! Finds the table of coefficients for given segments. The search lowers the bit widths one bit at a time. It goes on while it
+//! finds coefficients with an allowed result at every evaluated operand.
 //!
 //! The search rounds the coefficients one after the other, the highest first. After each coefficient, the search subtracts the
 //! part of the function that the hardware computes from the coefficients so far, and fits the rest again. The constant comes

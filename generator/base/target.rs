@@ -35,9 +35,8 @@ pub struct DelayMemory {
 }
 
 impl DelayMemory {
-    /// Returns whether a memory of `words` words of `bits` bits, with its address counter, takes fewer look-up tables and
-    /// registers than the registers that it replaces. On ECP5, 3 words of 4 bits do, and 2 words do not. A single word never
-    /// does.
+    /// Returns whether a memory of `words` words of `bits` bits takes fewer look-up tables and registers than the registers that
+    /// it replaces. Its address counter counts too. On ECP5, 3 words of 4 bits do, and 2 words do not. A single word never does.
     pub fn pays(self, words: usize, bits: u32) -> bool {
         let words = words as u32;
         let memories = bits.div_ceil(self.width) * words.div_ceil(self.words);
@@ -120,8 +119,8 @@ impl BlockMemory {
         (words * width).div_ceil(self.bits)
     }
 
-    /// Returns whether synthesis puts a synchronous ROM into blocks: on ECP5 64 words of 33 bits do, and 64 words of 32 bits go
-    /// into look-up tables.
+    /// Returns whether synthesis puts a synchronous ROM into blocks. On ECP5 it does for 64 words of 33 bits; 64 words of 32 bits
+    /// go into look-up tables.
     pub fn takes(&self, words: u64, width: u64) -> bool {
         words * width > self.most_bits_without * self.count(words, width)
     }

@@ -197,8 +197,8 @@ impl<'d, 'p> PolynomialDatapath<'d, 'p> {
     }
 }
 
-/// Inverts the top bit, and reads the word in a format of the same width, for example an unsigned number as its signed distance
-/// from the middle.
+/// Inverts the top bit, and reads the word in a format of the same width. For example, an unsigned number becomes its signed
+/// distance from the middle.
 pub(super) fn flipped<'d>(
     d: &'d Designer,
     name: &str,

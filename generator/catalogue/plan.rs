@@ -2,7 +2,7 @@
 //!
 //! The devices `function` and `expression` use this hardware. A plan is a list of fixed-point operations ([`glint_plan`]). All
 //! products of a plan share one multiplier, and each has its own microinstruction. In a pipeline the microprogram is unrolled,
-//! and each product gets its own multiplier, unless an interval above 1 (the key `pipeline.interval`) lets products share it.
+//! and each product gets its own multiplier. With an interval above 1 (the key `pipeline.interval`), products can share one.
 
 use glint_approximate::{Outside, Piecewise};
 use glint_base::fixed::{Format, Overflow, Rounding};

@@ -6,8 +6,8 @@ use super::shared::shared_keys;
 use super::values::Config;
 
 impl Schema {
-    /// Returns a sentence for each mistake in the schema itself. A name is a mistake if it repeats, is a key of every device,
-    /// names both a table and a value, or has other than plain lower-case words. A default is a mistake if it is outside its
+    /// Returns a sentence for each mistake in the schema itself. A name is a mistake if it repeats, is a key of every device, or
+    /// names both a table and a value. It must consist of plain lower-case words. A default is a mistake if it is outside its
     /// range. A condition is a mistake if its key is not declared before, or can never have its value. If the schema has no such
     /// mistake, the device's `check` must accept the defaults. The reader of configurations relies on a schema without mistakes.
     pub fn mistakes(&self) -> Vec<String> {

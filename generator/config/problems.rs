@@ -56,8 +56,8 @@ impl Problems {
         self.push_error(ConfigError::new(key, message, remedy));
     }
 
-    /// Adds the mistake `error` of a key. If it concerns some bytes of the key's text, the report marks them, provided that the
-    /// file contains the text literally, in quotes and without escapes. Otherwise it marks the whole value.
+    /// Adds the mistake `error` of a key. If it concerns some bytes of the key's text, the report marks them. The file must
+    /// contain the text literally, in quotes and without escapes. Otherwise it marks the whole value.
     pub fn push_error(&mut self, error: ConfigError) {
         let span = self.source.span_of(&error);
         self.insert(Problem { error, span });

@@ -238,8 +238,8 @@ pub(super) struct Draft<'a> {
 /// Checks the conditions of `only_when` and `unless`, the conditions between shared keys, and the device's own check. The first
 /// are reported only for a key that the user gave with another value than its default.
 ///
-/// A value that is not accepted is unknown. A condition is reported only if it fails for all trial values of the unknown keys, so
-/// that one mistake raises no messages about other keys.
+/// A value that is not accepted is unknown. A condition is reported only if it fails for all trial values of the unknown keys.
+/// One mistake therefore raises no messages about other keys.
 fn check(schema: &Schema, draft: &Draft, problems: &mut Problems) {
     for key in schema.all_keys() {
         let governors = chain(schema, key);

@@ -49,8 +49,8 @@ impl Expression {
     /// fraction bits gives (2, false), and `log2(16)` with none gives (4, true). The formula must have no operands.
     ///
     /// # Errors
-    /// Fails as [`Expression::evaluate_exactly`] does, or if 1024 bits do not show whether the value is an integer, or if the
-    /// integer has more than 127 bits.
+    /// Fails as [`Expression::evaluate_exactly`] does. Also fails if 1024 bits do not show whether the value is an integer, or
+    /// if the integer has more than 127 bits.
     pub fn ceiling(&self, fraction: u32) -> Result<(i128, bool), Fault> {
         let (precise, value) =
             self.decided(&[], |precise, value| precise.ceiling(value, fraction).is_some())?;

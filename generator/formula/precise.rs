@@ -202,7 +202,7 @@ impl Precise {
     /// Computes the error function of a number that is not below 0.
     ///
     /// The series is erf(x) = 2x / √π · exp(−x²) · (1 + 2x²/3 + (2x²)²/(3·5) + …), whose terms are all positive. The series
-    /// ends as soon as each further term is less than half of the previous one, so that their sum is less than the last term.
+    /// ends as soon as each further term is less than half of the previous one. Their sum is then less than the last term.
     fn error_function(&self, x: &BigFloat) -> Result<PreciseValue, String> {
         let one = self.integer(1);
         let x = PreciseValue::between(x.clone(), x.clone());

@@ -96,8 +96,8 @@ impl Device {
         Box::new(self.model)
     }
 
-    /// Sets the operand's domain in the contract to the raw values `low ..= high`, if its register can have values for which the
-    /// contract promises nothing. Panics if the device has no such operand.
+    /// Sets the operand's domain in the contract to the raw values `low ..= high`. Its register may have other values, for which
+    /// the contract promises nothing. Panics if the device has no such operand.
     #[must_use]
     pub fn domain(mut self, operand: &str, low: i64, high: i64) -> Self {
         let found = self.operands.iter_mut().find(|it| it.name == operand);

@@ -18,7 +18,7 @@ pub fn raw_angle(operand: &Operand, angle: f64) -> i64 {
     raw.clamp(low, high)
 }
 
-/// Adds the accumulator to `frame`: control block 14, counter 5, adder 6, mux 7 and register 8 of seed 000, with the operands
+/// Adds the accumulator to `frame`: control block 14, counter 5, adder 6, mux 7 and register 8 of seed 000. Its operands are
 /// `delta_zeta`, `zeta_start` and `length`. The angles have the format `format`.
 ///
 /// Returns the slot of register 8, which holds the angle of the current point, and the microinstructions. The outputs show a

@@ -1,11 +1,11 @@
-//! The golden model and the accuracy contract of the device `shading`, which computes a colour as
-//! ambient + Σ (diffuse·cos α + specular·f(cos γ)).
+//! The golden model and the accuracy contract of the device `shading`, which computes a colour as ambient + Σ (diffuse·cos α +
+//! specular·f(cos γ)).
 //!
 //! The sum runs over the lights. α is the angle between the surface normal and the direction of a light, and f the highlight's
 //! formula, for example cⁿ ([symbols](crate#symbols)). A negative cosine counts as 0, or as positive with the key `two_sided`,
-//! and a colour saturates. `shading` consists of other devices, called its parts. For each light two `dot-product` devices
-//! compute the cosines from a normal of any length, and a highlight device such as `blinn` or `function` computes f. The
-//! contract combines the proved error bounds of the parts.
+//! and a colour saturates. `shading` consists of other devices, called its parts. For each light, two `dot-product` devices
+//! compute the cosines from a normal of any length. A highlight device such as `blinn` or `function` computes f. The contract
+//! combines the proved error bounds of the parts.
 
 use std::sync::Arc;
 

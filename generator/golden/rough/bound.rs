@@ -96,8 +96,8 @@ fn sine_terms(keys: &Keys) -> &'static [(&'static str, &'static str)] {
     }
 }
 
-/// Splits the error of an entry in proportion to the largest possible errors of the rounding (with the floor after
-/// interpolation), the shape and the slope's rounding.
+/// Splits the error of an entry in proportion to the largest possible errors of three parts. They are the rounding (with the
+/// floor after interpolation), the shape and the slope's rounding.
 fn split(keys: &Keys, error: f64, shape: f64) -> [f64; 3] {
     let ulp = exp2(-(keys.sine_fraction as i32));
     let most = match keys.scheme {

@@ -151,8 +151,8 @@ impl PairSearch<'_> {
         Some(OperandPair { bound, control, distance, below })
     }
 
-    /// Computes the error of the pair for every n of the domain whose bound is above the largest error found so far, and
-    /// updates that error. Returns false if this takes too many steps.
+    /// Computes the error of the pair for every n of the domain whose bound is above the largest error so far, and updates that
+    /// error. Returns false if this takes too many steps.
     fn go_through_exponents(&mut self, pair: &OperandPair) -> bool {
         let (least, most) = self.it.keys.domain.exponents();
         let [x, y, _, negative] = pair.control;

@@ -7,7 +7,7 @@ use super::graph::{Cell, Graph, Label, NodeId, NodeOp};
 use glint_base::fixed::Format;
 
 /// Returns a node with the value of node `id`. For a mux `over ? most : rest` with a constant `most`, bypasses the muxes of this
-/// kind in `rest` that then cannot matter: if the new condition is 0, so is theirs.
+/// kind in `rest` whose condition [`follows`] from the new one.
 pub fn settled(graph: &mut Graph, id: NodeId) -> NodeId {
     let node = graph.node(id).clone();
     let Some((over, rest, most)) = limit(graph, id) else { return id };
@@ -64,7 +64,7 @@ fn run(graph: &Graph, id: NodeId) -> Option<(NodeId, u32, u32)> {
 }
 
 /// Returns a node that equals `id` whenever `over` is 0. The search passes through wiring to an inner choice between a value and
-/// a constant. The value replaces the choice if [`follows`].
+/// a constant. The value replaces the choice if the condition of this choice [`follows`] from `over`.
 fn below(graph: &mut Graph, id: NodeId, over: NodeId) -> NodeId {
     let node = graph.node(id).clone();
     if let Some((inner, rest, _)) = limit(graph, id) {
@@ -82,6 +82,7 @@ fn below(graph: &mut Graph, id: NodeId, over: NodeId) -> NodeId {
     }
 }
 
+/// Returns whether the condition `inner` must be 0 whenever the condition `over` is 0.
 fn follows(graph: &Graph, over: NodeId, inner: NodeId) -> bool {
     match (run(graph, over), run(graph, inner)) {
         _ if over == inner => true,

@@ -66,9 +66,9 @@ struct Executor<'a> {
 /// Unrolls the microprogram of a design that the description language has accepted.
 ///
 /// # Errors
-/// Fails if no bound of a loop is found because its condition depends on more than 16 bits, or if the computation takes more than
-/// 4096 clocks. Fails if the microprogram ends or waits for `start` before it sets `valid`, or if `valid` depends on a signal or
-/// is set under a condition. Fails if a result depends on a value that an earlier computation has left in a register.
+/// Fails if a loop has no known bound because its condition depends on more than 16 bits. Fails if the computation takes more
+/// than 4096 clocks. Fails if the microprogram ends or waits for `start` before it sets `valid`. Fails if `valid` depends on a
+/// signal or is set under a condition. Fails if a result depends on a value that an earlier computation has left in a register.
 pub fn unroll(design: &Design) -> Result<Unrolled, Diagnostics> {
     run(design, Iterations::OneByOne).map_err(|diagnostic| Diagnostics(vec![diagnostic]))
 }

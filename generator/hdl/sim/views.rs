@@ -1,4 +1,4 @@
-//! Writes files for the waveform viewers GTKWave and Surfer, so that a viewer lists each port and each named net under its
+//! Writes files for the waveform viewers GTKWave and Surfer. With them, a viewer lists each port and each named net under its
 //! module or pipeline stage. GTKWave also shows numbers with their binary points.
 
 use std::fmt::Write;

@@ -1,7 +1,7 @@
 //! Decides how each net appears in the Verilog.
 //!
 //! Wiring (slices, extensions, concatenations) without a name from the description's author is written as [`Bits`] wherever it is
-//! used, and so is a constant that is no port. Any other cell without such a name is written into the expression that uses it. It
+//! used. So is a constant that is no port. Any other cell without such a name is written into the expression that uses it. It
 //! must be used once, as a whole and in the same module, and the expression must stay short. In a pipeline, some named wiring and
 //! cells are treated in the same way. Cells without a name that no written part reads are left out, and so are products and
 //! registers inside multipliers and delay lines. All other nets are declared.
@@ -167,8 +167,8 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Returns the value of the comparison `a < b` (1 or 0) if constants or the range of the format decide it, because linters
-    /// reject such comparisons. For example, `a < 0` is 0 for an unsigned `a`.
+    /// Returns the value of the comparison `a < b` (1 or 0) if constants or the range of the format decide it. Linters reject
+    /// such comparisons. For example, `a < 0` is 0 for an unsigned `a`.
     pub fn constant_comparison(&self, a: NetId, b: NetId) -> Option<u64> {
         let format = self.design.net(a).format;
         let constants = [a, b].map(|id| match self.roots[id.index()].single() {
