@@ -119,6 +119,7 @@ impl Restore {
             return (-MOST as i64, MOST as i64);
         }
         let (low, high) = self.centre.map_or((low, high), |centre| (centre - high, centre - low));
+        // Returns the smallest value whose result is `limit` or more.
         let least = |limit: i64| {
             let half = (((i128::from(limit) << 1) - 1) << self.shift).clamp(-MOST, MOST);
             ((half + 1) >> 1) - i128::from(self.addend)

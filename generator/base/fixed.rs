@@ -7,6 +7,7 @@
 use std::fmt;
 use std::str::FromStr;
 
+/// A net has at most this number of bits.
 pub const MAX_WIDTH: u32 = 64;
 
 /// The largest absolute number of fraction bits: up to it, `f64` represents one ulp exactly.

@@ -126,6 +126,7 @@ impl Device {
     }
 }
 
+/// The exact formula that a device approximates, with the proved bound of the device's error.
 pub trait Formula: Send + Sync {
     /// Returns the exact outputs in f64, unrounded, for the values (not raw) of the operands in the order of the frame.
     fn exact(&self, operands: &[f64]) -> Vec<f64>;

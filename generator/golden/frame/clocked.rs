@@ -8,6 +8,7 @@ use super::{Does, Frame, FrameOperand, FrameStep, Next, Slot, State, Value, idle
 use crate::Model;
 use glint_base::fixed::mask;
 
+/// The signals of the handshake, which come before the signals of the device.
 const HANDSHAKE: [&str; 5] = ["valid", "busy", "done", "run", "word_address"];
 
 #[derive(Clone)]
@@ -212,6 +213,7 @@ impl Model for ClockedModel {
             does(state);
         }
         let ends = matches!(here.next, Next::End);
+        // With operand buffers, the device also accepts `start` in the last microinstruction.
         let starts = start && (!self.run || ends && it.buffered);
         let mut taken = (it.buffered || !self.run) && it.write(state, &inputs[2..]);
         if it.buffered && starts {

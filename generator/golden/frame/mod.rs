@@ -81,6 +81,7 @@ enum Next {
     End,
 }
 
+/// A microinstruction: the operation on the registers, the flags that it sets, and its successor.
 #[derive(Clone)]
 pub struct FrameStep {
     does: Option<Does>,
@@ -204,6 +205,7 @@ impl Frame {
         self.shown(name.to_owned(), format, false)
     }
 
+    /// Adds an output that is combinational logic: a function of operands and registers.
     pub fn output(
         &mut self,
         name: &str,

@@ -247,6 +247,7 @@ fn address_and_rest<'d>(
     picker.pick(0, arms.len())
 }
 
+/// The address of a word, and the position within its segment.
 type Arm<'d> = (Signal<'d>, Signal<'d>);
 
 /// Selects among the blocks by a tree of two-input muxes.

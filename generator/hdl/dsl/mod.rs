@@ -292,6 +292,7 @@ impl Designer {
                 address.format()
             ));
         }
+        // A synchronous ROM has the output 0 at power-up.
         let first = synchronous.then_some(0);
         let mut range = interval::of_values(words.iter().copied().chain(first)).unwrap_or((0, 0));
         if let Some((at, raw)) = words.iter().enumerate().find(|(_, raw)| !format.holds(**raw)) {

@@ -72,6 +72,7 @@ pub fn clocks<'a>(
             Ok((1..=longest.min(most)).rev().find(reaches).unwrap_or(1))
         }
         IntervalGoal::Multipliers(allowed) => {
+            // The interval with the fewest multipliers, and their number.
             let mut best: Option<(usize, usize)> = None;
             for interval in (1..=most).filter(reaches) {
                 let multipliers = problems(interval).multipliers();

@@ -611,6 +611,7 @@ impl<'a> ScheduleProblem<'a> {
         let mut longest = vec![0.0f64; latency];
         for &id in &self.live {
             let at = stage[id.index()];
+            // The operands in the same stage; all others come from registers.
             let mut before: Vec<NodeId> = Vec::new();
             if !self.is_clocked(id) {
                 for operand in self.graph.node(id).cell.operands() {

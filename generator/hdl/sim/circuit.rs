@@ -26,6 +26,7 @@ pub struct Circuit<const LANES: usize = 1> {
     inputs: Vec<[u64; LANES]>,
     /// Whether the machine has not yet read inputs that were set.
     input_set: bool,
+    /// Whether the latest update had an edge or changed a value.
     changed: bool,
     connected: bool,
     ports: Vec<Observed>,

@@ -105,6 +105,7 @@ impl Compiler<'_> {
             return self.constant(0);
         }
         let (low, drop) = (inner_low + low as u8, drop_of(width).max(64 - left));
+        // The slot has only zeros above the bits of its value.
         if u32::from(low) >= self.held(a) {
             return self.constant(0);
         }

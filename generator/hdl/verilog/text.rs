@@ -4,6 +4,7 @@ use std::collections::HashSet;
 
 use crate::netlist::Design;
 
+/// The largest number of columns in a line of Verilog.
 pub const COLUMNS: usize = 100;
 
 /// Returns `text` in ASCII: `cos²γ ≤ ½` becomes `cos^2gamma <= 1/2`, and unknown characters become `?`.

@@ -92,6 +92,7 @@ impl LineUnroller<'_> {
                 ));
             }
         }
+        // The next values of the walk may depend on the walk and on operands alone.
         for &value in &next {
             if self.unknowns(value).iter().any(|id| !before.contains(id)) {
                 return Err(self.cannot(
@@ -193,6 +194,7 @@ impl LineUnroller<'_> {
     /// Checks that `first` comes before all other microinstructions in `writes`, and is executed once.
     fn in_order(&self, first: usize, writes: &[usize]) -> Result<(), Diagnostic> {
         let design = self.executor.design;
+        // The search stops at microinstructions that write points.
         let until_a_write = reached([0], |at| match writes.contains(&at) {
             true => Vec::new(),
             false => successors(design, at),

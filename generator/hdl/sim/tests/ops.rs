@@ -59,6 +59,7 @@ fn unsigned(width: u32) -> Format {
     Format::unsigned(width as i32, 0)
 }
 
+/// Calls a test with every width from 1 to 64 bits, once more with 1, and twice more with 64.
 fn widths(mut test: impl FnMut(&mut Random, u32)) {
     let mut random = Random(1);
     for width in (1..=64).chain([1, 64, 64]) {
