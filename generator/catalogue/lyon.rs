@@ -189,8 +189,8 @@ fn by_multiplier<'d>(d: &'d Designer, keys: &Keys, distance: SquaredDistance<'d>
     Scaled { value: scaled.q(), steps, squarings }
 }
 
-/// Returns `1 − β·D²` as the complement of β·D². It is one unit in the last place (an ulp) too small, and therefore always below
-/// 1. If β·D² is 1.0 or more, the comparator makes the mux pass 0 instead.
+/// Returns `1 − β·D²` as the complement of β·D². It is one unit in the last place (an ulp) too small, and so always below 1.0.
+/// If β·D² is 1.0 or more, the comparator makes the mux pass 0 instead.
 fn base<'d>(d: &'d Designer, value: Signal<'d>, f: Format) -> Signal<'d> {
     let one = d.constant("one", 1.0, Format::unsigned(1, f.frac));
     let comparator = d.less("comparator", value, one).doc("1 if beta*D^2 is below 1.0");
