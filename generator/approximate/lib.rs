@@ -1,10 +1,10 @@
 //! Finds piecewise polynomials in fixed point that approximate a function of one operand, and proves a bound on their error.
 //!
-//! For example, a device can compute 1/√x for x from 1 to 4 with such a polynomial. The domain is divided into [`Segments`]; a
-//! table has the polynomial's coefficients for each segment, and the hardware evaluates the polynomial in integers by Horner's
-//! rule. [`find`] chooses the degree, the segments, the coefficients and the bit widths. [`Piecewise::prove`] then compares the
-//! result of every operand with the formula or the curve. For more than 2^[`MOST_BITS`] operands of a formula, the proof uses
-//! intervals; so many operands are an error with samples or with a range reduction.
+//! The domain is divided into [`Segments`]. A table has the polynomial's coefficients for each segment, and the hardware
+//! evaluates the polynomial in integers by Horner's rule. [`find`] chooses the degree, the segments, the coefficients and the bit
+//! widths. [`Piecewise::prove`] then compares the result of every operand with the formula or the curve. For more than
+//! 2^[`MOST_BITS`] operands of a formula, the proof uses intervals; so many operands are an error with samples or with a range
+//! reduction.
 
 mod minimax;
 mod reduction;
@@ -33,83 +33,75 @@ pub use samples::Samples;
 pub use search::{Wish, reachable_error};
 pub use segments::{Layout, SegmentOffset, Segments};
 
-/// The number of coefficients of a polynomial of the largest degree, which is 3.
+/// The largest degree is 3.
 const MOST_SUMS: usize = 4;
 
-/// The largest number of intervals in which [`TargetFunction::pole`] looks for a pole.
+/// The number of intervals in which [`TargetFunction::pole`] looks for a pole.
 const POLES: u32 = 1 << 16;
 /// The distance from an operand that the search for a pole leaves out, as a fraction of the distance between two operands. The
 /// formula may jump at an operand, as `if(x <= 0, …)` does.
 const BESIDE: f64 = 1.0 / 1024.0;
 
-/// The number of bits that a look-up table with four inputs can store: one bit for each of 16 table words.
+/// The number of bits that a look-up table with four inputs can store.
 pub const FULL_CELL: usize = 16;
 
-/// An overhang (the operands of a domain beyond a power of two) may have at most the number of the domain's operands divided by
-/// 2^5.
+/// An overhang (the operands of a domain beyond a power of two) may have at most 2^−5 of the domain's operands.
 const SMALL_PART: u32 = 5;
 
-/// A proof computes the operands of a domain one by one if there are at most 2 to this power. The proof for a larger domain uses
-/// intervals.
+/// A proof computes at most 2 to this power operands one by one. The proof for a larger domain uses intervals.
 pub const MOST_BITS: u32 = 26;
 
 glint_config::choices! {
-    /// The result that a device gives for an operand outside the function's domain.
+    /// The result for an operand outside the function's domain.
     #[derive(Hash)]
     pub enum Outside {
-        /// The result of the nearer end of the domain. For example, on the domain 0 to 1 the operand 1.25 gives the result of
-        /// the largest operand.
+        /// The result of the nearer end: on the domain 0 to 1, 1.25 gives the result of the largest operand.
         Clamp = "clamp",
-        /// The result of the operand moved by a whole number of domain lengths into the domain. For example, on the domain 0 to
-        /// 1 the operand 1.25 gives the result of 0.25.
+        /// The result of the operand moved by whole domain lengths into the domain: on the domain 0 to 1, 1.25 gives the result
+        /// of 0.25.
         Wrap = "wrap",
-        /// Any result: the results of operands outside the domain are not specified.
+        /// The result is not specified.
         Anything = "anything",
     }
 }
 
-/// The function to approximate: a formula, or a curve through samples.
 #[derive(Clone, Debug)]
 pub enum Curve {
     /// A formula of the operand x.
     Formula(Expression),
-    /// A curve through samples, which are measured points.
+    /// A curve through measured points.
     Samples(Samples),
 }
 
-/// A function of one operand on a domain, with the formats of operand and result and the largest allowed error.
+/// A function of one operand on a domain, with the largest allowed error.
 #[derive(Clone, Debug)]
 pub struct TargetFunction {
-    /// The function: a formula, or a curve through samples.
     pub curve: Curve,
-    /// The smallest and the largest raw operand of the domain, both included. For example, the domain from 1 to below 4 with 16
-    /// fraction bits is (65536, 262143).
+    /// The smallest and the largest raw operand, both included: (65536, 262143) for 1 to below 4 with 16 fraction bits.
     pub domain: (i64, i64),
-    /// The fixed-point format of the operand x.
+    /// The format of the operand x.
     pub operand: Format,
-    /// The result that the device gives for operands outside the domain.
     pub outside: Outside,
     /// The number of fraction bits of the result.
     pub fraction: u32,
-    /// The largest allowed error, in units of the last bit of the result. Every error must be below this number.
+    /// Every error must be below this number, in units of the last bit of the result.
     pub error: f64,
 }
 
-/// The bit widths of one step of Horner's rule. Let p be the partial sum so far and t the offset of the operand in its segment.
-/// A step computes p·t, drops low bits of the product, and adds the next coefficient.
+/// The bit widths of a step of Horner's rule. With the partial sum p and the operand's offset t in its segment, it computes p·t,
+/// drops low bits, and adds the next coefficient.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HornerStep {
-    /// The number of leading bits of the offset that the step multiplies. The step ignores the lower bits of the offset.
+    /// The number of leading bits of the offset that the step multiplies.
     pub offset: u32,
     /// The number of low bits of the product that the step drops.
     pub dropped: u32,
 }
 
 impl HornerStep {
-    /// Returns the product of the partial sum `sum` and the offset `offset` in the segment, without the low bits that this step
-    /// drops. The caller adds the product to the next coefficient. `rest` is the number of bits of the whole offset. For
-    /// example, the sum 5 and the offset −3 give −15. If the step drops two bits of this product, the result is −4 (rounded
-    /// down).
+    /// Returns the product of `sum` and `offset` without the dropped bits; the caller adds it to the next coefficient. `rest` is
+    /// the number of bits of the whole offset. The sum 5 and the offset −3 give −15, or −4 (rounded down) if two bits are
+    /// dropped.
     #[inline]
     pub fn product(self, sum: i64, offset: i64, rest: u32) -> i64 {
         let product = i128::from(sum) * i128::from(offset >> (rest - self.offset));
@@ -117,31 +109,28 @@ impl HornerStep {
     }
 }
 
-/// A piecewise polynomial in integers: the table of coefficients, and all bit widths of the hardware that evaluates it.
+/// A piecewise polynomial in integers: the table of coefficients, and all bit widths of the hardware.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Piecewise {
-    /// The fixed-point format of the operand x of the device.
+    /// The format of the operand x.
     pub operand: Format,
-    /// The smallest and the largest raw operand of the domain, both included.
+    /// The smallest and the largest raw operand, both included.
     pub domain: (i64, i64),
-    /// The result that the device gives for operands outside the domain.
     pub outside: Outside,
-    /// The range reduction that maps an operand to the polynomial's shorter domain, or `None` if the polynomial covers the
-    /// whole domain.
+    /// Maps an operand to the polynomial's shorter domain, if the polynomial does not cover the whole one.
     pub reduction: Option<Reduction>,
-    /// The raw operand that has the number 0 in [`Segments`], which numbers the operands of the polynomial from 0 upwards.
+    /// The raw operand with the number 0 in [`Segments`].
     pub origin: i64,
-    /// The segments, which map the number of an operand to an entry (a word) of the table.
+    /// The segments, which map the number of an operand to a word of the table.
     pub segments: Segments,
-    /// The format of each coefficient, in order of rising powers: entry 0 is the format of the constant.
+    /// The formats of the coefficients, in order of rising powers: entry 0 is the constant.
     pub coefficients: Vec<Format>,
-    /// The words (entries) of the table, one for each segment. A word is the list of raw coefficients, the constant first.
+    /// The table: for each segment, the raw coefficients, the constant first.
     pub words: Vec<Vec<i64>>,
-    /// The bit widths of the steps of Horner's rule: entry k belongs to the step that adds coefficient k. There is one entry
-    /// less than there are coefficients.
+    /// Entry k belongs to the step of Horner's rule that adds coefficient k. The highest coefficient has none.
     pub steps: Vec<HornerStep>,
-    /// The formats of the partial sums of Horner's rule. Entry k is the format of the sum that includes coefficient k and all
-    /// higher coefficients. Entry 0 is the format of the polynomial's value.
+    /// The formats of the partial sums. Entry k includes coefficient k and all higher ones, so that entry 0 is the polynomial's
+    /// value.
     pub sums: Vec<Format>,
     /// The format of the result. Without a range reduction, it is the format of the polynomial's value.
     pub result: Format,
@@ -149,26 +138,26 @@ pub struct Piecewise {
     pub bound: f64,
 }
 
-/// A numbering of a domain's operands: the raw operand `origin` has the number 0, and the next operand has the number 1.
+/// Numbers the operands of a domain from the raw operand `origin`, which has the number 0.
 #[derive(Clone, Copy, Debug)]
 struct Numbering {
     origin: i64,
-    /// The number of bits of an operand's number. The numbers of the overhang need one bit more.
+    /// The number of bits of a number. The overhang needs one bit more.
     bits: u32,
-    /// The number of operands whose numbers are 2^`bits` or larger. These operands are the overhang.
+    /// The overhang: the number of operands whose numbers are 2^`bits` or larger.
     overhang: u64,
 }
 
 impl TargetFunction {
-    /// Returns an interval that contains the exact value of the function at the raw operand `raw`. The interval is in units of
-    /// the last bit of the result.
+    /// Returns an interval that contains the exact value of the function at the raw operand `raw`, in units of the last bit of
+    /// the result.
     ///
-    /// A formula is first evaluated in `f64`. If the interval is then too wide for the allowed error, or if the evaluation
-    /// fails, the formula is evaluated again with more bits.
+    /// A formula is first evaluated in `f64`. If the interval is then too wide for the allowed error, or if the evaluation fails,
+    /// it is evaluated again with more bits.
     ///
     /// # Errors
-    /// Fails if the formula has no value at this operand, for example 1/x at 0, or if 1024 bits do not decide a comparison or a
-    /// jump of the formula. The error has the part of the formula. A curve through samples never fails.
+    /// Fails if the formula has no value at this operand (1/x at 0), or if 1024 bits do not decide a comparison or a jump. A
+    /// curve through samples never fails.
     pub fn limits(&self, raw: i64) -> Result<Enclosure, Fault> {
         let unit = exp2(self.fraction as i32);
         let Enclosure { low, high } = match &self.curve {
@@ -184,21 +173,20 @@ impl TargetFunction {
         Ok(Enclosure::between(low * unit, high * unit))
     }
 
-    /// Returns the largest width of an interval of values that is exact enough for the allowed error, in units of the result's
-    /// last bit.
+    /// Returns the width of an interval of values that is exact enough for the allowed error, in units of the result's last bit.
     fn tolerance(&self) -> f64 {
         ((self.error - 0.5) / 8.0).max(1.0 / 1024.0)
     }
 
-    /// Returns the exact value of a raw operand. For example, the raw operand 3 with one fraction bit is 3/2.
+    /// Returns the exact value of a raw operand: 3 with one fraction bit is 3/2.
     fn operand_value(&self, raw: i64) -> RBig {
         let scale = RBig::from(2).pow(-self.operand.frac as isize);
         RBig::from(raw) * scale
     }
 
-    /// Returns two neighbouring operands, as real numbers, between which the formula has a pole, or has no value, or comes so
-    /// near to such a place that interval arithmetic cannot exclude it. Returns `None` if there are no such operands, if the
-    /// function is a curve through samples, or if 65536 intervals do not suffice for the search.
+    /// Returns two neighbouring operands, as real numbers, between which the formula has a pole or no value. It also returns them
+    /// if interval arithmetic cannot exclude such a place. A curve through samples has none. The search gives up after 65536
+    /// intervals.
     pub fn pole(&self) -> Option<(f64, f64)> {
         let Curve::Formula(formula) = &self.curve else { return None };
         let mut open = vec![self.domain];
@@ -224,7 +212,7 @@ impl TargetFunction {
         self.domain.1.abs_diff(self.domain.0) >> MOST_BITS != 0
     }
 
-    /// Returns text that says how the error bound was proved. The text is the beginning of a sentence, without a full stop.
+    /// Returns the beginning of a sentence that says how the error bound was proved.
     pub fn proof(&self) -> &'static str {
         match &self.curve {
             Curve::Samples(_) => {
@@ -237,17 +225,16 @@ impl TargetFunction {
         }
     }
 
-    /// Returns the numberings of the domain's operands that a search should try, in this order. The numbering with an overhang
-    /// comes first, if there is one. The last numbering has no overhang, because the segments of a steep function may be too
-    /// short for an overhang.
+    /// Returns the numberings that a search should try, in this order: with an overhang, if possible, and without. The segments
+    /// of a steep function may be too short for an overhang.
     fn numberings(&self, layout: Option<Layout>) -> Vec<Numbering> {
         let with_overhang = self.numbering_with_overhang(layout);
         with_overhang.into_iter().chain([self.numbering_without_overhang()]).collect()
     }
 
-    /// Returns the numbering in which the last segment also contains the operands beyond a power of two, the overhang. For
-    /// example, the domain of raw operands 0 to 1024 gets numbers of 10 bits and an overhang of 1. Returns `None` if the overhang
-    /// has more than 1/32 of the operands, if the domain has a single operand, or if the results outside the domain are specified
+    /// Returns the numbering in which the last segment also contains the operands beyond a power of two, the overhang. Raw
+    /// operands 0 to 1024 get numbers of 10 bits and an overhang of 1. Returns `None` if the overhang has more than 1/32 of the
+    /// operands, or if the domain has a single operand. It is also `None` if the results outside the domain are specified
     /// (`Clamp` or `Wrap`). The layout `Halving` also gives `None`, because its last segment is too short.
     fn numbering_with_overhang(&self, layout: Option<Layout>) -> Option<Numbering> {
         let span = (self.domain.1 - self.domain.0) as u64;
@@ -270,8 +257,7 @@ impl TargetFunction {
         Numbering { origin: self.operand.min_raw() as i64, bits: whole, overhang: 0 }
     }
 
-    /// Returns the refusal of the formula that has the fault `fault` at the raw operand `raw`. The message names the operand as
-    /// a real number.
+    /// The message states the operand at which the formula has the fault, as a real number.
     fn refusal(&self, raw: i64, fault: &Fault) -> Refusal {
         let x = self.operand.to_f64(raw.into());
         Refusal {
@@ -282,52 +268,49 @@ impl TargetFunction {
 }
 
 impl Piecewise {
-    /// Returns the names of the registers for the partial sums of Horner's rule, by the index of the sum. The first name
-    /// belongs to the whole polynomial: `polynomial` with a range reduction, and `result` without one.
+    /// Returns the names of the registers for the partial sums, by the index of the sum. The whole polynomial is `polynomial`
+    /// with a range reduction, and `result` without one.
     pub fn registers(&self) -> [&'static str; 3] {
         [if self.reduction.is_some() { "polynomial" } else { "result" }, "sum1", "sum2"]
     }
 
-    /// Returns the degree of the polynomials. For example, three coefficients give degree 2.
+    /// Returns the degree of the polynomials, one less than the number of coefficients.
     pub fn degree(&self) -> usize {
         self.coefficients.len() - 1
     }
 
-    /// Returns the raw operand of the polynomial for a raw operand of the domain, and the steps that restore the result from
-    /// the polynomial's value. Without a range reduction, the operand stays the same.
+    /// Returns the raw operand of the polynomial for a raw operand of the domain, and the steps that restore the result from the
+    /// polynomial's value.
     fn reduced(&self, raw: i64) -> (i64, Restore) {
         self.reduction.as_ref().map_or((raw, Restore::default()), |it| it.reduce(raw))
     }
 
-    /// Returns the number of a raw operand after the range reduction, if there is one. Numbers run from 0 over the polynomial's
-    /// domain, and [`Segments`] finds the segment for a number.
+    /// Returns the number, from 0, of a raw operand after the range reduction, if there is one.
     pub fn number(&self, raw: i64) -> u64 {
         (self.reduced(raw).0 - self.origin) as u64 & ((1 << self.segments.number_bits()) - 1)
     }
 
-    /// Returns the segment of a raw operand, and the offset of the operand in the segment. An operand beyond the last segment
-    /// gets the last segment.
+    /// Returns the segment of a raw operand, and its offset there. An operand beyond the last segment gets the last one.
     pub fn place(&self, raw: i64) -> SegmentOffset {
         let SegmentOffset { word, offset } = self.segments.place(self.number(raw));
         SegmentOffset { word: word.min(self.words.len() - 1), offset }
     }
 
-    /// Returns the partial sum of Horner's rule that includes coefficient `k` and all higher ones, not limited to its format.
-    /// `place` is the operand's segment and offset; `above` is the partial sum from coefficient `k` + 1 on. For the highest
-    /// coefficient, the sum is the coefficient itself.
+    /// Returns the partial sum that includes coefficient `k` and all higher ones, not limited to its format. `place` is the
+    /// operand's segment and offset, and `above` the partial sum from coefficient `k` + 1 on.
     pub fn sum(&self, k: usize, place: SegmentOffset, above: i64) -> i64 {
         let coefficient = self.words[place.word][k];
         let Some(step) = self.steps.get(k) else { return coefficient };
         coefficient + step.product(above, place.offset, self.segments.rest())
     }
 
-    /// Returns the number of low fraction bits of the constant coefficient's sum that the polynomial's value drops.
+    /// Returns the number of low fraction bits that the polynomial's value drops from the constant's sum.
     pub fn guard(&self) -> u32 {
         (self.coefficients[0].frac - self.sums[0].frac) as u32
     }
 
-    /// Returns all partial sums for a raw operand, not limited to their formats. Entry k includes coefficient k and all higher
-    /// ones; entry 0 is the polynomial's value without its guard bits. Entries beyond the degree are 0.
+    /// Returns all partial sums for a raw operand, not limited to their formats, with entry 0 without its guard bits. Entries
+    /// beyond the degree are 0.
     fn sums_of(&self, raw: i64) -> [i64; MOST_SUMS] {
         let place = self.place(raw);
         let mut sums = [0; MOST_SUMS];
@@ -340,9 +323,9 @@ impl Piecewise {
         sums
     }
 
-    /// Returns the raw result that the hardware computes for a raw operand. Each partial sum keeps the bits of its register. Within
-    /// the domain, the proof shows that these are all bits; outside, higher bits are dropped. The function does not apply
-    /// `outside`: the caller must first clamp or wrap an operand outside the domain.
+    /// Returns the raw result that the hardware computes. Each partial sum keeps the bits of its register: within the domain, the
+    /// proof shows that these are all bits. `outside` is not applied: the caller must first clamp or wrap an operand outside the
+    /// domain.
     pub fn result(&self, raw: i64) -> i64 {
         let place = self.place(raw);
         let mut above = 0;
@@ -357,9 +340,8 @@ impl Piecewise {
         self.restored(raw, above)
     }
 
-    /// Returns the polynomial without the range reduction, as a function of the number that the reduction computes. Without a
-    /// range reduction, returns a copy. With a range reduction, the bound of the returned polynomial is infinite, because only
-    /// the whole function has a proof.
+    /// Returns the polynomial without the range reduction, as a function of the number that the reduction computes. With a range
+    /// reduction, its bound is infinite, because only the whole function has a proof.
     pub fn behind_reduction(&self) -> Self {
         let Some(reduction) = &self.reduction else { return self.clone() };
         Self {
@@ -373,33 +355,30 @@ impl Piecewise {
         }
     }
 
-    /// Returns the raw result for the raw operand `raw`, where `polynomial` is the raw value of the polynomial. Without a range
-    /// reduction, the result is `polynomial` itself.
+    /// Returns the raw result for the raw operand `raw` and the raw value `polynomial` of the polynomial.
     pub fn restored(&self, raw: i64, polynomial: i64) -> i64 {
         self.reduced(raw).1.result(polynomial)
     }
 
-    /// Returns the number of bits of the table. For example, the table of `configs/function.toml`, for 1/√x from 1 to 2, has 16
-    /// words of 35 bits, which are 560 bits.
+    /// Returns the number of bits of the table. For example, `configs/function.toml`, for 1/√x from 1 to 2, has 16 words of 35
+    /// bits.
     pub fn rom_bits(&self) -> u64 {
         let width: u32 = self.coefficients.iter().map(|format| format.width()).sum();
         self.words.len() as u64 * u64::from(width)
     }
 
-    /// Returns the number of look-up tables with four inputs that store the table. A table with fewer than 16 words counts as a
-    /// table with 16 words.
+    /// Returns the number of look-up tables with four inputs that store the table. A table with fewer than 16 words counts as one
+    /// with 16.
     pub fn rom_cells(&self) -> f64 {
         let width: u32 = self.coefficients.iter().map(|format| format.width()).sum();
         table::cells(self.words.len().max(FULL_CELL), width)
     }
 
-    /// Proves a bound on the error at every operand of the domain, and returns it in units of the last bit of the result. No
-    /// result differs from the exact value by more than the bound.
+    /// Proves a bound on the error at every operand of the domain, in units of the last bit of the result.
     ///
     /// # Errors
-    /// Fails if a sum does not fit its format, if an error is not below the error that `function` allows, or if the function
-    /// has no value at an operand. For a domain with more than 2^[`MOST_BITS`] operands, also fails if the proof needs too many
-    /// intervals.
+    /// Fails if a sum does not fit its format, an error is not below the one that `function` allows, or the function has no value
+    /// at an operand. For a domain with more than 2^[`MOST_BITS`] operands, also fails if the proof needs too many intervals.
     pub fn prove(&self, function: &TargetFunction) -> Result<f64, Refusal> {
         let (first, last) = self.domain;
         if matches!(function.curve, Curve::Formula(_)) && function.is_wide() {
@@ -409,11 +388,8 @@ impl Piecewise {
         errors.try_reduce(|| 0.0, |a, b| Ok(a.max(b)))
     }
 
-    /// Returns the largest possible error of the result at a raw operand, in units of the result's last bit.
-    ///
-    /// # Errors
-    /// Fails if a sum does not fit its format, if the error is not below the allowed error, or if the function has no value at
-    /// the operand.
+    /// Returns the largest possible error at a raw operand, in units of the result's last bit. Fails as [`Piecewise::prove`]
+    /// does.
     fn error_at(&self, function: &TargetFunction, raw: i64) -> Result<f64, Refusal> {
         let sums = self.sums_of(raw);
         let result = self.restored(raw, sums[0]);
@@ -443,11 +419,8 @@ impl Piecewise {
 
 type SearchResult = Result<Arc<Piecewise>, Refusal>;
 
-/// Returns the cheapest approximation of `function` that the search finds and proves; `wish` states the user's choices. If the
-/// same search was made earlier in this process, returns the earlier result.
-///
-/// # Errors
-/// Fails if no approximation can be found and proved. The refusal says why.
+/// Returns the cheapest approximation of `function` under the choices `wish` that the search finds and proves. A search that was
+/// made earlier in this process is not repeated. Fails if no approximation can be found and proved.
 pub fn find(function: &TargetFunction, wish: Wish) -> SearchResult {
     static FOUND: LazyLock<Mutex<HashMap<String, SearchResult>>> = LazyLock::new(Mutex::default);
     let key = format!("{function:?} {wish:?}");

@@ -1,19 +1,16 @@
 //! Fits polynomials to points so that the largest distance is as small as possible, by exchanging reference points (the Remez
-//! algorithm). After 30 exchanges the fit ends with the best polynomial so far. For example, the best constant for x² from −1
-//! to 1 is 1/2, at a distance of at most 1/2.
+//! algorithm). For example, the best constant for x² from −1 to 1 is 1/2, at a distance of at most 1/2.
 
-/// The largest number of coefficients of a polynomial: the degree is at most 3.
+/// The degree is at most 3.
 const MOST: usize = 4;
 
-/// The largest number of exchanges of a reference point. The search ends earlier if the largest error equals the error at the
-/// reference points, or lies at a reference point.
+/// The search ends earlier if the largest error equals the error at the reference points, or lies at a reference point.
 const EXCHANGES: usize = 30;
 
-/// Returns the polynomial of degree `degree` with the smallest largest distance from `values` at the points `at`, and this
-/// distance. If the search does not settle within [`EXCHANGES`] exchanges of a point, the result is the best polynomial until
-/// then. The coefficients start with the constant; unused coefficients are 0. The points must be in rising order, and the
-/// degree must be at most 3. If there are not more points than coefficients, the polynomial passes through all points, with a
-/// lower degree if necessary, and the distance is 0.
+/// Returns the polynomial of degree `degree`, at most 3, with the smallest largest distance from `values` at the points `at`,
+/// and this distance. If the search does not settle within [`EXCHANGES`] exchanges of a point, it is the best polynomial until
+/// then. The coefficients start with the constant; unused ones are 0. The points must be in rising order. With no more points
+/// than coefficients, the polynomial passes through all points, with a lower degree if necessary, and the distance is 0.
 pub fn minimax(at: &[f64], values: &[f64], degree: usize) -> ([f64; MOST], f64) {
     let count = degree.min(at.len().saturating_sub(1)) + 1;
     if at.len() <= count {
@@ -50,13 +47,13 @@ pub fn minimax(at: &[f64], values: &[f64], degree: usize) -> ([f64; MOST], f64) 
     best
 }
 
-/// Returns the value of a polynomial at `at`. The coefficients start with the constant.
+/// Evaluates a polynomial; the coefficients start with the constant.
 pub fn at_point(coefficients: &[f64], at: f64) -> f64 {
     coefficients.iter().rev().fold(0.0, |sum, coefficient| sum * at + coefficient)
 }
 
-/// Puts the point with the index `worst` into the reference, in exchange for another point, so that the signs of the errors at
-/// the reference points still alternate. `error` gives the error at a point, by its index.
+/// Puts the point `worst` into the reference, in exchange for another one, so that the signs of the errors at the reference
+/// points still alternate. `error` gives the error at a point, by its index.
 fn exchange(reference: &mut Vec<usize>, worst: usize, error: &dyn Fn(usize) -> f64) {
     let like = |other: usize| error(other) * error(worst) > 0.0;
     let place = reference.partition_point(|&point| point < worst);
@@ -75,8 +72,7 @@ fn exchange(reference: &mut Vec<usize>, worst: usize, error: &dyn Fn(usize) -> f
 }
 
 /// Returns the polynomial for the reference points, given by their indices, and a height. With `levelled`, the polynomial misses
-/// each value by the same height, with alternating signs. Otherwise the polynomial passes through all values, and the height is
-/// 0.
+/// each value by this height, with alternating signs. Otherwise it passes through all values.
 fn level(at: &[f64], values: &[f64], reference: &[usize], levelled: bool) -> ([f64; MOST], f64) {
     let count = reference.len();
     let columns = if levelled { count - 1 } else { count };
@@ -96,8 +92,8 @@ fn level(at: &[f64], values: &[f64], reference: &[usize], levelled: bool) -> ([f
     (coefficients, if levelled { solution[columns] } else { 0.0 })
 }
 
-/// Returns the solution of a system of linear equations. A row has the coefficients of an equation, then its right side. A
-/// variable without a pivot gets 0.
+/// Solves a system of linear equations. A row has the coefficients of an equation, then its right side. A variable without a
+/// pivot gets 0.
 fn solve(mut rows: Vec<Vec<f64>>) -> Vec<f64> {
     let count = rows.len();
     for column in 0..count {

@@ -1,9 +1,9 @@
 //! Maps the operands of a large domain to a short domain, on which a polynomial is fitted (range reduction).
 //!
 //! For example, a polynomial for f(x) = 1/√x on 1 ≤ x < 4 suffices for all x > 0, since f(4·x) = f(x)/2. The hardware shifts x
-//! into the short domain, and shifts the polynomial's value back. This module checks such an identity of the formula only at a
-//! few points. The bound of the error does not rely on the identity, because [`super::Piecewise::prove`] compares the result of
-//! every operand of the large domain with the formula.
+//! into the short domain, and shifts the polynomial's value back. This module checks such an identity only at a few points. The
+//! bound of the error does not rely on it, because [`super::Piecewise::prove`] compares the result of every operand of the large
+//! domain with the formula.
 
 use std::sync::Arc;
 
@@ -13,11 +13,10 @@ use glint_formula::Function::Log2;
 use glint_formula::{Enclosure, Expression, Kind, RBig, parse};
 
 glint_config::choices! {
-    /// The identity by which a range reduction obtains the values of a function f on a large domain from values on a short
-    /// domain. For example, `Even` computes f(−3) as f(3).
+    /// How a range reduction obtains the values of a function f on a large domain from values on a short domain.
     #[derive(Default, Hash)]
     pub enum Identity {
-        /// No identity: the polynomial covers the whole domain.
+        /// The polynomial covers the whole domain.
         #[default]
         None = "none",
         /// f(−x) = 2 f(0) − f(x), as for `tanh(x)` and `sigmoid(x)`.
@@ -34,83 +33,75 @@ glint_config::choices! {
 }
 
 impl Identity {
-    /// Returns the name of the identity in configurations, for example `even`.
+    /// Returns the name in configurations, for example `even`.
     pub fn word(self) -> &'static str {
         Self::WORDS[self as usize]
     }
 }
 
-/// A range reduction, which maps an operand of the large domain to a number with `bits` bits, at which the polynomial is
-/// evaluated.
+/// Maps an operand of the large domain to a number, at which the polynomial is evaluated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reduction {
-    /// The rule that maps an operand to its number.
     pub rule: Rule,
-    /// The width of the number in bits.
+    /// The width of the number.
     pub bits: u32,
-    /// The number of fraction bits that the polynomial has in addition to the fraction bits of the result.
+    /// The number of fraction bits that the polynomial has in addition to the result's.
     pub guard: u32,
-    /// The function that the polynomial approximates, as a formula of the number's value, which has the name x.
+    /// The function that the polynomial approximates, of the number's value x.
     pub formula: Expression,
     /// The format in which the number is a real value, the operand of `formula`.
     pub operand: Format,
 }
 
-/// The rule by which a range reduction maps a raw operand x to a number.
+/// How a raw operand x is mapped to a number.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Rule {
-    /// The number is |x|, but at most the largest number of [`Reduction::bits`] bits. The field is `None` for an even function.
-    /// For an odd function f, the field is 2·f(0) in units of the result's last bit, from which the result of a negative operand
-    /// is subtracted.
+    /// The number is |x|, but at most the largest number of [`Reduction::bits`] bits. For an odd function f, the field is 2·f(0)
+    /// in units of the result's last bit, from which the result of a negative operand is subtracted. An even function has `None`.
     Size(Option<i64>),
-    /// The number is the distance from the nearest zero of a sine, after x is increased by the given number of quadrants. At a
-    /// peak of the sine, the number is one less than this distance, so that the number fits its bits. For example, a cosine has 1
-    /// quadrant here.
+    /// The number is the distance from the nearest zero of a sine, after x is increased by the given number of quadrants: 1 for a
+    /// cosine. At a peak of the sine, the number is one less than this distance, so that it fits its bits.
     Quadrants(u32),
     /// The number consists of the bits behind the leading 1 bit of x. If octaves come in pairs, an additional leading bit tells
-    /// the two octaves apart. For example, without pairs, the raw operand 5 with 8 bits is 00000101. This operand has five
-    /// leading zeros, and the bits 01 behind its leading 1 give the number 0100000, or 32. The operand 0 has no leading 1; its
-    /// number and its result are 0.
+    /// the two apart. For example, the raw operand 5 with 8 bits, 00000101, has five leading zeros. Without pairs, the bits 01
+    /// behind its leading 1 give the number 0100000, or 32. The operand 0 has no leading 1; its number and its result are 0.
     Octaves {
         /// The number of bits of the operand.
         width: u32,
-        /// Whether two neighbouring octaves share the same restoring steps, so that the number has a bit that tells the two
-        /// apart.
+        /// Whether two neighbouring octaves share the same restoring steps.
         pairs: bool,
         /// The steps that restore the result, by the number of leading zeros of the operand. A step is a shift to the right in
-        /// bits, and the value that is added before the shift, in units of the polynomial's last bit.
+        /// bits, and the value that is added before it, in units of the polynomial's last bit.
         restores: Vec<(u32, i64)>,
     },
-    /// The number is the fraction of the exponent of two; the integer part of the exponent becomes a shift of the polynomial's
-    /// value.
+    /// The number is the fraction of the exponent of two; its integer part becomes a shift of the polynomial's value.
     Exponent {
         /// The factor that converts the raw operand to an exponent of two, and the number of low bits that the product drops.
-        /// `None` means that the raw operand itself is the exponent.
+        /// `None` if the raw operand itself is the exponent.
         scale: Option<(i64, u32)>,
-        /// The integer part of the exponent at which the results are largest. There the shift is 0.
+        /// The integer part of the exponent at which the results are largest and the shift is 0.
         whole: i64,
-        /// Whether `whole` is the smallest integer part of the exponent, as for a function whose values fall.
+        /// Whether `whole` is the smallest integer part, as for a function whose values fall.
         falls: bool,
     },
 }
 
-/// The steps that compute the result for an operand from the polynomial's value. For example, an odd function with f(0) = 0
-/// negates the value for a negative operand.
+/// Computes the result for an operand from the polynomial's value: an odd function with f(0) = 0 negates it for a negative
+/// operand.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Restore {
-    /// The raw value that is added to the polynomial's value.
+    /// This number is added to the polynomial's value.
     addend: i64,
-    /// The number of bits by which the sum is then shifted to the right. The shifted sum is rounded to the nearest integer.
+    /// The sum is then shifted to the right by this number of bits, and rounded to the nearest integer.
     shift: u32,
-    /// The raw value from which the shifted sum is then subtracted, or `None` if the shifted sum is the result.
+    /// If given, the shifted sum is then subtracted from this value.
     centre: Option<i64>,
-    /// Whether the result is 0 whatever the polynomial's value is, because the operand is 0.
+    /// Whether the operand is 0, so that the result is 0 whatever the polynomial's value is.
     zero: bool,
 }
 
 impl Restore {
-    /// Returns the raw result for the raw value `polynomial` of the polynomial, by the steps in the fields of [`Restore`]. For
-    /// example, with an addend of 3 and a shift by 1 without a centre, 10 gives 7.
+    /// Returns the raw result for the polynomial's raw value: with an addend of 3 and a shift by 1 without a centre, 10 gives 7.
     pub fn result(self, polynomial: i64) -> i64 {
         if self.zero {
             return 0;
@@ -120,9 +111,8 @@ impl Restore {
         self.centre.map_or(result, |centre| centre - result)
     }
 
-    /// Returns the smallest and the largest raw value of the polynomial whose result is in the range from `low` to `high`, both
-    /// included. If the result is always 0, the range is −2^60 to 2^60. If no value of the polynomial has such a result, the
-    /// smallest value exceeds the largest.
+    /// Returns the smallest and the largest raw value of the polynomial whose result is from `low` to `high`, or −2^60 and 2^60
+    /// if the result is always 0. If no value has such a result, the smallest exceeds the largest.
     pub(super) fn polynomials(self, (low, high): (i64, i64)) -> (i64, i64) {
         const MOST: i128 = 1 << 60;
         if self.zero {
@@ -139,8 +129,8 @@ impl Restore {
 }
 
 impl Reduction {
-    /// Returns the number to which a raw operand is mapped, and the steps that restore the operand's result from the
-    /// polynomial's value. For example, an even function maps the raw operands 3 and −3 to the same number 3.
+    /// Returns the number of a raw operand, and the steps that restore its result from the polynomial's value. An even function
+    /// maps 3 and −3 to the same number 3.
     pub fn reduce(&self, raw: i64) -> (i64, Restore) {
         let mask = (1i64 << self.bits) - 1;
         let mirrored = |low: i64| if low == 0 { mask } else { mask + 1 - low };
@@ -175,9 +165,8 @@ impl Reduction {
         }
     }
 
-    /// Returns the number of bits by which the hardware shifts the polynomial's value to the right for the raw operand `raw`,
-    /// without the guard bits. The shift follows from the integer part of the operand's exponent. Returns 0 if the rule is not
-    /// `Exponent`.
+    /// Returns the number of bits by which the hardware shifts the polynomial's value to the right, without the guard bits. The
+    /// integer part of the exponent of the raw operand `raw` determines it. Other rules than `Exponent` shift by 0.
     pub fn places(&self, raw: i64) -> u32 {
         match self.rule {
             Rule::Exponent { scale, whole, .. } => {
@@ -188,13 +177,13 @@ impl Reduction {
     }
 
     /// Returns the range reduction of `function` by `identity`, and the function that its polynomial approximates. `guard` is the
-    /// number of additional fraction bits of the polynomial. `wider` concerns `Odd` and `Even`: if true, the largest |x| has its
-    /// own number; if false, the largest |x| may share the next lower number.
+    /// number of additional fraction bits of the polynomial. With `wider`, the largest |x| of `Odd` and `Even` has its own
+    /// number; otherwise it may share the next lower one.
     ///
     /// # Errors
-    /// Fails if the function is a curve through samples, or if the identity is `None`. Fails if the function has no value at one
-    /// of a few test points, if the identity does not hold there, or if the domain does not suit the identity. Also fails if a
-    /// number would have no bits or more than [`MOST`] bits.
+    /// Fails if the function is a curve through samples, or if the identity is `None`. Fails if the function has no value at a
+    /// test point, the identity does not hold there, or the domain does not suit it. Also fails if a number would have no bits or
+    /// more than [`MOST`] bits.
     pub(super) fn of(
         identity: Identity,
         function: &TargetFunction,
@@ -245,26 +234,26 @@ impl Reduction {
     }
 }
 
-/// Returns the exponent of two for the raw operand `raw`, as an integer with the same number of fraction bits as the number of
-/// the range reduction. `scale` is the field of [`Rule::Exponent`].
+/// Returns the exponent of two for the raw operand `raw`, with the fraction bits of the reduction's number. `scale` is the field
+/// of [`Rule::Exponent`].
 fn exponent(scale: Option<(i64, u32)>, raw: i64) -> i64 {
     scale.map_or(raw, |(factor, cut)| ((i128::from(raw) * i128::from(factor)) >> cut) as i64)
 }
 
-/// A shift to the right by this number of bits leaves nothing of a polynomial's value. Larger shifts are limited to this number.
+/// A shift to the right by this number of bits leaves nothing of a polynomial's value.
 const NOTHING: u32 = 64;
 
 /// The largest number of bits to which an operand may be reduced.
 const MOST: u32 = 24;
 
-/// The largest relative difference between two values that count as equal.
+/// The relative difference up to which two values count as equal.
 const EQUAL: f64 = 1e-9;
 
 fn refused<T>(why: UnsuitedReduction, message: &str) -> Result<T, Refusal> {
     Err(Refusal::of_reduction(why, message))
 }
 
-/// Returns the refusal of a formula for which the identity does not hold. `wanted` is the reason, as text for the user.
+/// `wanted` is the reason for the user.
 fn unlike<T>(wanted: &str) -> Result<T, Refusal> {
     let message = format!("the formula does not satisfy this identity: {wanted}");
     refused(UnsuitedReduction::NoIdentity, &message)
@@ -274,13 +263,13 @@ fn near(a: f64, b: f64) -> bool {
     (a - b).abs() <= EQUAL * a.abs().max(b.abs()).max(1e-3)
 }
 
-/// Returns whether all values are near the first value. The list must not be empty.
+/// The list must not be empty.
 fn all_near(values: &[f64]) -> bool {
     values.iter().all(|&value| near(value, values[0]))
 }
 
-/// Returns whether the values at the eighths of a period follow a sine with a positive amplitude that is `phase` quadrants
-/// ahead. For example, a cosine is a sine that is one quadrant ahead.
+/// Returns whether the values at the eighths of a period follow a sine that is `phase` quadrants ahead, with a positive
+/// amplitude. A cosine is one quadrant ahead.
 fn is_sine(values: &[f64; 8], phase: usize) -> bool {
     let at = |eighth: usize| values[(eighth + 8 - 2 * phase) % 8];
     let largest = at(2);
@@ -294,10 +283,10 @@ fn is_sine(values: &[f64; 8], phase: usize) -> bool {
 }
 
 /// The rule, and the number of bits of its number. The pair has the number's fraction bits, and the operand as a formula of the
-/// number's value x. For example, `Size` has the formula `x`.
+/// number's value x.
 type ReductionResult = Result<(Rule, u32, (i32, String)), Refusal>;
 
-/// A function on its large domain, which a range reduction is to shorten. `guard` is the number of additional fraction bits.
+/// A function on its large domain. `guard` is the number of additional fraction bits.
 struct Whole<'f> {
     function: &'f TargetFunction,
     formula: &'f Expression,
@@ -309,10 +298,8 @@ impl Whole<'_> {
         self.value_of(self.formula, x)
     }
 
-    /// Returns the binary logarithm of the formula's value at `x`. The value itself may be beyond the range of `f64`.
-    ///
-    /// # Errors
-    /// Fails if the formula has no value or no logarithm at `x`.
+    /// Returns the binary logarithm of the formula's value at `x`, which itself may be beyond the range of `f64`. Fails if the
+    /// formula has no value or no logarithm there.
     fn logarithm_at(&self, x: f64) -> Result<f64, Refusal> {
         let kind = Kind::Unary(Log2, Arc::new(self.formula.clone()));
         self.value_of(&Expression::new(kind, self.formula.span.clone()), x)

@@ -1,29 +1,26 @@
-//! Defines the reason why a search found no polynomials for a function, or why a bound of polynomials cannot be proved.
+//! Defines the reason why no polynomials with a proved bound were found.
 
 use std::ops::Range;
 
-/// The reason why no polynomials with a proved bound were found.
-///
-/// The reason knows no configuration keys. A device that states the function tells its user which of its keys to change.
+/// The reason why no polynomials with a proved bound were found. It knows no configuration keys: a device that states the
+/// function tells its user which of its keys to change.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Refusal {
-    /// The kind of the reason. A device chooses the key and the remedy by it.
+    /// A device chooses the key and the remedy by it.
     pub kind: RefusalKind,
-    /// The range of bytes in the formula's text to which the reason applies, or `None` if the reason applies to no particular
-    /// part.
+    /// The range of bytes in the formula's text to which the reason applies, if it applies to a particular part.
     pub place: Option<Range<usize>>,
-    /// The reason, as text for the user.
+    /// The reason, for the user.
     pub message: String,
 }
 
-/// The kinds of reasons.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RefusalKind {
     /// The formula has no value at an operand.
     NoValue,
-    /// The raw operands of the domain have too many bits. The search works with at most `most` fraction bits of the operand.
+    /// The raw operands of the domain have too many bits.
     OperandBits {
-        /// The largest number of fraction bits of the operand. It can be negative.
+        /// The largest number of fraction bits of the operand that the search can work with. It can be negative.
         most: i32,
     },
     /// The function is a curve through samples, and its domain has too many operands to compute each of them.
@@ -40,10 +37,10 @@ pub enum RefusalKind {
     Reduction(UnsuitedReduction),
 }
 
-/// The reasons why a range reduction does not suit a function.
+/// Why a range reduction does not suit a function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum UnsuitedReduction {
-    /// The function has no range reduction at all, as a curve through samples.
+    /// A curve through samples has no range reduction at all.
     NoReduction,
     /// The identity does not hold for the formula.
     NoIdentity,
@@ -60,12 +57,11 @@ pub enum UnsuitedReduction {
 }
 
 impl Refusal {
-    /// Makes a refusal that concerns no particular part of the formula.
+    /// The refusal concerns no particular part of the formula.
     pub(super) fn new(kind: RefusalKind, message: impl Into<String>) -> Self {
         Self { kind, place: None, message: message.into() }
     }
 
-    /// Makes the refusal of a range reduction.
     pub(super) fn of_reduction(why: UnsuitedReduction, message: impl Into<String>) -> Self {
         Self::new(RefusalKind::Reduction(why), message)
     }

@@ -1,19 +1,18 @@
-//! Computes the curve through samples. Samples are measured points that a user may state instead of a formula.
+//! Computes the curve through samples, measured points that a user may state instead of a formula.
 //!
-//! Between two samples the curve is Steffen's cubic (Astronomy and Astrophysics 239, 443, 1990). The curve has a continuous
-//! derivative, and it rises or falls wherever the samples do. Its slopes at the samples are the f64 numbers that Steffen's
-//! formula gives.
+//! Between two samples the curve is Steffen's cubic (Astronomy and Astrophysics 239, 443, 1990). It has a continuous derivative,
+//! and it rises or falls wherever the samples do. Its slopes at the samples are the f64 numbers that Steffen's formula gives.
 
 use glint_formula::Enclosure;
 
-/// Samples in the order of rising operands. A sample has its raw operand, its value, and the slope of the curve per step of the
-/// raw operand.
+/// The points in the order of rising operands: the raw operand, the value, and the slope of the curve per step of the raw
+/// operand.
 #[derive(Clone, Debug)]
 pub struct Samples(Vec<(i64, Enclosure, f64)>);
 
 impl Samples {
-    /// Returns the curve through points, which are pairs of a raw operand and an interval that contains the value. There must be
-    /// a point, and the raw operands must rise from point to point.
+    /// Makes the curve through at least one point: a raw operand, and an interval that contains the value. The raw operands must
+    /// rise from point to point.
     pub fn through(points: Vec<(i64, Enclosure)>) -> Self {
         let slopes = slopes(&points);
         let mut samples = Vec::with_capacity(points.len());
@@ -23,12 +22,11 @@ impl Samples {
         Self(samples)
     }
 
-    /// Returns the number of samples.
     pub fn count(&self) -> usize {
         self.0.len()
     }
 
-    /// Returns an interval that contains the value of the curve at the raw operand `raw`. The operand must be in the domain.
+    /// Returns an interval that contains the value of the curve at the raw operand `raw`, which must be in the domain.
     pub fn limits(&self, raw: i64) -> Enclosure {
         let at = self.0.partition_point(|point| point.0 < raw).min(self.0.len() - 1);
         let (to, above, last) = self.0[at];
@@ -46,10 +44,10 @@ impl Samples {
     }
 }
 
-/// A chord between two neighbouring points: its length in steps of the raw operand, and its slope.
+/// A chord between neighbouring points: its length in steps of the raw operand, and its slope.
 type Chord = (f64, f64);
 
-/// Returns the slopes of Steffen's curve at the points. The points must be in the order of rising operands.
+/// Returns the slopes of Steffen's curve at the points, which must be in the order of rising operands.
 fn slopes(points: &[(i64, Enclosure)]) -> Vec<f64> {
     let mut chords: Vec<Chord> = Vec::new();
     for pair in points.windows(2) {
@@ -69,17 +67,16 @@ fn slopes(points: &[(i64, Enclosure)]) -> Vec<f64> {
     slopes
 }
 
-/// Returns the slope of Steffen's curve at the point between two chords. The slope is 0 if the chords do not both rise or both
-/// fall.
+/// Returns the slope of Steffen's curve between two chords: 0 unless both rise or both fall.
 fn inner_slope((h, s): Chord, (k, t): Chord) -> f64 {
     let parabola = (s * k + t * h) / (h + k);
     let least = s.abs().min(t.abs()).min(parabola.abs() / 2.0);
     if s * t > 0.0 { 2.0 * least.copysign(s) } else { 0.0 }
 }
 
-/// Returns the slope of Steffen's curve at an end, whose chord is `(h, s)`. `beside` is the neighbouring chord. If `beside` is
-/// `None`, there is only one chord, and its slope is the result. Otherwise the result is the slope of the parabola through the
-/// three points at this end, limited to the range from 0 to twice the chord's slope.
+/// Returns the slope of Steffen's curve at an end, whose chord is `(h, s)`. `beside` is the neighbouring chord. The parabola
+/// through the three points at this end gives the slope, limited to the range from 0 to twice the chord's slope. A single chord
+/// has its own slope.
 fn end_slope((h, s): Chord, beside: Option<Chord>) -> f64 {
     let parabola = beside.map_or(s, |(k, t)| s + (s - t) * h / (h + k));
     if parabola * s <= 0.0 { 0.0 } else { parabola.abs().min(2.0 * s.abs()).copysign(s) }

@@ -9,43 +9,40 @@ use super::{
 };
 use glint_base::fixed::MAX_WIDTH;
 
-/// The choices of the user for an approximation. The search makes all other choices.
+/// The user's choices for an approximation. The search makes all others.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Wish {
-    /// The degree of the polynomials, or `None` if the search should choose the cheapest.
+    /// The degree of the polynomials; `None` for the cheapest.
     pub degree: Option<u32>,
-    /// The layout of the segments, or `None` if the search should choose the cheapest.
+    /// The layout of the segments; `None` for the cheapest.
     pub layout: Option<Layout>,
-    /// The identity that the range reduction uses, for example f(−x) = f(x), or `Identity::None`.
+    /// The identity of the range reduction, for example f(−x) = f(x).
     pub identity: Identity,
     /// The largest number of look-up tables that an approximation may take, or `None` without a limit. The search finds nothing if
     /// only dearer approximations keep the error. A caller that compares approximations saves time with the cost of the cheapest
     /// one so far.
     pub most_cells: Option<u32>,
-    /// The smallest number of words with which a table enters the cost. For example, a look-up table with four inputs stores 16
-    /// words of a bit, so a table of 5 words may cost as much as a table of 16 words.
+    /// The smallest number of words with which a table enters the cost. A look-up table with four inputs stores 16 words of a
+    /// bit, so a table of 5 words may cost as much as one of 16 words.
     pub least_words: usize,
 }
 
-/// The largest degree of a polynomial.
 const DEGREES: u32 = 3;
 
-/// The largest number of bits of a table address: a table has at most 2^16 words.
+/// A table has at most 2^16 words.
 const ADDRESS: u32 = 16;
 
-/// The largest number of operands (approximately) by which the search chooses degree, segments and bit widths.
+/// About so many operands choose degree, segments and bit widths.
 const CHOOSING: usize = 1 << 16;
 
-/// The largest number of operands (approximately) by which the search widens the chosen bit widths, before it uses all its
-/// operands.
+/// About so many operands widen the chosen bit widths, before the search uses all its operands.
 const WIDENING: usize = 1 << 20;
 
 /// The first and the last raw operand of a domain must differ by less than 2 to this power.
 const WIDEST: u32 = 46;
 
-/// The margins that the search subtracts from the allowed error if it does not evaluate every operand. A margin is a
-/// fraction of the allowed error minus half a unit, the rounding of the result. If a proof fails, the search tries the next
-/// margin.
+/// The search subtracts these margins, one after the other until a proof succeeds, from the allowed error if it does not evaluate
+/// every operand. A margin is a fraction of the allowed error minus half a unit, the rounding of the result.
 const STRICTER: [f64; 5] = [0.02, 0.1, 0.25, 0.5, 0.75];
 
 /// The cost of a step of Horner's rule without the table, in look-up tables: an adder, and the wiring of a multiplier.
@@ -54,8 +51,7 @@ const STEP: f64 = 50.0;
 /// The cost of an octave, in look-up tables: one more row of multiplexers in the shifter that aligns the offsets.
 const OCTAVE: f64 = 12.0;
 
-/// The errors to try if the allowed error cannot be reached, in units of the result's last bit. The message names the smallest of
-/// these errors that can be reached, if there is one.
+/// The errors to try if the allowed error cannot be reached, in units of the result's last bit.
 const NEAREST: [f64; 14] =
     [0.51, 0.55, 0.6, 0.7, 0.8, 0.9, 1.0, 1.5, 2.0, 4.0, 8.0, 16.0, 64.0, 256.0];
 
@@ -63,8 +59,8 @@ const NEAREST: [f64; 14] =
 ///
 /// # Errors
 /// Fails if the operands of the domain differ by 2^46 or more, or if there are more than 2^26 operands of samples. Fails if the
-/// function has no value at an operand, or if the identity of `wish` does not hold. Fails if no approximation with the allowed
-/// error is found and proved.
+/// function has no value at an operand, the identity of `wish` does not hold, or no approximation with the allowed error is found
+/// and proved.
 pub(super) fn search(function: &TargetFunction, wish: Wish) -> Result<Piecewise, Refusal> {
     let span = function.domain.1.abs_diff(function.domain.0);
     if span >> WIDEST != 0 {
@@ -96,8 +92,8 @@ pub(super) fn search(function: &TargetFunction, wish: Wish) -> Result<Piecewise,
     ))
 }
 
-/// Returns an error above the allowed error of `function` that polynomials keep, in units of the result's last bit; `None` if none of
-/// a few such errors is kept. The function takes as long as several searches: it helps a user whose error cannot be kept.
+/// Returns an error above the allowed error of `function` that polynomials keep, in units of the result's last bit. The search
+/// tries only a few such errors. This takes as long as several searches, and helps a user whose error cannot be kept.
 pub fn reachable_error(function: &TargetFunction, wish: Wish) -> Option<f64> {
     let count_missed = NEAREST.partition_point(|error| {
         let larger = TargetFunction { error: *error, ..function.clone() };
@@ -106,8 +102,7 @@ pub fn reachable_error(function: &TargetFunction, wish: Wish) -> Option<f64> {
     NEAREST.get(count_missed).copied()
 }
 
-/// Returns the cheapest approximation with a proved bound, or `None` if the search finds none. The first numbering of the
-/// operands that has an approximation decides; later numberings are not tried.
+/// Returns the cheapest approximation with a proved bound, for the first numbering of the operands that has one.
 ///
 /// # Errors
 /// Fails if the function has no value at an operand, if a found approximation cannot be proved, or as [`attempt_reduced`] does if
@@ -124,11 +119,8 @@ fn attempt(function: &TargetFunction, wish: Wish) -> Result<Option<Piecewise>, R
     Ok(None)
 }
 
-/// Returns the cheapest approximation with a proved bound, for this numbering of the operands, or `None` if the search finds
-/// none.
-///
-/// # Errors
-/// Fails if the function has no value at an operand, or if no found approximation can be proved.
+/// Returns the cheapest approximation with a proved bound, for this numbering of the operands. Fails if the function has no value
+/// at an operand, or if no found approximation can be proved.
 fn attempt_numbered(
     function: &TargetFunction,
     wish: Wish,
@@ -148,8 +140,8 @@ fn attempt_numbered(
     unproved.map_or(Ok(None), Err)
 }
 
-/// Returns the variants of the polynomial that the search tries in turn for a range reduction. A variant has the number of
-/// additional fraction bits of the polynomial, and whether the largest |x| of an odd or even function has a number of its own.
+/// Returns the variants that the search tries in turn. A variant is the number of additional fraction bits of the polynomial, and
+/// whether the largest |x| of an odd or even function has a number of its own.
 fn variants(identity: Identity) -> &'static [(u32, bool)] {
     match identity {
         Identity::Odd | Identity::Even => &[(0, false), (0, true)],
@@ -160,12 +152,11 @@ fn variants(identity: Identity) -> &'static [(u32, bool)] {
     }
 }
 
-/// Returns the cheapest approximation with a proved bound for the first of the [`variants`] that has one, or `None` if no
-/// variant has one.
+/// Returns the cheapest approximation with a proved bound for the first of the [`variants`] that has one.
 ///
 /// # Errors
-/// Fails if the domain has more than 2^26 operands, if the identity does not hold, if the function has no value at an operand, or
-/// if the found approximation cannot be proved.
+/// Fails if the domain has more than 2^26 operands, or the identity does not hold. Also fails if the function has no value at an
+/// operand, or the approximation cannot be proved.
 fn attempt_reduced(function: &TargetFunction, wish: Wish) -> Result<Option<Piecewise>, Refusal> {
     if function.is_wide() {
         let message = format!(
@@ -186,8 +177,8 @@ fn attempt_reduced(function: &TargetFunction, wish: Wish) -> Result<Option<Piece
     Ok(None)
 }
 
-/// Returns the cheapest approximation that the search finds, with an allowed result at every operand in `seen`. Returns `None` if
-/// the search finds no approximation. The bound of the approximation is not yet proved.
+/// Returns the cheapest approximation that the search finds, with an allowed result at every operand in `seen`. Its bound is not
+/// yet proved.
 fn cheapest(seen: &AllowedResults, wish: Wish) -> Option<Piecewise> {
     let few = seen.thinned(CHOOSING);
     let mut found: Vec<(f64, Segments, Widths, Widths)> = Vec::new();
@@ -228,17 +219,17 @@ fn cheapest(seen: &AllowedResults, wish: Wish) -> Option<Piecewise> {
     })
 }
 
-/// Returns the largest number of words of a table whose cost does not exceed `least`, at most 2^16. The estimate counts the
-/// constant coefficient alone, which has as many bits as the result.
+/// Returns the number of words of a table whose cost does not exceed `least`, at most 2^16. The estimate counts the constant
+/// coefficient alone, which has as many bits as the result.
 fn most_words(seen: &AllowedResults, degree: u32, least: f64) -> usize {
     let word = f64::from(seen.result.width()) / BITS_A_CELL;
     (((least - STEP * f64::from(degree)) / word).max(0.0) as usize).min(1 << ADDRESS)
 }
 
-/// Returns divisions of the domain into at most `most` segments that are fine enough for polynomials of degree `degree`, in
-/// order of rising numbers of segments. These are the coarsest division of a layout and a number of octaves, if more octaves
-/// have made it coarser than the divisions before, and the same with twice as many segments. A division is fine enough if
-/// polynomials with unrounded coefficients keep the error. `layout` restricts the divisions to one layout.
+/// Returns divisions of the domain into at most `most` segments, in order of rising numbers of segments. They are fine enough for
+/// polynomials of degree `degree`. The list has the coarsest division of a layout and a number of octaves, and the same with
+/// twice as many segments. The function leaves out numbers of octaves that make no coarser division than fewer octaves. A
+/// division is fine enough if polynomials with unrounded coefficients keep the error.
 fn cuts(seen: &AllowedResults, degree: u32, layout: Option<Layout>, most: usize) -> Vec<Segments> {
     let mut search = CutSearch { seen, degree, most, worst: None };
     let mut cuts: Vec<Segments> = Vec::new();
@@ -272,27 +263,25 @@ fn cuts(seen: &AllowedResults, degree: u32, layout: Option<Layout>, most: usize)
     cuts
 }
 
-/// A search for the divisions of a domain into segments that are fine enough for polynomials of one degree.
+/// Searches for divisions that are fine enough for polynomials of one degree.
 struct CutSearch<'s> {
     seen: &'s AllowedResults<'s>,
     degree: u32,
-    /// The largest number of segments.
     most: usize,
-    /// An operand in a segment that was too long in an earlier division, or `None` if there was none.
+    /// An operand in a segment that was too long in an earlier division.
     worst: Option<i64>,
 }
 
 impl CutSearch<'_> {
-    /// Returns whether a division has few enough segments, whether its segments leave enough bits for offsets, and whether its
-    /// last segment can contain the overhang.
+    /// Returns whether a division has few enough segments, leaves enough bits for offsets, and has room for the overhang in its
+    /// last segment.
     fn is_possible(&self, cut: &Segments) -> bool {
         cut.words() <= self.most.min(1 << ADDRESS)
             && cut.octaves + cut.prefix + u32::from(self.degree > 0) <= self.seen.bits
             && cut.holds_overhang()
     }
 
-    /// Returns the division with the fewest segments for this layout and number of octaves that is fine enough. Returns `None` if
-    /// no possible division is fine enough.
+    /// Returns the division with the fewest segments for this layout and number of octaves that is fine enough.
     fn coarsest(&mut self, layout: Layout, octaves: u32) -> Option<Segments> {
         let least = u32::from(octaves == 0);
         for prefix in least..=ADDRESS {

@@ -1,40 +1,37 @@
-//! Computes the results that a search for coefficients may accept: the lowest and the highest result within the allowed error,
-//! for each operand that the search evaluates. For example, the value 10.3 with an allowed error of 1.0 has the lowest result 10
-//! and the highest result 11.
+//! Computes the lowest and the highest result within the allowed error, for each operand that a search evaluates: 10 and 11 for
+//! the value 10.3 with an allowed error of 1.0.
 
 use rayon::prelude::*;
 
 use super::{Numbering, Reduction, Refusal, RefusalKind, TargetFunction};
 use glint_base::fixed::{Format, exp2, nearest};
 
-/// The largest number of operands that the search evaluates. For a larger domain, the search takes evenly spaced operands.
+/// The search evaluates at most this number of operands; it takes evenly spaced ones of a larger domain.
 const HELD: u64 = 1 << 25;
 
-/// The largest number of operands that the search evaluates if the domain is too large for a proof operand by operand.
+/// This limit replaces [`HELD`] if the domain is too large for a proof operand by operand.
 const HELD_OF_MANY: u64 = 1 << 18;
 
-/// The number of operands whose results are computed in one parallel step.
+/// The number of operands in one parallel step.
 const BLOCK: usize = 1 << 16;
 
-/// The allowed results of a function at the operands that the search evaluates.
+/// The allowed results at the operands that the search evaluates.
 pub(super) struct AllowedResults<'f> {
     pub(super) function: &'f TargetFunction,
     pub(super) origin: i64,
     pub(super) bits: u32,
     /// The number of operands whose numbers are 2^`bits` or larger.
     pub(super) overhang: u64,
-    /// The distance between two operands that the search evaluates, or 1 if the search evaluates every operand.
+    /// The distance between two operands that the search evaluates.
     pub(super) stride: i64,
-    /// The lowest and the highest allowed raw value of the polynomial, for each operand that the search evaluates.
+    /// The lowest and the highest allowed raw value of the polynomial for each of these operands.
     pub(super) right: Vec<(i64, i64)>,
     /// The format of the polynomial's value.
     pub(super) result: Format,
-    /// The function on the large domain, its range reduction, and the format of its results, or `None` without a range
-    /// reduction.
+    /// The function on the large domain, its range reduction, and the format of its results.
     pub(super) whole: Option<(&'f TargetFunction, &'f Reduction, Format)>,
 }
 
-/// The allowed results of some operands, and the range of the nearest results.
 struct Nearest {
     right: Vec<(i64, i64)>,
     nearest: (i64, i64),
@@ -62,12 +59,9 @@ impl Nearest {
 }
 
 impl TargetFunction {
-    /// Returns three raw results for a raw operand: the result nearest to the exact value, the lowest allowed result, and the
-    /// highest allowed result. The allowed error is reduced by the margin `stricter`. The lowest result exceeds the highest if
-    /// no result is allowed.
-    ///
-    /// # Errors
-    /// Fails if the function has no value at the operand, or if the result needs more than 48 bits.
+    /// Returns the result nearest to the exact value, the lowest and the highest allowed result. The allowed error is reduced by
+    /// the margin `stricter`. The lowest result exceeds the highest if no result is allowed. Fails if the function has no value
+    /// at the operand, or if the result needs more than 48 bits.
     fn right(&self, raw: i64, stricter: f64) -> Result<(i64, i64, i64), Refusal> {
         let limits = self.limits(raw).map_err(|fault| self.refusal(raw, &fault))?;
         if limits.low.abs().max(limits.high.abs()) > exp2(48) {
@@ -76,8 +70,8 @@ impl TargetFunction {
         }
         let error = self.error - stricter;
         let nearest = nearest(limits.middle()) as i64;
-        // Subtracts two roundings: these results are nearer than the error for every exact value within the limits, whatever
-        // the proof's rounding of the difference adds.
+        // Subtracts two roundings: these results are nearer than the error for every exact value within the limits, whatever the
+        // proof's rounding of the difference adds.
         let low = (limits.high - error).next_up().next_up().floor() as i64 + 1;
         let high = (limits.low + error).next_down().next_down().ceil() as i64 - 1;
         Ok((nearest, low, high))
@@ -86,10 +80,7 @@ impl TargetFunction {
 
 impl<'f> AllowedResults<'f> {
     /// Evaluates the function. Returns `None` if an operand has no allowed result. If the search does not evaluate every
-    /// operand, the allowed error is reduced by the margin `stricter`.
-    ///
-    /// # Errors
-    /// Fails if the function has no value at an operand, or if a result needs more than 48 bits.
+    /// operand, the allowed error is reduced by the margin `stricter`. Fails as [`TargetFunction::right`] does.
     pub(super) fn new(
         function: &'f TargetFunction,
         stricter: f64,
@@ -99,7 +90,7 @@ impl<'f> AllowedResults<'f> {
         let Numbering { origin, bits, overhang } = numbering;
         let count = (last - first) as u64 + 1;
         let held = if function.is_wide() { HELD_OF_MANY } else { HELD };
-        // The stride is odd, so that the low bits of the operands take every value.
+        // An odd stride lets the low bits of the operands take every value.
         let stride = if count > held { count.div_ceil(held) as i64 | 1 } else { 1 };
         let stricter = if stride > 1 { stricter } else { 0.0 };
         let seen = count.div_ceil(stride as u64) + u64::from(stride > 1);
@@ -124,11 +115,8 @@ impl<'f> AllowedResults<'f> {
     }
 
     /// Computes the allowed values of the polynomial behind a range reduction. Several operands of `whole` may be reduced to the
-    /// same number; a polynomial's value is allowed if the results of all these operands are allowed. `inner` is the function
-    /// that the polynomial approximates. Returns `None` if a number has no allowed value.
-    ///
-    /// # Errors
-    /// Fails if a function has no value at an operand, or if a result needs more than 48 bits.
+    /// same number; a value must then be allowed for all of them. `inner` is the function that the polynomial approximates.
+    /// Returns `None` if a number has no allowed value. Fails as [`TargetFunction::right`] does.
     pub(super) fn reduced(
         whole: &'f TargetFunction,
         reduction: &'f Reduction,
@@ -165,10 +153,9 @@ impl<'f> AllowedResults<'f> {
         Ok(Some(seen))
     }
 
-    /// Returns evenly spaced operands of this list: about `most` of them, always fewer than twice as many. A shorter list stays
-    /// the same.
+    /// Returns about `most` evenly spaced operands of this list, always fewer than twice as many.
     pub(super) fn thinned(&self, most: usize) -> Self {
-        // The stride is odd, so that the low bits of the operands take every value.
+        // An odd stride lets the low bits of the operands take every value.
         let by = if self.right.len() > most { (self.right.len() / most) | 1 } else { 1 };
         let last = self.right.last().filter(|_| by > 1);
         let right = self.right.iter().step_by(by).chain(last).copied().collect();
@@ -184,7 +171,7 @@ impl<'f> AllowedResults<'f> {
         (raw - self.origin) as u64
     }
 
-    /// Returns the number of operands below the raw operand `raw` that the search evaluates.
+    /// Returns how many operands that the search evaluates are below `raw`.
     pub(super) fn seen_below(&self, raw: i64) -> usize {
         let (first, _) = self.function.domain;
         ((raw - first) as u64).div_ceil(self.stride as u64) as usize

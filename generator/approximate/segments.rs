@@ -1,32 +1,30 @@
-//! Divides the domain of a piecewise polynomial into segments, and finds the segment of an operand. Each segment has one entry
-//! (word) in the table of coefficients. For example, 16 uniform segments of 8-bit operands contain 16 operands each.
+//! Divides the domain of a piecewise polynomial into segments, and finds the segment of an operand. Each segment has one word in
+//! the table of coefficients.
 
-/// The lengths of the segments along the domain. An octave is a block of operands with the same highest bit, counted from one
-/// end of the domain.
+/// The lengths of the segments along the domain. An octave is a block of operands with the same highest bit, counted from one end
+/// of the domain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Layout {
-    /// All segments have the same length.
+    /// All segments are equally long.
     Uniform,
-    /// Segments are half as long in each octave toward the low end of the domain, for functions that are steep at the low end.
+    /// In each octave toward the low end of the domain, segments are half as long, for functions that are steep there.
     Octaves,
-    /// Segments are half as long in each octave toward the high end of the domain, for functions that are steep at the high
-    /// end.
+    /// In each octave toward the high end of the domain, segments are half as long.
     Halving,
 }
 
 impl Layout {
-    /// All layouts, with their names in configurations.
+    /// The layouts with their names in configurations.
     pub const NAMES: [(&str, Self); 3] =
         [("uniform", Self::Uniform), ("octaves", Self::Octaves), ("halving", Self::Halving)];
 
-    /// Returns the name of the layout in configurations.
     pub fn name(self) -> &'static str {
         Self::NAMES.iter().find(|(_, layout)| *layout == self).map_or("", |(name, _)| name)
     }
 }
 
-/// A division of the numbers from 0 to 2^`bits` − 1 into segments. The segments may become shorter toward one end, by octaves.
-/// The last segment may also contain a few numbers from 2^`bits` on, the overhang.
+/// A division of the numbers from 0 to 2^`bits` − 1 into segments. The last segment may also contain a few numbers from 2^`bits`
+/// on, the overhang.
 ///
 /// An octave is the block of numbers with the same highest bit, such as 128 to 255. The numbers below the lowest octave form one
 /// more block, which is as long as the lowest octave. All blocks have the same number of segments, 2^`prefix`. For example, `bits
@@ -35,47 +33,45 @@ impl Layout {
 pub struct Segments {
     /// The number of bits of an operand's number, without the additional bit for an overhang.
     pub bits: u32,
-    /// The layout of the segments: all equally long, or shorter toward one end of the domain.
     pub layout: Layout,
-    /// The number of octaves (blocks of numbers with the same highest bit) that have segments of their own length, or 0 if all
-    /// segments are equally long.
+    /// The number of octaves that have segments of their own length; 0 if all segments are equally long.
     pub octaves: u32,
-    /// The number of bits that select a segment within a block. A block has 2^`prefix` segments.
+    /// The number of bits that select a segment within a block, which has 2^`prefix` segments.
     pub prefix: u32,
-    /// The count of numbers from 2^`bits` on that belong to the last segment. For example, the domain from 0 to 1 with both
-    /// ends has an overhang of 1. Without an overhang, the end 1 alone would double the number of segments.
+    /// The count of numbers from 2^`bits` on that belong to the last segment. The domain from 0 to 1 with both ends has an
+    /// overhang of 1. Without it, the end 1 alone would double the number of segments.
     pub overhang: u64,
 }
 
-/// The segment of an operand, and the position of the operand in the segment.
+/// The segment of an operand, and its position there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SegmentOffset {
     /// The index of the segment's word in the table.
     pub word: usize,
-    /// The distance of the operand from the middle of the segment, in units of 2^−[`Segments::rest`] of the segment's length. The
-    /// distance lies from −1/2 to below 1/2 of the length; in the overhang the distance is 1/2 of the length or more.
+    /// The distance from the middle of the segment, in units of 2^−[`Segments::rest`] of the segment's length. It is from −1/2 to
+    /// below 1/2 of the length, and in the overhang 1/2 or more.
     pub offset: i64,
 }
 
 impl Segments {
-    /// Returns the number of bits of an offset in the longest segment, without the additional bit for an overhang. For example,
-    /// 8-bit numbers in 16 uniform segments have offsets of 4 bits.
+    /// Returns the number of bits of an offset in the longest segment, without the additional bit for an overhang: 4 for 8-bit
+    /// numbers in 16 uniform segments.
     pub fn rest(&self) -> u32 {
         self.bits - self.prefix - u32::from(self.octaves > 0)
     }
 
-    /// Returns the number of bits of an operand's number, including the additional bit for an overhang, if there is an overhang.
+    /// Returns the number of bits of an operand's number, with the additional bit for an overhang.
     pub fn number_bits(&self) -> u32 {
         self.bits + self.extra_bit()
     }
 
-    /// Returns 1 if there is an overhang, and otherwise 0. With an overhang, numbers and offsets have one bit more.
+    /// With an overhang, numbers and offsets have one bit more.
     pub fn extra_bit(&self) -> u32 {
         u32::from(self.overhang > 0)
     }
 
     /// Returns whether the last segment can contain the overhang. The longest segment must have at least four numbers, the
-    /// overhang at most half as many, and the layout must not be `Halving`. Without an overhang, returns `true`.
+    /// overhang at most half as many, and the layout must not be `Halving`.
     pub fn holds_overhang(&self) -> bool {
         if self.overhang == 0 {
             return true;
@@ -86,19 +82,17 @@ impl Segments {
     }
 
     /// Returns the number of bits of an offset in a segment of the block `block`. Block 0 lies below the octaves, and block k is
-    /// octave k from below. For example, 8-bit numbers with 3 octaves and a prefix of 2 bits have 3 bits in block 0 and 5 bits in
-    /// block 3.
+    /// octave k from below. 8-bit numbers with 3 octaves and a prefix of 2 bits have 3 bits in block 0 and 5 bits in block 3.
     pub fn rest_of(&self, block: u32) -> u32 {
         (self.bits + block.max(1) - 1) - self.octaves - self.prefix
     }
 
-    /// Returns the number of words of the whole table. For example, 3 octaves with a prefix of 2 bits give 16 words.
+    /// Returns the number of words of the table: 16 for 3 octaves with a prefix of 2 bits.
     pub fn words(&self) -> usize {
         (self.octaves as usize + 1) << self.prefix
     }
 
-    /// Returns the number of an operand, counted from the end toward which octaves become shorter. For example, `Halving` turns
-    /// the 8-bit number 255 into 0.
+    /// Counts a number from the end toward which octaves become shorter: `Halving` turns the 8-bit number 255 into 0.
     fn turned(&self, number: u64) -> u64 {
         match self.layout {
             Layout::Halving => ((1 << self.bits) - 1) - number,
@@ -106,8 +100,8 @@ impl Segments {
         }
     }
 
-    /// Returns the segment and the offset of the operand with the number `number`. For example, number 0x35 of 8 bits in 16
-    /// uniform segments has the word 3 and the offset −3, since the middle of the segment is 0x38.
+    /// Returns the segment and the offset of the operand with this number. 0x35 of 8 bits in 16 uniform segments has the word 3
+    /// and the offset −3, since the middle of the segment is 0x38.
     #[inline]
     pub fn place(&self, number: u64) -> SegmentOffset {
         if self.overhang > 0 && number >> self.bits != 0 {
@@ -131,8 +125,8 @@ impl Segments {
         SegmentOffset { word, offset: ((low << places) as i64) - middle }
     }
 
-    /// Returns the numbers in the segment of the table word `word`: the lowest number, and the count of numbers, which includes
-    /// the overhang for the last word. For example, word 3 of 16 uniform segments over 8 bits gives (48, 16).
+    /// Returns the lowest number in the segment of a word, and the count of its numbers, with the overhang for the last word.
+    /// Word 3 of 16 uniform segments over 8 bits gives (48, 16).
     pub fn numbers(&self, word: usize) -> (u64, u64) {
         let block = (word >> self.prefix) as u32;
         let rest = self.rest_of(block);

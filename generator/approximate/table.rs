@@ -1,5 +1,5 @@
-//! Finds the table of coefficients for given segments. The search lowers the bit widths one bit at a time, as long as it finds
-//! coefficients with an allowed result at every operand that it evaluates.
+//! Finds the table of coefficients for given segments. The search lowers the bit widths one bit at a time. It goes on while it
+//! finds coefficients with an allowed result at every evaluated operand.
 //!
 //! The search rounds the coefficients one after the other, the highest first. After each coefficient, the search subtracts the
 //! part of the function that the hardware computes from the coefficients so far, and fits the rest again. The constant comes
@@ -14,39 +14,38 @@ use super::{HornerStep, MOST_SUMS, Piecewise, Segments};
 use glint_base::fixed::{Format, MAX_WIDTH, exp2};
 use glint_base::interval::Interval;
 
-/// The largest number of points in a segment to which a polynomial is fitted.
+/// The number of points in a segment to which a polynomial is fitted.
 const FITTED: i64 = 40;
 
-/// The number of fraction bits of a coefficient with which the search begins, in addition to the fraction bits of the result.
+/// A coefficient begins with this number of fraction bits in addition to the result's.
 const GENEROUS: i32 = 8;
 
 /// The smallest number of additional fraction bits. A negative number means fewer fraction bits than the result has.
 const FEWEST: i32 = -8;
 
-/// The largest width of a factor that a multiplier of an FPGA accepts, in bits with the sign.
+/// The width of a factor that a multiplier of an FPGA accepts, in bits with the sign.
 const FACTOR: u32 = 18;
 
-/// The cost of one bit of a partial product that an FPGA's multiplier does not compute, in look-up tables. The cost includes
-/// the adder.
+/// The cost of one bit of a partial product that an FPGA's multiplier does not compute, with the adder, in look-up tables.
 const PARTIAL: f64 = 2.0;
 
 /// The number of table bits that a look-up table with four inputs stores.
 pub(super) const BITS_A_CELL: f64 = 16.0;
 
-/// A segment of a domain, with the operands and points by which the search chooses its coefficients.
+/// A segment, with the operands and points by which the search chooses its coefficients.
 pub(super) struct CandidateSegment {
-    /// The operands of the segment that the search evaluates, as a range of indices into [`AllowedResults::right`].
+    /// The operands that the search evaluates, as indices into [`AllowedResults::right`].
     seen: std::ops::Range<usize>,
-    /// The offsets of the points to which polynomials are fitted. `at` has the same offsets as fractions of the segment's
-    /// length, and `values` has the function's values at these points.
+    /// The offsets of the points to which polynomials are fitted. `at` has them as fractions of the segment's length, and
+    /// `values` has the function's values there.
     offsets: Vec<i64>,
     at: Vec<f64>,
     values: Vec<f64>,
 }
 
-/// The bit widths of coefficients and offsets. `guard` has the fraction bits of each coefficient in addition to the fraction
-/// bits of the result, the constant first. `offset` has the number of leading offset bits that each step of Horner's rule
-/// multiplies. The variables are numbered from 0, first all of `guard`, then all of `offset`.
+/// The bit widths of coefficients and offsets. `guard` has the fraction bits of each coefficient beyond the result's, the
+/// constant first. `offset` has the number of leading offset bits that each step of Horner's rule multiplies. The variables are
+/// numbered from 0, first all of `guard`, then all of `offset`.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Widths {
     guard: Vec<i32>,
@@ -54,7 +53,7 @@ pub(super) struct Widths {
 }
 
 impl Widths {
-    /// Returns the steps of Horner's rule, or `None` if the product of a step would have too few fraction bits for the next
+    /// Returns the steps of Horner's rule, unless the product of a step would have too few fraction bits for the next
     /// coefficient.
     fn steps(&self) -> Option<Vec<HornerStep>> {
         let mut steps = Vec::with_capacity(self.offset.len());
@@ -66,8 +65,8 @@ impl Widths {
         Some(steps)
     }
 
-    /// Returns the widths with `change` bits added to variable number `at`. Returns `None` if the variable would become too
-    /// small: below 0 for the constant, below [`FEWEST`] for another coefficient, or below 1 for an offset.
+    /// Adds `change` bits to variable number `at`, unless it would become too small. The limit is 0 for the constant, [`FEWEST`]
+    /// for another coefficient, and 1 for an offset.
     fn with(&self, at: usize, change: i32) -> Option<Self> {
         let mut other = self.clone();
         match other.guard.get_mut(at) {
@@ -86,7 +85,6 @@ impl Widths {
         Some(other)
     }
 
-    /// Limits every variable to its width in `most`.
     fn no_wider(mut self, most: &Self) -> Self {
         for (own, most) in self.guard.iter_mut().zip(&most.guard) {
             *own = (*own).min(*most);
@@ -97,27 +95,24 @@ impl Widths {
         self
     }
 
-    /// Returns the widths with one bit more in variable number `at`, limited to the widths `most`. Returns `None` if that
-    /// changes nothing.
+    /// Adds one bit to variable number `at`, limited to the widths `most`. Returns `None` if that changes nothing.
     fn widened(&self, at: usize, most: &Self) -> Option<Self> {
         let wider = self.with(at, 1)?.no_wider(most);
         (wider != *self).then_some(wider)
     }
 
-    /// Returns the number of variables.
     fn count(&self) -> usize {
         self.guard.len() + self.offset.len()
     }
 }
 
-/// The segments of a domain, for which the search looks for the words of the table.
 pub(super) struct Table<'s> {
     seen: &'s AllowedResults<'s>,
     cut: Segments,
     pieces: Vec<Option<CandidateSegment>>,
 }
 
-/// The words of a table, each a list of raw coefficients with the constant first. `None` is a word that no operand reads.
+/// Raw coefficients with the constant first, for each word that an operand reads.
 pub(super) type Words = Vec<Option<Vec<i64>>>;
 
 impl<'s> Table<'s> {
@@ -127,14 +122,14 @@ impl<'s> Table<'s> {
         table
     }
 
-    /// Returns the indices of the words up to the last word that an operand of the domain reads.
+    /// Returns the indices up to the last word that an operand of the domain reads.
     fn words(&self) -> impl IndexedParallelIterator<Item = usize> {
         let (first, last) = self.seen.function.domain;
         let ends = [first, last].map(|raw| self.cut.place(self.seen.number(raw)).word);
         (0..ends[0].max(ends[1]) + 1).into_par_iter()
     }
 
-    /// Returns the segment of a word with the points to fit, or `None` if no operand of the domain lies in the segment.
+    /// Returns the segment of a word with the points to fit, if an operand of the domain lies in it.
     fn piece(&self, word: usize) -> Option<CandidateSegment> {
         let Self { seen, cut, .. } = self;
         let (first, last) = seen.function.domain;
@@ -154,7 +149,7 @@ impl<'s> Table<'s> {
             let value = seen.function.limits(raw).map_or(f64::NAN, |limits| limits.middle());
             points.push((offset, value));
         }
-        // Offsets fall with rising operands in the layout `Halving`, so the points are sorted by offset.
+        // Offsets fall with rising operands in the layout `Halving`.
         points.sort_by_key(|it| it.0);
         let unit = exp2(-(cut.rest() as i32));
         let mut piece = CandidateSegment {
@@ -171,9 +166,9 @@ impl<'s> Table<'s> {
         Some(piece)
     }
 
-    /// Returns whether polynomials with unrounded coefficients come near enough to the function in all segments of `cut`.
-    /// `worst` is an operand whose segment is examined first, because a segment that was too long in one division is often too
-    /// long in another. If a segment is too long, `worst` becomes an operand in this segment.
+    /// Returns whether polynomials with unrounded coefficients come near enough to the function in all segments of `cut`. The
+    /// segment of the operand `worst` is examined first, because a segment that was too long in one division is often too long
+    /// in another. If a segment is too long, `worst` becomes an operand there.
     pub(super) fn may_fit(
         seen: &'s AllowedResults<'s>,
         cut: Segments,
@@ -193,8 +188,8 @@ impl<'s> Table<'s> {
         false
     }
 
-    /// Returns whether the segment of a word is too long for polynomials of the degree `degree`, even with unrounded
-    /// coefficients. A segment without operands is never too long.
+    /// Returns whether the segment of a word is too long for polynomials of this degree, even with unrounded coefficients. A
+    /// segment without operands is never too long.
     fn is_too_long(&self, word: usize, degree: u32) -> bool {
         let Some(piece) = self.piece(word) else { return false };
         if degree == 0 {
@@ -205,8 +200,8 @@ impl<'s> Table<'s> {
         !fits
     }
 
-    /// Returns narrow widths for which every operand has an allowed result, and the words of the table. No width exceeds its
-    /// width in `generous`, and no single width can be one bit smaller. Returns `None` if the widths `generous` do not suffice.
+    /// Returns widths, none above its width in `generous`, for which every operand has an allowed result, and the words of the
+    /// table. No single width can be one bit smaller. Returns `None` if the widths `generous` do not suffice.
     pub(super) fn narrowest(&self, generous: &Widths) -> Option<(Widths, Words)> {
         let mut words = self.fitted(generous)?;
         // Each variable is first lowered alone. The combination of all lowered variables usually needs about one bit more.
@@ -233,8 +228,7 @@ impl<'s> Table<'s> {
         Some(self.lowered(widths, words))
     }
 
-    /// Lowers the widths one bit at a time while the table can still be filled with words. `words` are the words for the given
-    /// widths. Returns the lowered widths, so that no single width can be one bit smaller, and their words.
+    /// Lowers the widths one bit at a time while the table can still be filled with words.
     pub(super) fn lowered(&self, mut widths: Widths, mut words: Words) -> (Widths, Words) {
         let mut changed = true;
         while changed {
@@ -249,15 +243,14 @@ impl<'s> Table<'s> {
         (widths, words)
     }
 
-    /// Returns the widths with which the search begins. For degree 0 there are no additional fraction bits.
+    /// The widths with which the search begins. Degree 0 needs no additional fraction bits.
     pub(super) fn generous(&self, degree: usize) -> Widths {
         let guard = if degree == 0 { 0 } else { GENEROUS };
         Widths { guard: vec![guard; degree + 1], offset: vec![self.cut.rest(); degree] }
     }
 
-    /// Returns the words for the widths `widths`, which were chosen by fewer operands. If the widths do not suffice, they grow
-    /// bit by bit up to the widths `most`. Returns the final widths and the words, or `None` if the widths `most` do not
-    /// suffice.
+    /// Widens `widths`, which fewer operands chose, bit by bit up to the widths `most`, until they suffice. Returns them with
+    /// the words, or `None` if the widths `most` do not suffice.
     pub(super) fn settled(&self, mut widths: Widths, most: &Widths) -> Option<(Widths, Words)> {
         let count = widths.count();
         loop {
@@ -280,8 +273,7 @@ impl<'s> Table<'s> {
         }
     }
 
-    /// Returns words of these widths with which every evaluated operand has an allowed result, or `None` if a segment has no
-    /// such word.
+    /// Returns words of these widths with which every evaluated operand has an allowed result.
     fn fitted(&self, widths: &Widths) -> Option<Words> {
         let steps = widths.steps()?;
         let fitted_words = self.pieces.par_iter().map(|piece| match piece {
@@ -291,8 +283,7 @@ impl<'s> Table<'s> {
         fitted_words.collect()
     }
 
-    /// Returns coefficients of these widths with which every evaluated operand of the segment has an allowed result, or `None`
-    /// if the search finds none.
+    /// Returns coefficients of these widths with which every evaluated operand of the segment has an allowed result.
     fn fitted_piece(
         &self,
         piece: &CandidateSegment,
@@ -306,9 +297,9 @@ impl<'s> Table<'s> {
         found.then_some(coefficients)
     }
 
-    /// Chooses coefficient `k` and all lower coefficients, and writes them to `coefficients`. `product` has the hardware's
-    /// product that coefficient `k` is added to, at each point of the fit. Tries the two nearest integers for each coefficient.
-    /// Returns whether the function found coefficients with which every evaluated operand of the segment has an allowed result.
+    /// Chooses coefficient `k` and all lower ones, of the two nearest integers each, and writes them to `coefficients`.
+    /// `product` has the hardware's product that coefficient `k` is added to, at each point of the fit. Returns whether every
+    /// evaluated operand of the segment then has an allowed result.
     fn place(
         &self,
         piece: &CandidateSegment,
@@ -348,9 +339,8 @@ impl<'s> Table<'s> {
         false
     }
 
-    /// Returns the middle of the constants with which every evaluated operand of the segment has an allowed result, or `None`
-    /// if there is no such constant. `above` has the other coefficients, the lowest first. `guard` is the number of low bits
-    /// that the sum drops.
+    /// Returns the middle of the constants with which every evaluated operand of the segment has an allowed result. `above` has
+    /// the other coefficients, the lowest first. `guard` is the number of low bits that the sum drops.
     fn constant(
         &self,
         piece: &CandidateSegment,
@@ -374,7 +364,7 @@ impl<'s> Table<'s> {
                 return None;
             }
         }
-        // If the search evaluates no operand of the segment, any constant is allowed, and the constant is 0.
+        // If the search evaluates no operand of the segment, any constant is allowed.
         Some(if least == i64::MIN { 0 } else { least + (most - least) / 2 })
     }
 
@@ -393,7 +383,7 @@ impl<'s> Table<'s> {
         formats
     }
 
-    /// Returns the number of bits by which each coefficient except the constant is wider than a multiplier's factor, or 0.
+    /// Returns the number of bits by which each coefficient except the constant is wider than a multiplier's factor.
     fn excess(formats: &[Format]) -> impl Iterator<Item = u32> {
         formats.iter().skip(1).map(|format| {
             let signed_width = format.width() + u32::from(!format.signed);
@@ -401,8 +391,7 @@ impl<'s> Table<'s> {
         })
     }
 
-    /// Returns the cost of the table and of the partial products, in look-up tables. A table with fewer than `least_words` words
-    /// counts as a table with `least_words` words.
+    /// Returns the cost of the table, with at least `least_words` words, and of the partial products, in look-up tables.
     pub(super) fn cost(&self, widths: &Widths, words: &Words, least_words: usize) -> f64 {
         let formats = self.formats(widths, words);
         let width: u32 = formats.iter().map(|format| format.width()).sum();
@@ -413,8 +402,8 @@ impl<'s> Table<'s> {
         cells(words.len().max(least_words), width) + PARTIAL * f64::from(partial)
     }
 
-    /// Returns widths from which the search can begin again so that no coefficient is too wide for a multiplier: the widths
-    /// `most`, with fewer fraction bits for each coefficient that is too wide. Returns `None` if no coefficient is too wide.
+    /// Returns widths from which the search can begin again so that no coefficient is too wide for a multiplier: `most`, with
+    /// fewer fraction bits for each coefficient that is too wide. Returns `None` if none is.
     pub(super) fn within_factors(
         &self,
         most: &Widths,
@@ -432,13 +421,13 @@ impl<'s> Table<'s> {
         is_wide.then_some(generous)
     }
 
-    /// Returns the approximation with these words. Returns `None` if a product would have [`MAX_WIDTH`] bits or more, or if no
-    /// operand reads a word. The bound of the returned approximation is infinite, because it is not proved yet.
+    /// Returns the approximation with these words, not yet proved. Returns `None` if a product would have [`MAX_WIDTH`] bits or
+    /// more, or if no operand reads a word.
     pub(super) fn finished(&self, widths: &Widths, words: Words) -> Option<Piecewise> {
         let AllowedResults { result: polynomial, whole, .. } = self.seen;
         let function = whole.map_or(self.seen.function, |it| it.0);
         let coefficients = self.formats(widths, &words);
-        // A word that no operand of the domain reads gets the preceding word, or the first known word if no word precedes.
+        // A word that no operand of the domain reads gets the preceding word, or the first known one.
         let mut before = words.iter().flatten().next()?.clone();
         let mut filled: Vec<Vec<i64>> = Vec::with_capacity(words.len());
         for word in words {
@@ -474,13 +463,13 @@ impl<'s> Table<'s> {
     }
 }
 
-/// Returns the number of look-up tables with four inputs that store a table of `words` words with `width` bits.
+/// Returns the number of look-up tables with four inputs that store `words` words of `width` bits.
 pub(super) fn cells(words: usize, width: u32) -> f64 {
     words as f64 * f64::from(width) / BITS_A_CELL
 }
 
-/// Returns the smallest and the largest value of each partial sum over all operands of the domain. For a wide domain, the
-/// limits follow from intervals for each segment and may be too wide; otherwise the sums of every operand are computed.
+/// Returns the smallest and the largest value of each partial sum over all operands of the domain. For a wide domain, the limits
+/// follow from intervals for each segment and may be too wide.
 fn limits_of_sums(found: &Piecewise, is_wide: bool) -> [Interval; MOST_SUMS] {
     let no_limits = [(i128::MAX, i128::MIN); MOST_SUMS];
     if is_wide {
@@ -503,7 +492,6 @@ fn limits_of_sums(found: &Piecewise, is_wide: bool) -> [Interval; MOST_SUMS] {
     parts.reduce(|| no_limits, |a, b| hull(a, &b))
 }
 
-/// Widens each interval of `ends` so that it contains the interval with the same index in `sums`.
 fn hull(mut ends: [Interval; MOST_SUMS], sums: &[Interval]) -> [Interval; MOST_SUMS] {
     for (end, sum) in ends.iter_mut().zip(sums) {
         *end = (end.0.min(sum.0), end.1.max(sum.1));

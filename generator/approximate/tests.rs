@@ -1,5 +1,4 @@
-//! Tests that approximations are proved, that a wrong coefficient is refused, and that a refusal has the right
-//! kind.
+//! Tests that approximations are proved, that a wrong coefficient is refused, and that a refusal has the right kind.
 
 use super::{
     Curve, Identity, Layout, Outside, RefusalKind, Samples, TargetFunction, Wish, find,
@@ -8,7 +7,7 @@ use super::{
 use glint_base::fixed::{Format, exp2};
 use glint_formula::{Enclosure, parse};
 
-/// Returns a function on the domain from `from` to below `to`. Operand and result both have `fraction` fraction bits.
+/// The domain is from `from` to below `to`. Operand and result both have `fraction` fraction bits.
 fn function(text: &str, (from, to): (f64, f64), fraction: i32, error: f64) -> TargetFunction {
     let raw = |value: f64| (value * exp2(fraction)) as i64;
     let domain = (raw(from), raw(to) - 1);
@@ -22,7 +21,7 @@ fn function(text: &str, (from, to): (f64, f64), fraction: i32, error: f64) -> Ta
     }
 }
 
-/// Returns whether the reason is that a result of the polynomials is wrong, or that a sum does not fit its format.
+/// Returns whether a result of the polynomials is wrong, or a sum does not fit its format.
 fn is_wrong_result(kind: RefusalKind) -> bool {
     use RefusalKind::{ErrorExceeded, ResultBits, Unproved};
     matches!(kind, ErrorExceeded | ResultBits | Unproved)
@@ -47,7 +46,7 @@ fn a_planted_wrong_coefficient_is_refused_at_every_degree() {
     }
 }
 
-/// A formula, the ends of its domain, and a function that computes the formula in `f64`.
+/// A formula, the ends of its domain, and the formula in `f64`.
 type Case = (&'static str, (f64, f64), fn(f64) -> f64);
 
 #[test]
@@ -104,8 +103,7 @@ fn what_cannot_be_had_is_refused_with_what_can() {
     assert_eq!(wide.kind, RefusalKind::OperandBits { most: 23 });
 }
 
-/// The bound over intervals is equal to or a little larger than the bound over every operand. A wrong coefficient exceeds the
-/// bound.
+/// The bound over intervals is equal to or a little larger than the bound over every operand.
 #[test]
 fn a_bound_over_intervals_holds_at_every_operand() {
     for (text, degree) in [
@@ -170,8 +168,7 @@ fn the_curve_of_samples_is_met_and_a_wrong_coefficient_is_refused() {
     }
 }
 
-/// For a function of each identity, every operand of the large domain is right against `libm`, and a wrong coefficient is
-/// refused.
+/// Every operand of the large domain is right against `libm`, and a wrong coefficient is refused.
 #[test]
 fn reduced_operands_serve_the_whole_domain() {
     type Whole = (&'static str, (f64, f64), Identity, fn(f64) -> f64);
@@ -217,7 +214,7 @@ fn reduced_operands_serve_the_whole_domain() {
     }
 }
 
-/// The domain includes both ends, so its last operand is one beyond a power of two.
+/// The last operand of a domain with both ends is one beyond a power of two.
 #[test]
 fn a_domain_with_both_ends_may_have_every_layout() {
     let mut it = function("sqrt(2 - x)", (0.0, 1.0), 10, 1.0);
@@ -230,8 +227,7 @@ fn a_domain_with_both_ends_may_have_every_layout() {
     }
 }
 
-/// The function is a wave so short that each operand needs its own segment, so the last segment cannot contain further
-/// operands.
+/// The wave is so short that each operand needs its own segment, so the last segment cannot contain further operands.
 #[test]
 fn a_steep_function_does_without_an_overhang() {
     let it = TargetFunction {

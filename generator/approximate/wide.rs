@@ -2,9 +2,9 @@
 //!
 //! The proof treats the offset of an operand in its segment as a real number t, so that a word of the table is a polynomial
 //! P(t). The hardware drops bits, so its result differs from P(t); the proof bounds this difference for a whole segment. Within
-//! an interval, the distance between the function and P is at most the distance in the middle plus half of the length times the
-//! largest slope of their difference. If this bound is too large, or if the function may have no derivative, the proof halves
-//! the interval. An interval with at most four operands is computed operand by operand. A proof that needs more than 2^20
+//! an interval, the distance between the function and P is at most the distance in the middle plus a product: half of the length
+//! times the largest slope of their difference. If this bound is too large, or if the function may have no derivative, the proof
+//! halves the interval. An interval with at most four operands is computed operand by operand. A proof that needs more than 2^20
 //! intervals fails.
 
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -16,25 +16,22 @@ use glint_base::fixed::exp2;
 use glint_base::interval::{self, Interval};
 use glint_formula::Enclosure;
 
-/// The largest number of intervals that a proof examines.
+/// A proof examines at most this number of intervals.
 const MOST: u64 = 1 << 20;
 
 /// An interval with at most this number of operands is computed operand by operand.
 const FEW: i64 = 4;
 
-/// The limits of the partial sums and of the dropped bits, over all operands of a segment.
+/// Limits over all operands of a segment.
 pub(super) struct Walk {
-    /// For each coefficient k, the interval of the partial sum that includes coefficient k and all higher coefficients, in units
-    /// of the sum's last bit.
+    /// For each coefficient k, the partial sum that includes it and all higher ones, in units of the sum's last bit.
     pub sums: Vec<Interval>,
-    /// The limits of P(t) minus the hardware's result, in units of the result's last bit. The difference arises from dropped
-    /// bits.
+    /// P(t) minus the hardware's result, in units of the result's last bit. The difference arises from dropped bits.
     lag: Enclosure,
 }
 
 impl Piecewise {
-    /// Returns the first and the last raw operand of the domain that read the word `word`, or `None` if no operand reads the
-    /// word.
+    /// Returns the first and the last raw operand of the domain that read the word `word`.
     fn operands_of(&self, word: usize) -> Option<(i64, i64)> {
         let (from, count) = self.segments.numbers(word);
         let low = (self.origin + from as i64).max(self.domain.0);
@@ -42,12 +39,12 @@ impl Piecewise {
         (low <= high).then_some((low, high))
     }
 
-    /// Returns the number of fraction bits of coefficient `k` minus the number of fraction bits of the result.
+    /// Returns by how many fraction bits coefficient `k` exceeds the result.
     fn beyond(&self, k: usize) -> i32 {
         self.coefficients[k].frac - self.sums[0].frac
     }
 
-    /// Returns the limits of the sums over all operands that read the word `word`, or `None` if no operand reads the word.
+    /// Returns the limits over all operands that read the word `word`, if there are any.
     pub(super) fn walk(&self, word: usize) -> Option<Walk> {
         let (low, high) = self.operands_of(word)?;
         let [a, b] = [low, high].map(|raw| self.place(raw).offset);
@@ -76,14 +73,13 @@ impl Piecewise {
         Some(Walk { sums, lag: lag + last })
     }
 
-    /// Returns the real number t for an offset: the distance from the middle of the segment, as a fraction of the segment's
-    /// length.
+    /// Returns t for an offset: the distance from the middle of the segment, as a fraction of the segment's length.
     fn way(&self, offset: i64) -> Enclosure {
         Enclosure::exactly(offset as f64 * exp2(-(self.segments.rest() as i32)))
     }
 
-    /// Returns the values of the polynomial of a word over the interval `way` of t, and the values of its derivative, in
-    /// units of the result's last bit.
+    /// Returns the values of a word's polynomial over the interval `way` of t, and of its derivative, in units of the result's
+    /// last bit.
     fn polynomial(&self, word: usize, way: Enclosure) -> (Enclosure, Enclosure) {
         let mut value = Enclosure::exactly(0.0);
         let mut slope = Enclosure::exactly(0.0);
@@ -95,10 +91,8 @@ impl Piecewise {
         (value, slope)
     }
 
-    /// Proves the bound by intervals of operands. The bound has the same meaning as the bound of [`Piecewise::prove`].
-    ///
-    /// # Errors
-    /// Fails as [`Piecewise::prove`] does, or if the proof needs more than [`MOST`] intervals.
+    /// Proves the bound of [`Piecewise::prove`] by intervals of operands. Fails as it does, or if the proof needs more than
+    /// [`MOST`] intervals.
     pub(super) fn prove_by_segments(&self, function: &TargetFunction) -> Result<f64, Refusal> {
         let left = AtomicU64::new(MOST);
         let words = (0..self.words.len()).into_par_iter();
@@ -106,11 +100,8 @@ impl Piecewise {
         bounds.try_reduce(|| 0.0, |a, b| Ok(a.max(b)))
     }
 
-    /// Proves the bound over the operands that read a word. `left` is the number of intervals that the proof may still examine.
-    /// Returns 0 if no operand reads the word.
-    ///
-    /// # Errors
-    /// Fails as [`Piecewise::prove`] does, or if `left` reaches 0.
+    /// Proves the bound over the operands that read a word; 0 if there are none. `left` is the number of intervals that the
+    /// proof may still examine. Fails as [`Piecewise::prove`] does, or if `left` reaches 0.
     fn prove_segment(
         &self,
         function: &TargetFunction,
@@ -150,7 +141,7 @@ impl Piecewise {
 
     /// Returns a bound on the error over the raw operands from `low` to `high`, which must all read the word `word`. `lag` has
     /// the limits of the dropped bits. Returns `None` if the formula may jump between these operands, or may have no value or no
-    /// derivative there. Returns `None` also if a result may not fit its format, or if the function is a curve through samples.
+    /// derivative there. It is also `None` if a result may not fit its format, and for a curve through samples.
     fn error_between(
         &self,
         function: &TargetFunction,
@@ -182,7 +173,6 @@ impl Piecewise {
     }
 }
 
-/// Returns the refusal of a proof that needs too many intervals.
 fn unproved() -> Refusal {
     let message = format!("the bound cannot be proved with 2^{} intervals", MOST.ilog2());
     Refusal::new(RefusalKind::Unproved, message)

@@ -1,10 +1,8 @@
-//! Defines the codes of mistakes in a hardware description. For example, `G0301` means that a name is no Verilog identifier.
-//! [`pages`] reads the explanation of each code from `diagnostics.md`.
+//! Defines the codes of mistakes in a hardware description. [`pages`] reads the explanation of each code from `diagnostics.md`.
 
 use std::fmt;
 
-/// The code of a kind of mistake: `G`, the number of its group, and its number in the group. For example, `Code(203)` prints as
-/// `G0203`.
+/// The code of a kind of mistake: `Code(203)` prints as `G0203`. The first two digits are its group.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Code(u16);
 
@@ -38,8 +36,7 @@ pub const NAME: Code = Code(301);
 pub const NAME_TWICE: Code = Code(302);
 /// G0401: the description has no microprogram, two microprograms, or a microprogram with fewer than two microinstructions.
 pub const MICROPROGRAM: Code = Code(401);
-/// G0402: a microinstruction has no successor, two successors or an unknown successor, or no other microinstruction leads to this
-/// microinstruction.
+/// G0402: a microinstruction has no successor, two successors or an unknown one, or no other microinstruction leads to it.
 pub const SUCCESSOR: Code = Code(402);
 /// G0403: the first microinstruction, in which the device waits for `start`, also loads or raises something.
 pub const IDLE: Code = Code(403);
@@ -76,7 +73,7 @@ impl fmt::Display for Code {
     }
 }
 
-/// Returns for each code, in order, the code as text, such as `G0203`, its title, and its explanation in Markdown.
+/// Returns the code as text, such as `G0203`, the title, and the explanation in Markdown for each code.
 pub fn pages() -> impl Iterator<Item = (&'static str, &'static str, &'static str)> {
     PAGES.split("\n## ").skip(1).filter_map(|page| {
         let (heading, text) = page.split_once('\n')?;

@@ -1,12 +1,10 @@
-//! Searches graphs for the nodes on which given nodes depend, and for the nodes that can be reached from given nodes. For
-//! example, the description language finds operands on which no output depends.
+//! Searches graphs for the nodes on which given nodes depend, and for the nodes that can be reached from given nodes.
 
 use std::collections::HashSet;
 use std::hash::Hash;
 
-/// Marks the nodes on which any of the `roots` depends, including the roots themselves. The result has an entry for each of the
-/// `count` nodes, by number. A node must have a higher number than its operands, which `operands` returns. For example, with y =
-/// a + b, the root y marks y, a and b, but no other node.
+/// Marks the nodes on which any of the `roots` depends, with the roots themselves, among `count` nodes. A node must have a higher
+/// number than its operands, which `operands` returns. With y = a + b, the root y marks y, a and b.
 pub fn needed<I: IntoIterator<Item = usize>>(
     count: usize,
     roots: impl IntoIterator<Item = usize>,
@@ -22,8 +20,7 @@ pub fn needed<I: IntoIterator<Item = usize>>(
     needed
 }
 
-/// Returns all nodes that can be reached from the nodes `from` by zero or more steps. `steps` returns the nodes to which one step
-/// leads from a node.
+/// Returns all nodes that zero or more steps reach from the nodes `from`. `steps` returns the nodes one step further.
 pub fn reached<T: Copy + Eq + Hash, I: IntoIterator<Item = T>>(
     from: impl IntoIterator<Item = T>,
     steps: impl Fn(T) -> I,

@@ -14,21 +14,21 @@ use std::ops::Range;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConfigError {
-    /// The dotted name of the key, for example `cosine.fraction`. The name is empty if the error concerns the whole file.
+    /// The dotted name of the key, for example `cosine.fraction`, or empty for an error of the whole file.
     pub key: String,
-    /// The range of bytes in the key's text that the error concerns, for example an operator in a formula. `None` if the error
-    /// concerns the whole value.
+    /// The range of bytes in the key's text that the error concerns, for example an operator in a formula, if not the whole
+    /// value.
     pub place: Option<Range<usize>>,
-    /// The description of the error, for the user. For example, "`core` cannot run at 900 MHz".
+    /// A message for the user, for example "`core` cannot run at 900 MHz".
     pub message: String,
-    /// The sentence that tells the user how to remove the error. For example, it lists the integers that the key accepts.
+    /// How to remove the error: a sentence that lists the integers that the key accepts, for example.
     pub remedy: String,
-    /// The nearest valid value of the key, if the value is a number and the author of the check knows it; otherwise `None`.
+    /// The nearest valid value of the key, if it is a number and the author of the check knows it.
     pub nearest: Option<f64>,
 }
 
 impl ConfigError {
-    /// Makes an error that concerns the whole value of the key, without a nearest value.
+    /// The error concerns the whole value of the key, and has no nearest value.
     pub fn new(
         key: impl Into<String>,
         message: impl Into<String>,
@@ -43,13 +43,12 @@ impl ConfigError {
         }
     }
 
-    /// Returns the error for the bytes `place` of the key's text; for the whole value if `place` is `None`.
+    /// Narrows the error to the bytes `place` of the key's text.
     #[must_use]
     pub fn at(self, place: impl Into<Option<Range<usize>>>) -> Self {
         Self { place: place.into(), ..self }
     }
 
-    /// Adds the nearest valid value of the key.
     #[must_use]
     pub fn with_nearest(self, nearest: f64) -> Self {
         Self { nearest: Some(nearest), ..self }

@@ -6,20 +6,19 @@ use std::panic::Location;
 use crate::codes::Code;
 use crate::program::Program;
 
-/// A line of the Rust source of a hardware description. For example, the line that declares a register.
+/// A line of the Rust source of a hardware description.
 pub type SourceLocation = &'static Location<'static>;
 
-/// A mistake in a hardware description. The printed mistake begins with `error[G0203]: …`, followed by a line with ` --> ` and
-/// the place in the Rust source, and by a line for each note.
+/// A mistake in a hardware description. It prints as `error[G0203]: …`, then ` --> ` with the place in the Rust source, and a
+/// line for each note.
 #[derive(Clone, Debug)]
 pub struct Diagnostic {
-    /// The code of the kind of mistake, such as `G0203`.
     pub code: Code,
-    /// The message, which names the signals.
+    /// The text names the signals.
     pub message: String,
-    /// The line of the Rust source that contains the mistake.
+    /// The line of the Rust source with the mistake.
     pub location: SourceLocation,
-    /// Other places in the Rust source that contribute to the mistake, each with a remark.
+    /// Other places that contribute to the mistake, each with a remark.
     pub notes: Vec<(String, SourceLocation)>,
 }
 
@@ -44,7 +43,7 @@ impl fmt::Display for Diagnostic {
     }
 }
 
-/// All mistakes of a hardware description. The printed list ends with the command that explains the code of the first mistake.
+/// All mistakes of a description. The printed list ends with the command that explains the first mistake's code.
 #[derive(Clone, Debug)]
 pub struct Diagnostics(pub Vec<Diagnostic>);
 

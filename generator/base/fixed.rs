@@ -7,27 +7,27 @@
 use std::fmt;
 use std::str::FromStr;
 
-/// The largest number of bits that a net may have.
+/// A net has at most this number of bits.
 pub const MAX_WIDTH: u32 = 64;
 
-/// The largest absolute number of fraction bits. Up to this number, `f64` represents 2⁻ᶠ, the value of one ulp, exactly.
+/// The largest absolute number of fraction bits: up to it, `f64` represents one ulp exactly.
 pub const MAX_POINT: i32 = 1000;
 
 /// A fixed-point format, `uI.F` or `sI.F`. The width is I + F bits, and one bit more in a signed format.
 ///
-/// I and F may be negative as long as the width stays positive: `u-3.15` is a 12-bit fraction whose three leading bits are
-/// known to be zero. For example, `u1.20` has 21 bits, and `s1.20` has 22.
+/// I and F may be negative as long as the width stays positive: `u-3.15` is a 12-bit fraction whose three leading bits are known
+/// to be zero.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Format {
-    /// Whether the format is signed (two's complement), with a sign bit above the integer bits.
+    /// Whether the format is in two's complement, with a sign bit above the integer bits.
     pub signed: bool,
-    /// The number I of integer bits, without the sign bit.
+    /// The I of the format, without the sign bit.
     pub int: i32,
-    /// The number F of fraction bits.
+    /// The F of the format.
     pub frac: i32,
 }
 
-/// Returns the integer nearest to `x`; ties go upward. For example, 2.5 gives 3, and −2.5 gives −2.
+/// Returns the integer nearest to `x`, ties upward: 2.5 gives 3, and −2.5 gives −2.
 ///
 /// `(x + 0.5).floor()` would be wrong: the sum is rounded, and 0.49999999999999994 would become 1.
 pub fn nearest(x: f64) -> f64 {
@@ -36,71 +36,66 @@ pub fn nearest(x: f64) -> f64 {
 }
 
 impl Format {
-    /// Makes the unsigned format `uI.F` with I = `int` and F = `frac`. For example, `unsigned(1, 20)` is `u1.20`.
+    /// Makes `uI.F`: `unsigned(1, 20)` is `u1.20`.
     pub const fn unsigned(int: i32, frac: i32) -> Self {
         Self { signed: false, int, frac }
     }
 
-    /// Makes the signed format `sI.F` with I = `int` and F = `frac`. For example, `signed(1, 20)` is `s1.20`.
+    /// Makes `sI.F`: `signed(1, 20)` is `s1.20`.
     pub const fn signed(int: i32, frac: i32) -> Self {
         Self { signed: true, int, frac }
     }
 
-    /// The format of a single bit, such as a flag, an enable or a select line.
+    /// A flag, an enable or a select line.
     pub const BIT: Self = Self::unsigned(1, 0);
 
-    /// Returns the smallest format with `frac` fraction bits that can represent every raw value from `low` to `high`. For
-    /// example, 0 to 255 with 8 fraction bits gives `u0.8`, and −1 to 3 without fraction bits gives `s2.0`.
+    /// Returns the smallest format with `frac` fraction bits for every raw value from `low` to `high`: 0 to 255 with 8 fraction
+    /// bits give `u0.8`, and −1 to 3 without fraction bits give `s2.0`.
     pub fn holding(low: i128, high: i128, frac: i32) -> Self {
         let magnitude = |raw: i128| 128 - if raw < 0 { !raw } else { raw }.leading_zeros() as i32;
         let signed = low < 0;
         let bits = magnitude(low).max(magnitude(high));
-        // A net has at least one bit, even when it is known to be zero.
+        // A net has at least one bit, even if it is always zero.
         let bits = if signed { bits } else { bits.max(1) };
         Self { signed, int: bits - frac, frac }
     }
 
-    /// Returns the width in bits: I + F, and one bit more if the format is signed.
-    ///
-    /// # Panics
-    /// Panics if the width is negative. The constructors of the DSL and the configuration never accept such a format, and a
-    /// caller must not make such a format.
+    /// Returns the number of bits, with the sign bit. Panics if it is negative, which neither the DSL nor the configuration ever
+    /// accepts.
     pub fn width(self) -> u32 {
         u32::try_from(self.int + self.frac + i32::from(self.signed)).expect("a positive width")
     }
 
-    /// Returns the smallest raw value that the format can represent: 0 for an unsigned format, and for example −4 for
-    /// `s2.0`. If the format is too wide for any net, the result is limited to the range of an `i128`.
+    /// Returns the smallest raw value: 0 for an unsigned format, and −4 for `s2.0`. If the format is too wide for any net, it is
+    /// limited to the range of an `i128`.
     pub fn min_raw(self) -> i128 {
         if self.signed { i128::MIN >> 128u32.saturating_sub(self.width()) } else { 0 }
     }
 
-    /// Returns the largest raw value that the format can represent. For example, `u0.8` gives 255. If the format is too wide for
-    /// any net, the result is limited to the range of an `i128`.
+    /// Returns the largest raw value, such as 255 for `u0.8`. If the format is too wide for any net, it is limited to the range
+    /// of an `i128`.
     pub fn max_raw(self) -> i128 {
         i128::MAX >> 127u32.saturating_sub(self.width().saturating_sub(u32::from(self.signed)))
     }
 
-    /// Returns the smallest and the largest raw value. For example, `s2.0` gives (−4, 3).
+    /// Returns the smallest and the largest raw value, such as (−4, 3) for `s2.0`.
     pub fn range(self) -> (i128, i128) {
         (self.min_raw(), self.max_raw())
     }
 
-    /// Returns whether the format can represent the raw value `raw`. For example, `u2.0` can represent 3, but not 4 or −1.
+    /// Returns whether the format can represent `raw`: `u2.0` can represent 3, but not 4 or −1.
     pub fn holds(self, raw: i128) -> bool {
         (self.min_raw()..=self.max_raw()).contains(&raw)
     }
 
-    /// Returns the value `raw · 2⁻ᶠ` as a real number, exact if `raw` has at most 53 significant bits. For example, raw 3 in
-    /// `u1.2` gives 0.75.
+    /// Returns the value `raw · 2⁻ᶠ`, exact if `raw` has at most 53 significant bits. Raw 3 in `u1.2` gives 0.75.
     pub fn to_f64(self, raw: i128) -> f64 {
         // Processors convert integers of 64 bits directly, with the same rounding.
         let value = i64::try_from(raw).map_or(raw as f64, |raw| raw as f64);
         value * exp2(-self.frac)
     }
 
-    /// Returns the raw value nearest to `x`, ties upward. Returns `None` if `x` is not a number, or if the rounded value is
-    /// outside the format.
+    /// Returns the raw value nearest to `x`, ties upward, if it is in the format.
     ///
     /// For example, `u0.8` represents 0 to 255/256: 0.998 is rounded to 255/256, and 0.999 gives `None`, since its nearest
     /// multiple of 1/256 is 1.0.
@@ -110,8 +105,8 @@ impl Format {
         (low..=high).contains(&raw).then(|| self.quantise(x))
     }
 
-    /// Returns the raw value nearest to `x`, ties upward, saturated to the format. For example, in `u8.0` 2.5 gives 3, and 300.0
-    /// gives 255. The result is the smallest raw value if `x` is not a number.
+    /// Returns the raw value nearest to `x`, ties upward, saturated to the format: in `u8.0` 2.5 gives 3, and 300.0 gives 255.
+    /// NaN gives the smallest raw value.
     pub fn quantise(self, x: f64) -> i128 {
         let scaled = nearest(x * exp2(self.frac));
         let (low, high) = (self.min_raw(), self.max_raw());
@@ -124,13 +119,12 @@ impl Format {
         }
     }
 
-    /// Returns the bit pattern of `raw`, wrapped to the width. For example, −1 in `s2.0` is `0b111`.
+    /// Wraps `raw` to the width: −1 in `s2.0` is `0b111`.
     pub fn bits(self, raw: i128) -> u64 {
         raw as u64 & mask(self.width())
     }
 
-    /// Returns the raw value that a bit pattern denotes. The bits above the width are ignored. For example, `0b111` is −1 in
-    /// `s2.0`, and 7 in `u3.0`.
+    /// Returns the raw value of a bit pattern, without the bits above the width: `0b111` is −1 in `s2.0`, and 7 in `u3.0`.
     pub fn raw(self, bits: u64) -> i128 {
         let width = self.width();
         let bits = bits & mask(width);
@@ -141,9 +135,9 @@ impl Format {
         }
     }
 
-    /// Converts `raw`, which has `from_frac` fraction bits, to a raw value of this format. For example, raw 6 with two fraction
-    /// bits is 1.5; in `u4.0` it becomes 1 if truncated, and 2 if rounded to the nearest. A result outside the range of the
-    /// format saturates or wraps, as `overflow` states.
+    /// Converts `raw`, which has `from_frac` fraction bits. For example, raw 6 with two fraction bits is 1.5; in `u4.0` it
+    /// becomes 1 if truncated, and 2 if rounded to the nearest. A result outside the format saturates or wraps, as `overflow`
+    /// states.
     pub fn narrow(self, raw: i128, from_frac: i32, rounding: Rounding, overflow: Overflow) -> i128 {
         let shifted = rounding.shift(raw, from_frac - self.frac);
         match overflow {
@@ -184,20 +178,15 @@ impl FromStr for Format {
 /// How a conversion treats fraction bits that it drops.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rounding {
-    /// Drops the fraction bits, which rounds toward minus infinity. Truncation costs no logic. For example, 1.75 becomes 1, and
-    /// −1.25 becomes −2.
+    /// Drops the fraction bits, which rounds toward minus infinity and costs no logic: 1.75 becomes 1, and −1.25 becomes −2.
     Truncate,
-    /// Rounds to the nearest value, ties upward. Rounding costs an incrementer. For example, 1.5 becomes 2, and −1.5
-    /// becomes −1.
+    /// Rounds to the nearest value, ties upward, which costs an incrementer: 1.5 becomes 2, and −1.5 becomes −1.
     Nearest,
 }
 
 impl Rounding {
-    /// Divides `raw` by `2^places` and rounds; a negative `places` multiplies (exactly). For example, −3 by one place gives
-    /// −2 if truncated, and −1 if rounded to the nearest.
-    ///
-    /// # Panics
-    /// Panics if a multiplication gives more than 127 bits and a sign.
+    /// Divides `raw` by `2^places` and rounds. A negative `places` multiplies exactly. −3 by one place gives −2 if truncated,
+    /// and −1 if rounded to the nearest. Panics if a multiplication gives more than 127 bits and a sign.
     pub fn shift(self, raw: i128, places: i32) -> i128 {
         match (self, places) {
             (_, ..=0) => shifted_left(raw, -places).expect("a value of at most 128 bits"),
@@ -208,7 +197,7 @@ impl Rounding {
     }
 }
 
-/// Returns `raw` times 2^`places`, or `None` if the product has more than 127 bits and a sign. `places` must not be negative.
+/// Returns `raw` times 2^`places`, or `None` if that has more than 127 bits and a sign. `places` must not be negative.
 pub fn shifted_left(raw: i128, places: i32) -> Option<i128> {
     if raw == 0 {
         return Some(0);
@@ -220,22 +209,22 @@ pub fn shifted_left(raw: i128, places: i32) -> Option<i128> {
 /// How a conversion treats a value that its format cannot represent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Overflow {
-    /// Drops the upper bits, which is arithmetic modulo 2^width. For example, 260 in `u8.0` becomes 4.
+    /// Drops the upper bits, which is arithmetic modulo 2^width: 260 in `u8.0` becomes 4.
     Wrap,
-    /// Saturates: takes the nearest value that the format can represent. For example, 260 in `u8.0` becomes 255.
+    /// Takes the nearest value that the format can represent: 260 in `u8.0` becomes 255.
     Saturate,
 }
 
-/// Returns a bit pattern whose `width` low bits are 1, such as `0b111` for 3. A width of 64 or more gives all ones.
+/// Returns `width` ones, such as `0b111` for 3. A width of 64 or more gives all ones.
 pub const fn mask(width: u32) -> u64 {
     if width >= 64 { u64::MAX } else { (1 << width) - 1 }
 }
 
-/// Returns `2^exponent`, exact from −1074 to 1023. Below this range the result is 0, and above it infinity.
+/// Returns `2^exponent`, exact from −1074 to 1023; below, the result is 0, and above infinity.
 #[inline]
 pub fn exp2(exponent: i32) -> f64 {
     match exponent {
-        // The result is a normal number: its fraction bits are all 0, so that only the exponent must be set.
+        // A normal number: its fraction bits are all 0, so that only the exponent must be set.
         -1022..=1023 => f64::from_bits(((exponent + 1023) as u64) << 52),
         _ => libm::ldexp(1.0, exponent),
     }

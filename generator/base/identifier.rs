@@ -2,11 +2,9 @@
 
 use crate::keywords::is_keyword;
 
-/// Checks that `name` can be the name of a net, a ROM or a module in Verilog. A name begins with an ASCII letter or `_`,
-/// continues with ASCII letters, digits and `_`, and is no keyword.
-///
-/// # Errors
-/// Fails if the name is not legal in Verilog. The error says why. For example, `wire` gives "it is a keyword".
+/// Checks that `name` can be the name of a net, a ROM or a module in Verilog. It has an ASCII letter or `_`,
+/// then ASCII letters, digits and `_`, and is no keyword. The error says why not: `wire` gives "it is a
+/// keyword".
 pub fn check(name: &str) -> Result<(), &'static str> {
     let mut characters = name.chars();
     match characters.next() {

@@ -1,4 +1,4 @@
-//! Reads data that the user provides: text from a file or from standard input, or the JSON records in a directory.
+//! Reads the user's data: text from a file or from standard input, or the JSON records in a directory.
 
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Read};
@@ -7,14 +7,14 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result};
 use serde::de::DeserializeOwned;
 
-/// The path with which a user means standard input.
+/// The path of standard input.
 pub const STDIN: &str = "-";
 
-/// Returns the name under which written files mention the file `path`: without directories, so that the name is the same on every
-/// machine. For example, `configs/rough.toml` becomes `rough.toml`.
+/// Returns the name by which written files mention the file `path`: without directories, so that it is the same on every machine.
+/// `configs/rough.toml` becomes `rough.toml`.
 ///
 /// A name with blanks or other signs of a shell is in single quotes, as a shell needs it: `'my core.toml'`. A name with a
-/// character that could end a comment or a string of an emitted file has no quotes: in such a name, every character except
+/// character that could end a comment or a string of an emitted file has no quotes. In such a name, every character except
 /// letters, digits and `._+-` becomes `%` with its bytes in hexadecimal, as in a URL.
 pub fn label(path: &str) -> String {
     let name = path.rsplit('/').next().unwrap_or(path);
@@ -29,10 +29,8 @@ pub fn label(path: &str) -> String {
     name.chars().map(|sign| if plain(sign) { sign.to_string() } else { escaped(sign) }).collect()
 }
 
-/// Opens a file, or standard input if the path is [`STDIN`].
-///
-/// # Errors
-/// Fails if the file cannot be opened, or if the path is a directory, a pipe or a device. A pipe or a device might never end.
+/// Opens a file, or standard input if the path is [`STDIN`]. Fails for a directory, and for a pipe or a device, which might never
+/// end.
 pub fn open(path: &Path) -> io::Result<Box<dyn Read>> {
     if path == Path::new(STDIN) {
         return Ok(Box::new(io::stdin().lock()));
@@ -48,10 +46,8 @@ pub fn open(path: &Path) -> io::Result<Box<dyn Read>> {
     Ok(Box::new(File::open(path)?))
 }
 
-/// Returns the text of a file, or of standard input if the path is [`STDIN`]. Returns `None` if the file does not exist.
-///
-/// # Errors
-/// Fails if the file cannot be read, if it is not UTF-8, or if the path is a directory, a pipe or a device.
+/// Returns the text of a file, or of standard input if the path is [`STDIN`]; `None` if the file does not exist. Fails as
+/// [`open`] does, and if the text is not UTF-8.
 pub fn text(path: &Path) -> Result<Option<String>> {
     let mut text = String::new();
     match open(path).and_then(|mut file| file.read_to_string(&mut text)) {
@@ -61,9 +57,8 @@ pub fn text(path: &Path) -> Result<Option<String>> {
     }
 }
 
-/// Returns the records in a directory, each with its path, in the order of their names. A record is a `*.json` file that can be
-/// read as a `T`. Files with JSON of another structure are ignored, and so are all other files. A directory that does not exist
-/// has no records.
+/// Returns the records in a directory, each with its path, in the order of their names: the `*.json` files that can be read as a
+/// `T`. Other files, and JSON of another structure, are ignored. A missing directory has no records.
 ///
 /// # Errors
 /// Fails if the directory or a `*.json` file in it cannot be read, or if such a file is no JSON.
@@ -93,7 +88,7 @@ pub fn records<T: DeserializeOwned>(directory: &Path) -> Result<Vec<(PathBuf, T)
     Ok(records)
 }
 
-/// Returns the error message for a record file whose contents cannot be understood.
+/// Returns the error message for a record that cannot be understood.
 pub fn damaged(path: &Path) -> String {
     format!(
         "the record `{}` is damaged: restore the record, move it away, or make it again with the command \

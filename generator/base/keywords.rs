@@ -1,7 +1,6 @@
-//! Tests whether a word is reserved in SystemVerilog. No signal can have such a word as its name.
+//! Tests whether a word is reserved in SystemVerilog, so that no signal can have it as its name.
 
-/// Returns whether a word is reserved in IEEE 1800-2017 (annex B). Annex B contains the reserved words of Verilog-2005. For
-/// example, `wire` and `logic` are reserved.
+/// Returns whether IEEE 1800-2017 (annex B) reserves a word. The annex contains the reserved words of Verilog-2005.
 pub fn is_keyword(word: &str) -> bool {
     KEYWORDS.split_ascii_whitespace().any(|keyword| keyword == word)
 }

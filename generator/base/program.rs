@@ -1,13 +1,11 @@
-//! Stores the name of the running program, for messages that tell a user which command to type. The name is `glint`, unless a
-//! program with its own devices sets another name with [`run_as`].
+//! The name of the running program, for messages that tell a user which command to type.
 
 use std::fmt;
 use std::sync::OnceLock;
 
 static NAME: OnceLock<String> = OnceLock::new();
 
-/// The name of the running program, for use in messages: `glint`, unless [`run_as`] has set another name. For example, a report
-/// of mistakes ends with "`glint explain G0203` says more".
+/// Prints the name of the running program: `glint`, unless a program with its own devices has set another by [`run_as`].
 #[derive(Clone, Copy, Debug)]
 pub struct Program;
 
@@ -17,7 +15,7 @@ impl fmt::Display for Program {
     }
 }
 
-/// Sets the name of the running program. Only the first call has an effect.
+/// Only the first call has an effect.
 pub fn run_as(name: &str) {
     NAME.get_or_init(|| name.to_owned());
 }

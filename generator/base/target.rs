@@ -22,22 +22,21 @@ pub use xilinx7::XILINX7;
 
 use generic::GENERIC;
 
-/// A small memory made of look-up tables, in the size that a target offers. A pipeline keeps a value in such a memory if no stage
-/// reads the value for several stages. For example, on ECP5 16 words of 4 bits take six look-up tables.
+/// A small memory of look-up tables. A pipeline keeps a value there if no stage reads the value for several stages. On ECP5 16
+/// words of 4 bits take six look-up tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DelayMemory {
-    /// The number of words that the memory can store.
+    /// The number of words.
     pub words: u32,
     /// The number of bits of a word.
     pub width: u32,
-    /// The number of look-up tables of the memory, including the tables that write it.
+    /// The number of look-up tables, including the write logic of the memory.
     pub tables: u32,
 }
 
 impl DelayMemory {
-    /// Returns whether a memory of `words` words of `bits` bits, together with its address counter, takes fewer look-up tables
-    /// and registers than the registers that the memory replaces. For example, on ECP5 the result is true for 3 words of 4 bits,
-    /// and false for 2 words. Returns false for a single word.
+    /// Returns whether a memory of `words` words of `bits` bits takes fewer look-up tables and registers than the registers that
+    /// it replaces. Its address counter counts too. On ECP5, 3 words of 4 bits do, and 2 words do not. A single word never does.
     pub fn pays(self, words: usize, bits: u32) -> bool {
         let words = words as u32;
         let memories = bits.div_ceil(self.width) * words.div_ceil(self.words);
@@ -46,8 +45,7 @@ impl DelayMemory {
     }
 }
 
-/// The delays of a multiplier with a register at its output, in nanoseconds. The delays do not include the delay of an ordinary
-/// register.
+/// The delays of a multiplier with an output register, in nanoseconds, without the delay of an ordinary register.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Registered {
     /// The delay from the operands of the multiplier to the setup of its output register.
@@ -56,62 +54,60 @@ pub struct Registered {
     pub output: f64,
 }
 
-/// The delays of a target in nanoseconds, and the sizes of its multipliers and memories. The scheduler of pipelines reads these
-/// numbers.
+/// The delays of a target in nanoseconds, and the sizes of its multipliers and memories, for the scheduler of pipelines.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Timing {
-    /// The name of the target, which the configuration key `pipeline.target` gives.
+    /// The value of the configuration key `pipeline.target`.
     pub name: &'static str,
-    /// The largest widths of a multiplier's unsigned operands in bits, the wider operand first. For example, (18, 18) on ECP5.
+    /// The largest widths of a multiplier's unsigned operands in bits, the wider operand first: (18, 18) on ECP5.
     pub multiplier: (u32, u32),
-    /// The largest size of a partial product that Glint adds up in look-up tables instead of a multiplier. The size is the number
-    /// of bits in all rows. On ECP5 three rows of 21 bits and their sums take about 110 look-up tables, and four rows of 22 bits
-    /// take about 160. The limit is higher for iCE40, because its smaller chips have few multipliers.
+    /// The largest partial product, as the number of bits in all rows, that Glint adds up in look-up tables instead of a
+    /// multiplier. On ECP5 three rows of 21 bits and their sums take about 110 look-up tables, and four rows of 22 bits about
+    /// 160. The limit is higher for iCE40, because its smaller chips have few multipliers.
     pub row_bits: u32,
-    /// The delay from the rising edge to the output of a register, plus the wire to the next register and the setup of that
-    /// register.
+    /// From the rising edge to the output of a register, plus the wire to the next register and its setup.
     pub register: f64,
-    /// The part of the clock period that passes outside of the core before an operand arrives at an input port.
+    /// The part of the clock period before an operand arrives at an input port from outside the core.
     pub input: f64,
-    /// The delay of one level of look-up tables, with the wire to the next level.
+    /// One level of look-up tables, with the wire to the next level.
     pub logic: f64,
-    /// The delay of a table in look-up tables, for each bit of its address beyond the third. For example, a table of 64 words (6
-    /// bits of address) takes three times this delay.
+    /// A table in look-up tables, for each bit of its address beyond the third. A table of 64 words (6 bits of address) takes
+    /// three times this delay.
     pub word_bit: f64,
-    /// The delay of the start and the end of a carry chain together, whatever its length.
+    /// The start and the end of a carry chain together, whatever its length.
     pub carry: f64,
-    /// The delay that each bit of a carry chain adds.
+    /// Each bit of a carry chain.
     pub carry_bit: f64,
-    /// The delay of a multiplier that has no output register.
+    /// A multiplier without an output register.
     pub product: f64,
-    /// The delays of a multiplier with an output register; `None` if they were not measured.
+    /// A multiplier with an output register, if it was measured.
     pub registered: Option<Registered>,
-    /// The delay from the rising edge to the output of a block memory, without the delay of a register.
+    /// From the rising edge to the output of a block memory, without the delay of a register.
     pub block: f64,
     /// The extra delay of the wire to the address of a block memory, compared with a wire to a register. Block memories occupy
     /// only a few columns of the chip.
     pub address: f64,
-    /// The size of a block memory, and the ROMs that synthesis puts into block memories.
+    /// The block memories, with the ROMs that synthesis puts into them.
     pub blocks: BlockMemory,
     /// A memory of look-up tables that is read without a clock. `None` if the target has none, or if synthesis itself makes shift
     /// registers of look-up tables.
     pub delay_memory: Option<DelayMemory>,
 }
 
-/// The block memories of a family, and the rule by which synthesis uses them for synchronous ROMs.
+/// The block memories of a family, and when synthesis uses them for synchronous ROMs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BlockMemory {
     /// The number of bits of a block.
     pub bits: u64,
-    /// The width of a block's widest word, in bits. For example, 36 on ECP5.
+    /// The width of a block's widest word: 36 bits on ECP5.
     pub widest: u64,
-    /// Synthesis puts a ROM into blocks if the ROM has more bits than this number for each block that it takes.
+    /// Synthesis puts a ROM into blocks if it has more bits than this for each block that it takes.
     pub most_bits_without: u64,
 }
 
 impl BlockMemory {
-    /// Returns the number of blocks for a ROM of `words` words of `width` bits. A block has twice as many words if each word has
-    /// half the width. For example, a block of 18 432 bits has 512 words of 36 bits, or 1024 words of 18 bits.
+    /// Returns the number of blocks for a ROM of `words` words of `width` bits. A block has twice as many words if each has half
+    /// the width: 18 432 bits are 512 words of 36 bits, or 1024 words of 18 bits.
     pub fn count(&self, words: u64, width: u64) -> u64 {
         let mut block_width = self.widest;
         while block_width > 0 {
@@ -123,28 +119,28 @@ impl BlockMemory {
         (words * width).div_ceil(self.bits)
     }
 
-    /// Returns whether synthesis puts a synchronous ROM into blocks. For example, on ECP5 64 words of 33 bits go into a block,
-    /// and 64 words of 32 bits into look-up tables.
+    /// Returns whether synthesis puts a synchronous ROM into blocks. On ECP5 it does for 64 words of 33 bits; 64 words of 32 bits
+    /// go into look-up tables.
     pub fn takes(&self, words: u64, width: u64) -> bool {
         words * width > self.most_bits_without * self.count(words, width)
     }
 }
 
-/// An FPGA chip, with the number of its look-up tables, DSP blocks and block RAMs.
+/// An FPGA chip and its resources.
 #[derive(Debug)]
 pub struct Chip {
-    /// The name of the chip, as people write it.
+    /// The chip's name as people write it.
     pub name: &'static str,
-    /// The options with which nextpnr selects the chip and its package. Empty if Glint does not run nextpnr for the chip.
+    /// Options with which nextpnr selects the chip and its package. Empty if Glint does not run nextpnr for it.
     pub options: &'static str,
-    /// The numbers of look-up tables, DSP blocks and block RAMs on the chip, in this order.
+    /// The numbers of look-up tables, DSP blocks and block RAMs, in this order.
     pub has: [u64; 3],
 }
 
 impl Chip {
-    /// Returns the resources that the chip has too few of for a design. `wanted` has the numbers of look-up tables, DSP blocks
-    /// and block RAMs. Each entry of the result has the index of the resource in `wanted`, the number that the design needs, and
-    /// the number on the chip. For example, 6000 look-up tables and 8 DSP blocks give `(0, 6000, 5280)` on the iCE40 UP5K.
+    /// Returns the resources of which the chip has too few: the index in `wanted`, the number that the design needs, and the
+    /// number on the chip. `wanted` has the numbers of look-up tables, DSP blocks and block RAMs. 6000 look-up tables and 8 DSP
+    /// blocks give `(0, 6000, 5280)` on the iCE40 UP5K.
     pub fn lack(&self, wanted: [u64; 3]) -> Vec<(usize, u64, u64)> {
         let all = wanted.into_iter().zip(self.has).enumerate();
         all.filter(|(_, (wanted, has))| wanted > has)
@@ -153,63 +149,59 @@ impl Chip {
     }
 }
 
-/// The numbers with which Glint estimates the cost of a core without running synthesis.
+/// Estimates the cost of a core without synthesis.
 #[derive(Debug)]
 pub struct Estimate {
-    /// The weight of each number in `tune::Features` for the estimated number of look-up tables. One weight is the constant
-    /// number of look-up tables of every core.
+    /// The weight of each number in `tune::Features` for the number of look-up tables. One weight is the constant number of every
+    /// core.
     pub weights: [f64; 6],
-    /// The factor for the predicted clock period: the measured period divided by the period that the delays predict.
+    /// The measured clock period divided by the period that the delays predict.
     pub scale: f64,
-    /// The number of bits by which a signed operand of a DSP block may be wider than an unsigned operand.
+    /// The number of bits by which a signed operand of a DSP block may be wider than an unsigned one.
     pub sign: u32,
-    /// A product, or a part of a wide product, becomes look-up tables instead of a DSP block if its result has fewer bits than
-    /// this number.
+    /// A product, or a part of a wide product, becomes look-up tables instead of a DSP block if its result has fewer bits.
     pub least_product: u32,
 }
 
-/// Kinds of cells in a netlist of Yosys, each with the number of resources that one such cell counts for. For example, `("CCU2C",
-/// 2)` counts each carry cell of ECP5 as two look-up tables.
+/// Kinds of cells in a netlist of Yosys, each with the number of resources that it counts for: `("CCU2C", 2)` counts each carry
+/// cell of ECP5 as two look-up tables.
 pub type Kinds = &'static [(&'static str, u64)];
 
-/// A function that returns the number of look-up tables for a product, from the widths of its operands in bits.
+/// The number of look-up tables for a product, from the widths of its operands in bits.
 pub type LutsOfProduct = fn(u64, u64) -> u64;
 
-/// An FPGA family, with all data that Glint has about it: delays, Yosys commands, cell names and chips.
+/// An FPGA family: delays, Yosys commands, cell names and chips.
 #[derive(Debug)]
 pub struct Family {
-    /// The name of the family, as people write it.
+    /// The family's name as people write it.
     pub title: &'static str,
-    /// The delays, for schedules of pipelines and for estimates of the clock.
+    /// The delays for schedules of pipelines and for estimates of the clock.
     pub timing: Timing,
     /// The Yosys command that reads the models of the cells which a core may instantiate, or an empty text.
     pub library: &'static str,
-    /// The Yosys commands that precede `command`, or an empty text. `{top}` in them is replaced by the name of the top module.
+    /// The Yosys commands before `command`, or an empty text. The name of the top module replaces `{top}`.
     pub prepare: &'static str,
     /// The Yosys command that synthesises for the family, without the name of the top module.
     pub command: &'static str,
-    /// The oldest version of Yosys whose commands synthesise for the family as Glint expects: (0, 23) is Yosys 0.23.
+    /// The oldest version of Yosys that synthesises for the family as Glint expects: (0, 23) is Yosys 0.23.
     pub least_yosys: (u32, u32),
-    /// The cells that count as look-up tables. A carry cell that replaces two look-up tables counts as two.
+    /// Look-up tables. A carry cell that replaces two look-up tables counts as two.
     pub luts: Kinds,
-    /// For a family without DSP blocks, the kind of cell that multiplies in look-up tables, and a function for its number of
-    /// look-up tables. The function takes the widths of both operands. Otherwise `None`.
+    /// For a family without DSP blocks, the cell that multiplies in look-up tables, and their number.
     pub fabric_product: Option<(&'static str, LutsOfProduct)>,
-    /// The cells that count as DSP blocks. Empty for a family without DSP blocks.
+    /// DSP blocks; empty for a family without them.
     pub dsps: Kinds,
-    /// The cells that count as block RAMs: of 4 kbit in iCE40, of 20 kbit in GateMate, of 18 kbit in the others.
+    /// Block RAMs: of 4 kbit in iCE40, of 20 kbit in GateMate, of 18 kbit in the others.
     pub block_rams: Kinds,
-    /// The cells that count as flip-flops.
     pub flip_flops: Kinds,
-    /// The chips of the family, from a small and common chip to the largest chip.
+    /// The chips, from a small and common one to the largest.
     pub chips: &'static [Chip],
-    /// The numbers with which the cost of a core is estimated.
     pub estimate: Estimate,
 }
 
 impl Family {
-    /// Returns the commands of Yosys that map the module `top` and its instances to cells of the family. For example, the
-    /// commands for ECP5 end with `synth_ecp5 -top rough` if `top` is `rough`.
+    /// Returns the commands of Yosys that map the module `top` and its instances to cells of the family. For ECP5 they end with
+    /// `synth_ecp5 -top rough` if `top` is `rough`.
     pub fn script(&self, top: &str) -> String {
         format!(
             "{}hierarchy -check -top {top}; {}{} -top {top}",
@@ -219,13 +211,13 @@ impl Family {
         )
     }
 
-    /// Returns the name of the family in commands and scripts, such as `ice40`.
+    /// Returns the name in commands and scripts, such as `ice40`.
     pub const fn name(&self) -> &'static str {
         self.timing.name
     }
 }
 
-/// The FPGA families for which Glint can synthesise cores.
+/// The families for which Glint can synthesise cores.
 pub const FAMILIES: [Family; 7] = [ICE40, ECP5, XILINX7, GOWIN, GOWIN_GW1N, NEXUS, GATEMATE];
 
 /// The families for which datasheets, `compare` and `verify` synthesise every core.
@@ -243,7 +235,7 @@ pub const TIMINGS: [Timing; 8] = [
     GENERIC,
 ];
 
-/// The names of the pipeline targets, as the configuration key `pipeline.target` gives them.
+/// The values of the configuration key `pipeline.target`.
 pub const TIMING_NAMES: [&str; TIMINGS.len()] = {
     let mut names = [""; TIMINGS.len()];
     let mut at = 0;
@@ -255,32 +247,28 @@ pub const TIMING_NAMES: [&str; TIMINGS.len()] = {
 };
 
 impl Timing {
-    /// Returns the target with this name, such as `ecp5`, or `None` if Glint has no such target.
+    /// Returns the target with this name, such as `ecp5`.
     pub fn named(name: &str) -> Option<&'static Self> {
         TIMINGS.iter().find(|timing| timing.name == name)
     }
 
-    /// Returns the delay of an adder with `width` bits, in nanoseconds. For example, 21 bits take 2.4 ns on ECP5.
+    /// Returns the delay of an adder with `width` bits: 21 bits take 2.4 ns on ECP5.
     pub fn chain(&self, width: u32) -> f64 {
         self.carry + self.carry_bit * f64::from(width)
     }
 }
 
-/// The resources that a design takes after synthesis, before placement.
+/// The resources of a design after synthesis, before placement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Usage {
-    /// The number of look-up tables that the design takes.
+    /// The number of look-up tables.
     pub luts: u64,
-    /// The number of DSP blocks that the design takes.
     pub dsps: u64,
-    /// The number of block RAMs that the design takes.
     pub block_rams: u64,
-    /// The number of flip-flops that the design takes.
     pub flip_flops: u64,
 }
 
 impl Usage {
-    /// Returns the numbers of look-up tables, DSP blocks and block RAMs, in this order.
     pub fn taken(&self) -> [u64; 3] {
         [self.luts, self.dsps, self.block_rams]
     }
@@ -290,8 +278,7 @@ impl Usage {
 mod tests {
     use super::*;
 
-    /// Compares the rule with Yosys 0.23 and 0.70: a synchronous ROM with a number of words and a width goes into look-up tables
-    /// or into blocks.
+    /// Yosys 0.23 and 0.70 put these synchronous ROMs into look-up tables or into blocks.
     #[test]
     fn roms_are_where_synthesis_puts_them() {
         let in_tables = [

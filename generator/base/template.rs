@@ -5,10 +5,7 @@ pub use askama;
 pub use askama::Template;
 pub use glint_templates::template;
 
-/// Returns the text of a filled template. The text always ends with a newline, which Askama drops from the end of a template.
-///
-/// # Errors
-/// Fails if a value cannot be printed.
+/// Returns the text of a filled template, with the final newline that Askama drops. Fails if a value cannot be printed.
 pub fn render(template: &impl Template) -> Result<String> {
     let mut text = template.render()?;
     if !text.ends_with('\n') {

@@ -1,11 +1,8 @@
-//! The hardware description of the device `cosine-power`, which computes f = (n/m·(c − 1) + 1)^m.
+//! The hardware description of the device `cosine-power`, which computes f = (n/m·(c − 1) + 1)^m ([symbols](crate#symbols)).
 //!
-//! c = cos γ, where γ is the angle between the surface normal and the half vector, and n is the specular exponent. The
-//! configuration chooses m = 2, 4, 8 or 16. f is the reflectance, the factor by which the device multiplies colours. The source
-//! is the paper "A model for reproducing the specular component of colour in computer graphics" (in Ukrainian; Glint calls it
-//! seed 002), which gives no circuit. The sequential core computes f with one multiplier and one accumulator, and the base as 1
-//! − n/m·(1 − c). The division by m is a shift by wiring. The product saturates just below 1, so that a negative base becomes
-//! 0. For c ≤ 0 the result is 0 too.
+//! The configuration chooses m = 2, 4, 8 or 16. Seed 002 has the formula, but no circuit. The sequential core computes f with
+//! one multiplier and one accumulator, and the base as 1 − n/m·(1 − c). The division by m is a shift by wiring. The product
+//! saturates just below 1, so that a negative base becomes 0. For c ≤ 0 the result is 0 too.
 
 use glint_base::fixed::{Format, Overflow};
 use glint_config::Config;
@@ -16,7 +13,6 @@ use glint_rtl::netlist::{About, Topic};
 
 use super::common::{self, ColourProducts};
 
-/// Describes the hardware of `cosine-power`, which computes (n/m·(cos γ − 1) + 1)^m with one multiplier and one accumulator.
 pub fn describe(d: &Designer, config: &Config) {
     let keys = Keys::of(config);
     let count = keys.power.ilog2();
@@ -72,8 +68,8 @@ pub fn describe(d: &Designer, config: &Config) {
     d.microprogram(steps.into_iter().chain(outputs));
 }
 
-/// Returns the base `1 − n/m·(1 − cos γ)` as the complement of the accumulator. The complement is one unit in the last place (an
-/// ulp) too small, and is therefore always below 1. If cos γ ≤ 0, the base is 0.
+/// Returns the base as the complement of the accumulator. It is one unit in the last place (an ulp) too small, and therefore
+/// always below 1. If cos γ ≤ 0, the base is 0.
 fn base<'d>(d: &'d Designer, cos_gamma: Signal<'d>, accumulator: Signal<'d>) -> Signal<'d> {
     let facing = d.any("facing", cos_gamma).doc("1 if the surface faces the half vector");
     let inverse = d.not("inverse", accumulator).doc("1.0 - accumulator - 1 ulp");

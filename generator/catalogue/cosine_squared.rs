@@ -1,9 +1,9 @@
 //! The hardware description of the device `cosine-squared`, which computes f = cos²(a·δ) for the points of a scan line.
 //!
-//! δ is the angle at a point of the line; a = √(n/2) with the specular exponent n; f is the reflectance, the factor by which the
-//! device multiplies an amplitude. The host multiplies its angles by a, so that the accumulated angle addresses a single table. f
-//! is 0 if the stretched angle a·δ does not lie from −90° (included) to 90°. The accumulator is the same as in `quad-cosine`. The
-//! source is a prototype (Abbas, Szirmay-Kalos, Horváth 2000), which the patent of `quad-cosine` (Glint calls it seed 000) cites.
+//! δ is the angle at a point of the line, and a = √(n/2) with the specular exponent n. The host multiplies its angles by a, so
+//! that the accumulated angle addresses a single table. f is 0 if a·δ does not lie from −90° (included) to 90°. The accumulator
+//! is the same as in `quad-cosine`. The source is a prototype (Abbas, Szirmay-Kalos, Horváth 2000), which [seed
+//! 000](crate#symbols) cites.
 
 use glint_config::Config;
 use glint_keys::cosine_squared::Keys;
@@ -15,8 +15,6 @@ use glint_rtl::netlist::{About, Topic};
 
 use super::{common, quad_cosine};
 
-/// Describes the hardware of `cosine-squared`, which reads cos² of the stretched angle at each point of a scan line from a table.
-/// The result is 0 if the stretched angle does not lie from −90° (included) to 90°.
 pub fn describe(d: &Designer, config: &Config) {
     let keys = Keys::of(config);
     let table = keys.table_address as i32;

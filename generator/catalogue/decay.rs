@@ -1,12 +1,11 @@
-//! The hardware description that the devices `blinn` and `gauss` share: f = 2^(−n·decay(c)).
+//! The hardware description that the devices `blinn` and `gauss` share: f = 2^(−n·decay(c)) ([symbols](crate#symbols)).
 //!
-//! c = cos γ, where γ is the angle between the surface normal and the half vector; n is the specular exponent; f is the
-//! reflectance, the factor by which the devices multiply colours. The decay depends on c alone: −log₂ c in `blinn`, γ²/(2 ln 2)
-//! in `gauss`. `gauss` computes the decay as the distance 1 − c times a smooth ratio. `blinn` first scales c by 2^octave to a
-//! mantissa m from 1/2 to 1, and computes (1 − m) times a ratio plus the octave. The relative error of the decay therefore
-//! stays small near c = 1, where n multiplies the error. In the sequential core, piecewise polynomials on one multiplier give
-//! the ratio and 2^−x. Another multiplier computes distance times ratio, and n times decay. The integer part of n·decay becomes
-//! a shift. f is 0 if c ≤ 0.
+//! The decay is −log₂ c in `blinn`, and γ²/(2 ln 2) in `gauss`. `gauss` computes it as the distance 1 − c times a smooth ratio.
+//! `blinn` first scales c by 2^octave to a mantissa m from 1/2 to 1, and computes (1 − m) times a ratio plus the octave. The
+//! relative error of the decay therefore stays small near c = 1, where n multiplies the error.
+//!
+//! In the sequential core, piecewise polynomials on one multiplier give the ratio and 2^−x. Another multiplier computes
+//! distance times ratio, and n times decay. The integer part of n·decay becomes a shift. f is 0 if c ≤ 0.
 
 use glint_base::fixed::{Format, Overflow, Rounding};
 use glint_config::Config;
@@ -17,21 +16,19 @@ use glint_rtl::dsl::{Designer, Note, Signal, Topic, step};
 use super::common::{self, ColourProducts};
 use super::piecewise::{PolynomialDatapath, StepMultiplier, Tables};
 
-/// The distance of the cosine c from 1, and the octave of c. `gauss` uses the distance 1 − c and no octave. `blinn` scales c by
-/// 2^octave to a mantissa m from 1/2 to 1, and uses the distance 1 − m.
+/// The distance of the cosine c from 1, and in `blinn` the octave of c.
 pub struct Distance<'d> {
-    /// The distance (1 − c in `gauss`, 1 − m in `blinn`) in units of its last place, less one unit, as an integer.
+    /// 1 − c in `gauss`, 1 − m in `blinn`, in units of its last place, less one unit, as an integer.
     pub u: Signal<'d>,
-    /// The octave, an integer that is added to the product of distance and ratio. `None` for `gauss`.
+    /// An integer that is added to the product of distance and ratio; `None` for `gauss`.
     pub octave: Option<Signal<'d>>,
 }
 
-/// Describes the part of the hardware that `blinn` and `gauss` share: this part computes f = 2^(−n·decay) from the distance of
-/// the cosine from 1. The function adds the operands `exponent` and the colours, both tables of polynomials, the products, the
-/// outputs and the microprogram. The caller adds the operand `cos_gamma` before.
+/// Adds everything but the operand `cos_gamma`, which the caller adds before: the operands `exponent` and the colours, both
+/// tables of polynomials, the products, the outputs and the microprogram.
 ///
 /// # Panics
-/// Panics if the schema's check does not accept the configuration. The caller must check the configuration first.
+/// Panics if the schema's check does not accept the configuration.
 pub fn describe<'d>(
     d: &'d Designer,
     config: &Config,
@@ -135,8 +132,8 @@ pub fn describe<'d>(
 /// Returns the decay as a factor of the multiplier, and a bit that is 1 if the decay is large.
 ///
 /// A small decay, below ¼, is multiplied by large n and needs all its fraction bits; its three upper bits are zeros. A large
-/// decay needs fewer fraction bits, but in `blinn` also the octave. Both factors therefore have about the same width. The bit
-/// decides only where the binary point of the product is.
+/// decay needs fewer fraction bits, but in `blinn` also the octave. Both factors therefore have about the same width, and the
+/// bit only decides where the binary point of the product is.
 fn factor_of<'d>(
     d: &'d Designer,
     keys: &Keys,
@@ -160,7 +157,7 @@ fn factor_of<'d>(
     (d.choose("factor_next", large, [fine, coarse]), large)
 }
 
-/// Returns f with the values that need no table: 0 if cos γ ≤ 0, and all ones, the largest value below 1, if cos γ is 1.0.
+/// Replaces f by the values that need no table: 0 if cos γ ≤ 0, and all ones, the largest value below 1, if cos γ is 1.0.
 fn ends<'d>(d: &'d Designer, cos_gamma: Signal<'d>, rounded: Signal<'d>) -> Signal<'d> {
     let format = rounded.format();
     let facing = d.any("facing", cos_gamma).doc("1 if the surface faces the half vector");
@@ -172,8 +169,7 @@ fn ends<'d>(d: &'d Designer, cos_gamma: Signal<'d>, rounded: Signal<'d>) -> Sign
     d.choose("reflectance_next", facing, [dark, lit])
 }
 
-/// Returns the paragraphs about interpretations, formats and limits for the pages of `blinn` and `gauss`
-/// ([`About::notes`](glint_rtl::dsl::About::notes)).
+/// Returns the paragraphs about interpretations, formats and limits for the pages of `blinn` and `gauss`.
 pub fn notes(keys: &Keys) -> Vec<Note> {
     vec![
         Topic::Microprogram.note(

@@ -1,8 +1,8 @@
 //! The hardware description of the device `dot-product`, which computes cos γ = max(0, N·H / |N|).
 //!
-//! N is a vector of any length, such as an interpolated surface normal; H is a unit vector, such as the half vector; γ is the
+//! N is a vector of any length, such as an interpolated surface normal. H is a unit vector, such as the half vector. γ is the
 //! angle between them. The device adds up N·H and N·N, and multiplies N·H by 1/√(N·N), which it interpolates in a table. With the
-//! key `two_sided` the device computes |N·H| / |N|. A result above 1 becomes 1, and the zero vector N gives 0.
+//! key `two_sided` it computes |N·H| / |N|. A result above 1 becomes 1, and the zero vector N gives 0.
 
 use super::normaliser::{by_pairs, inverse_root};
 use glint_base::fixed::{Format, Overflow, Rounding};
@@ -10,8 +10,6 @@ use glint_config::Config;
 use glint_keys::dot_product::Keys;
 use glint_rtl::dsl::{About, Designer, Signal, end, step, valid};
 
-/// Describes the hardware of `dot-product`, which computes the cosine between a vector of any length and a unit vector. A
-/// negative cosine becomes 0, or positive with the key `two_sided`. A result above 1 becomes 1, and the zero vector gives 0.
 pub fn describe(d: &Designer, config: &Config) {
     let keys = Keys::of(config);
     let lower = if keys.two_sided { "abs(" } else { "max(0, " };
@@ -101,7 +99,7 @@ pub fn describe(d: &Designer, config: &Config) {
     ]);
 }
 
-/// Returns the absolute value of a number in the format of the number. The most negative number has none: its sign bit remains 1.
+/// Returns the absolute value of a number in its own format. The most negative number has none: its sign bit remains 1.
 fn size<'d>(d: &'d Designer, number: Signal<'d>) -> Signal<'d> {
     let format = number.format();
     let zero = d.constant("none", 0.0, format);
@@ -112,8 +110,7 @@ fn size<'d>(d: &'d Designer, number: Signal<'d>) -> Signal<'d> {
 }
 
 /// Returns the sum of products times 2^`places`, divided by 2. Each stage drops the low bits that the later shifts cannot move
-/// into the result. The result is rounded to the nearest value of the format [`Keys::distance`], and limited to its range: a
-/// negative sum becomes 0.
+/// into the result. The result is rounded to the nearest value of the format [`Keys::distance`], and a negative sum becomes 0.
 fn shifted<'d>(d: &'d Designer, sum: Signal<'d>, places: Signal<'d>, keys: &Keys) -> Signal<'d> {
     let mut row = sum;
     for bit in (0..places.format().width()).rev() {

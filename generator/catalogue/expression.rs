@@ -1,7 +1,7 @@
 //! The hardware description of the device `expression`, which computes formulas of several operands.
 //!
-//! A configuration states the formulas; for example, `a / b` or `sqrt(x*x + y*y)`. The planner ([`glint_plan`]) translates them
-//! into a plan, a list of fixed-point operations, and the module `plan` builds the hardware of the plan.
+//! A configuration states the formulas, such as `a / b` or `sqrt(x*x + y*y)`. The planner ([`glint_plan`]) translates them into
+//! a list of fixed-point operations, and the module `plan` builds the hardware.
 
 use glint_base::text;
 use glint_config::{Config, Shared};
@@ -12,8 +12,7 @@ use glint_rtl::netlist::About;
 
 use crate::plan::{PlanOutput, describe_plan};
 
-/// Describes the hardware of `expression`: a datapath and a microprogram for the plan of the configuration's formulas. Each
-/// result has an output port, whose name is the result's name followed by `_out`. `planned` is the plan of these formulas.
+/// `planned` must be the plan of the configuration's formulas. Each result has an output port `<result>_out`.
 pub fn describe(d: &Designer, config: &Config, planned: &ProvedPlan) {
     let keys = Keys::of(config);
     d.about(about(&keys, planned));

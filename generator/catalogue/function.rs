@@ -1,8 +1,8 @@
 //! The hardware description of the device `function`, which computes y = g(x) for one operand x.
 //!
 //! A configuration states g as a formula, such as `sqrt(x)`, or as samples of a curve. A table has the coefficients of a
-//! polynomial for each segment of x, and Horner's rule evaluates the polynomial, in the sequential core with one multiplier.
-//! The hardware is built from a plan with this one function, like the hardware of `expression`.
+//! polynomial for each segment of x, and Horner's rule evaluates it, in the sequential core with one multiplier. The hardware is
+//! built from a plan with this one function, like the hardware of `expression`.
 
 use glint_approximate::Piecewise;
 use glint_base::text;
@@ -13,8 +13,7 @@ use glint_rtl::netlist::About;
 
 use crate::plan::{PlanOutput, describe_plan};
 
-/// Describes the hardware of `function`: a table of coefficients, and Horner's rule with one multiplier. `planned` is the plan of
-/// the function that the configuration states.
+/// `planned` must be the plan of the function that the configuration states.
 pub fn describe(d: &Designer, config: &Config, planned: &FunctionPlan) {
     let polynomials = &planned.polynomials;
     d.about(about(&Keys::of(config), planned.function.proof(), polynomials));

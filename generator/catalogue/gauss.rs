@@ -1,11 +1,8 @@
-//! The hardware description of the device `gauss`, which computes f = exp(−n·γ²/2).
+//! The hardware description of the device `gauss`, which computes f = exp(−n·γ²/2) with γ = arccos c ([symbols](crate#symbols)).
 //!
-//! γ = arccos c is the angle between the surface normal and the half vector; n is the specular exponent; f is the reflectance,
-//! the factor by which the device multiplies colours. The source is the paper "A model for reproducing the specular component of
-//! colour in computer graphics" (in Ukrainian; Glint calls it seed 002), which compares this function with others and gives no
-//! circuit. The paper prints the angle as ∠(H,L), but its formulas use ∠(N,H), and so does this device. The device computes
-//! exp(−n·γ²/2) as 2^(−n·decay). The decay γ²/(2 ln 2) is 1 − c times a smooth function of 1 − c. For c ≤ 0 the result is 0, for
-//! n = 0 too.
+//! Seed 002 compares this function with others, and gives no circuit. The paper prints the angle as ∠(H,L), but its formulas use
+//! ∠(N,H), and so does this device. The device computes exp(−n·γ²/2) as 2^(−n·decay). The decay γ²/(2 ln 2) is 1 − c times a
+//! smooth function of 1 − c. For c ≤ 0 the result is 0, for n = 0 too.
 
 use glint_base::fixed::Format;
 use glint_config::Config;
@@ -16,10 +13,7 @@ use glint_rtl::netlist::About;
 use super::common;
 use super::decay::{self, Distance};
 
-/// Describes the hardware of `gauss`, which computes exp(−n·γ²/2) as 2^(−n·decay) with the decay γ²/(2 ln 2).
-///
-/// # Panics
-/// Panics if the schema's check does not accept the configuration. The caller must check the configuration first.
+/// Panics if the schema's check does not accept the configuration.
 pub fn describe(d: &Designer, config: &Config) {
     let keys = Keys::of(config);
     d.about(about(&keys));

@@ -1,11 +1,12 @@
 //! The hardware description of the device `lyon`, which computes f = max(0, 1 − β·D²)^m with m = 2^s.
 //!
-//! D = N − H is the difference of the unit normal N and the unit half vector H; D² is its squared length; f is the reflectance,
-//! the factor by which the device multiplies colours. With the key `scale` = `"multiplier"`, β is n/(2·m) for the specular
-//! exponent n. With the default `"shift"`, as in the patent, β is 2^shift/(2·m), where the operand `shift` is log₂ n, rounded.
-//! The source is the patent US 5 739 820 (Fig. 7C and 7D), which the patent of the device `quad-cosine` (Glint calls it seed 000)
-//! cites. Seed 000 lists only the blocks: two adders, four multipliers, shift register, counter, comparator and mux. Glint chose
-//! the wiring, and numbers each kind of block from 1: adder 1, multiplier 1.
+//! D² is the squared length of the difference D = N − H between the unit normal N and the unit half vector H. With the key
+//! `scale` = `"multiplier"`, β is n/(2·m) for the specular exponent n. With the default `"shift"`, as in the patent, β is
+//! 2^shift/(2·m), where the operand `shift` is log₂ n, rounded.
+//!
+//! The source is the patent US 5 739 820 (Fig. 7C and 7D), which [seed 000](crate#symbols) cites. Seed 000 lists only the blocks:
+//! two adders, four multipliers, shift register, counter, comparator and mux. Glint chose the wiring, and numbers each kind of
+//! block from 1: adder 1, multiplier 1.
 
 use glint_base::fixed::{Format, Overflow, Rounding};
 use glint_config::{Config, Shared};
@@ -16,24 +17,23 @@ use glint_rtl::netlist::{About, Note, Topic};
 
 use super::common::{self, ColourProducts};
 
-/// The part of the hardware that computes D², rounded to the fraction bits of its register.
+/// D², rounded to the fraction bits of its register.
 struct SquaredDistance<'d> {
     value: Signal<'d>,
-    /// The microinstructions before the microinstruction that loads D² into its register.
+    /// The microinstructions before the one that loads D² into its register.
     steps: Vec<Step>,
     /// The settings of the microinstruction that loads D² into its register.
     settings: Vec<StepSetting>,
 }
 
-/// The part of the hardware that computes β·D²: its result and its microinstructions.
+/// The scaled square and its microinstructions.
 struct Scaled<'d> {
-    /// β·D². Its number of fraction bits can differ from the number of f.
+    /// β·D², whose number of fraction bits can differ from f's.
     value: Signal<'d>,
     steps: Vec<Step>,
     squarings: Squarings<'d>,
 }
 
-/// Describes the hardware of `lyon`, which computes max(0, 1 − β·D²)^(2^s) from the difference vector D = N − H.
 pub fn describe(d: &Designer, config: &Config) {
     let keys = Keys::of(config);
     let f = keys.f.format();
@@ -74,7 +74,7 @@ pub fn describe(d: &Designer, config: &Config) {
     d.microprogram(steps.into_iter().chain(outputs));
 }
 
-/// Builds D² = dx² + dy² + dz², which is from 0 to 12.0, with one multiplier for each square.
+/// Builds D² = dx² + dy² + dz², from 0 to 12.0, with one multiplier for each square.
 fn distance<'d>(d: &'d Designer, keys: &Keys, components: [Signal<'d>; 3]) -> SquaredDistance<'d> {
     let mut number = 0;
     let squares = components.map(|component| {
@@ -90,8 +90,8 @@ fn distance<'d>(d: &'d Designer, keys: &Keys, components: [Signal<'d>; 3]) -> Sq
     }
 }
 
-/// Builds D² with one multiplier and one adder. A register collects the first two squares in two microinstructions, and the
-/// microinstruction after them adds the third square.
+/// Builds D² with one multiplier and one adder. A register collects the first two squares in two microinstructions, and the one
+/// after them adds the third square.
 fn distance_in_turn<'d>(
     d: &'d Designer,
     keys: &Keys,
@@ -165,8 +165,8 @@ fn by_shift<'d>(d: &'d Designer, keys: &Keys, distance: SquaredDistance<'d>) -> 
     Scaled { value: register.q(), steps, squarings }
 }
 
-/// Builds β·D² with β = n/2^(s+1) for every n, with a multiplier that the patent does not have. The division by 2^(s+1) is a
-/// shift by wiring. The product is rounded to the fraction bits of f, and saturates just below 2.
+/// Builds β·D² with β = n/2^(s+1) for every n, with a multiplier that the patent does not have. The division is a shift by
+/// wiring. The product is rounded to the fraction bits of f, and saturates just below 2.
 fn by_multiplier<'d>(d: &'d Designer, keys: &Keys, distance: SquaredDistance<'d>) -> Scaled<'d> {
     let count = keys.squarings();
     let exponent = common::exponent(d, keys.exponent_bits).q();
@@ -189,8 +189,8 @@ fn by_multiplier<'d>(d: &'d Designer, keys: &Keys, distance: SquaredDistance<'d>
     Scaled { value: scaled.q(), steps, squarings }
 }
 
-/// Returns `1 − β·D²` as the complement of β·D². The complement is one unit in the last place (an ulp) too small, and is
-/// therefore always below 1. If β·D² is 1.0 or more, the comparator makes the mux pass 0 instead.
+/// Returns `1 − β·D²` as the complement of β·D². It is one unit in the last place (an ulp) too small, and so always below 1.0.
+/// If β·D² is 1.0 or more, the comparator makes the mux pass 0 instead.
 fn base<'d>(d: &'d Designer, value: Signal<'d>, f: Format) -> Signal<'d> {
     let one = d.constant("one", 1.0, Format::unsigned(1, f.frac));
     let comparator = d.less("comparator", value, one).doc("1 if beta*D^2 is below 1.0");
@@ -199,7 +199,6 @@ fn base<'d>(d: &'d Designer, value: Signal<'d>, f: Format) -> Signal<'d> {
     d.choose("base", comparator, [zero, inverse]).doc("base of the power, or 0")
 }
 
-/// Returns the note that lists the clocks of a point and their purposes.
 fn clocks_note(keys: &Keys, config: &Config) -> Note {
     let shift = keys.scale == Scale::Shift;
     let (squares, colours) = (keys.squares_in_turn(), keys.colours.in_turn());

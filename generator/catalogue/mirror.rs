@@ -1,8 +1,8 @@
 //! Builds a chain of mirrored values with a single adder. For example, three conditions mirror an angle from one of eight octants
 //! into the first octant.
 //!
-//! A mirror is a choice between a value v and the difference c − v from a constant c. A chain of up to three such choices, and
-//! the rounding after the chain, has the value ±v + base. The sign is negative if an odd number of the conditions is 1, and each
+//! A mirror is a choice between a value v and the difference c − v from a constant c. A chain of up to three such choices, with
+//! the rounding after it, has the value ±v + base. The sign is negative if an odd number of the conditions is 1, and each
 //! combination of conditions has a constant base. One adder therefore computes the whole chain, although the plan has a
 //! difference and a choice for each mirror.
 
@@ -10,15 +10,14 @@ use glint_base::fixed::{Format, Overflow, Rounding};
 use glint_plan::{ExpressionPlan, NodeId, Operation};
 use glint_rtl::dsl::{Designer, Signal};
 
-/// The largest number of mirrors in a chain. Each mirror doubles the number of constants.
+/// Each mirror in a chain doubles the number of constants.
 const MOST_MIRRORS: usize = 3;
 
-/// One mirror of a chain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Mirror {
-    /// The condition: if this node is 1, the mirror replaces the value v by c − v.
+    /// If this node is 1, the mirror replaces the value v by c − v.
     condition: NodeId,
-    /// The constant c of c − v: its raw value and its fraction bits.
+    /// The raw value and the fraction bits of c.
     constant: (i128, i32),
 }
 
@@ -31,16 +30,15 @@ pub(super) struct MirrorChain {
     choice: Option<(NodeId, [NodeId; 2])>,
     /// The mirrors, in the order in which they are applied.
     mirrors: Vec<Mirror>,
-    /// The node that rounds the mirrored value to the nearest; `None` without rounding.
+    /// The node that rounds the mirrored value to the nearest, if there is one.
     rounded: Option<NodeId>,
-    /// The nodes that are not built, because the chain replaces them.
+    /// The nodes that the chain replaces, so that they are not built.
     inner: Vec<NodeId>,
 }
 
 impl MirrorChain {
-    /// Returns the chain of mirrors that ends at node `end`. Returns `None` if no chain ends at the node, or if the chain would
-    /// save no adder, which is the case for one mirror without rounding. `held` says for each node whether the node has a
-    /// register.
+    /// Returns the chain of mirrors that ends at node `end`, unless it would save no adder, as one mirror without rounding.
+    /// `held` says for each node whether it has a register.
     pub(super) fn ending_at(plan: &ExpressionPlan, end: NodeId, held: &[bool]) -> Option<Self> {
         let mut chain = Self {
             start: end,
@@ -84,13 +82,12 @@ impl MirrorChain {
         (!chain.mirrors.is_empty() && adders > 1).then_some(chain)
     }
 
-    /// Returns the nodes that are not built, because the chain replaces them.
     pub(super) fn inner(&self) -> &[NodeId] {
         &self.inner
     }
 
-    /// Builds the chain and returns its value, which may be wider than the format of its last node. `signal` returns the
-    /// signal of a node that is already built.
+    /// Builds the chain; its value may be wider than the format of its last node. `signal` returns the signal of a node that is
+    /// already built.
     pub(super) fn build<'d>(
         &self,
         d: &'d Designer,
@@ -147,7 +144,7 @@ impl MirrorChain {
     }
 
     /// Returns the constant for each combination of conditions, as a raw value with `frac` fraction bits, plus `half`. Bit 0 of
-    /// the index of a combination is the first condition.
+    /// the index is the first condition.
     fn bases(&self, frac: i32, half: i128) -> Vec<i128> {
         let mut bases = Vec::new();
         for combination in 0..1usize << self.mirrors.len() {
@@ -164,8 +161,8 @@ impl MirrorChain {
     }
 }
 
-/// Returns the mirror at node `id`, the node of the value v, and the node of the difference c − v. Returns `None` if the node is
-/// no such choice, or if another node reads the difference too.
+/// Returns the mirror at node `id`, and the nodes of the value v and of the difference c − v. Another node must not read the
+/// difference.
 fn mirror_at(plan: &ExpressionPlan, id: NodeId) -> Option<(Mirror, NodeId, NodeId)> {
     let Operation::Choose { condition, cases: [value, mirrored] } = plan.node(id).operation else {
         return None;
@@ -181,7 +178,6 @@ fn mirror_at(plan: &ExpressionPlan, id: NodeId) -> Option<(Mirror, NodeId, NodeI
     Some((Mirror { condition, constant }, value, mirrored))
 }
 
-/// Returns the nodes that read node `id`.
 fn readers(plan: &ExpressionPlan, id: NodeId) -> Vec<NodeId> {
     let mut readers = Vec::new();
     for (at, node) in plan.nodes.iter().enumerate() {
@@ -192,8 +188,8 @@ fn readers(plan: &ExpressionPlan, id: NodeId) -> Vec<NodeId> {
     readers
 }
 
-/// Builds the choice of one constant by the conditions. `bases` has the raw constant for each combination of conditions; bit 0 of
-/// its index is the first condition. Equal constants share one net.
+/// Chooses a constant by the conditions from `bases`, in which bit 0 of an index is the first condition. Equal constants share
+/// one net.
 fn chosen_base<'d>(
     d: &'d Designer,
     name: &str,

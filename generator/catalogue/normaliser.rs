@@ -1,20 +1,18 @@
 //! The hardware description of the device `normaliser`, which computes the unit vector v/|v| of a vector v of any length.
 //!
-//! A multiplier squares the components one after the other, a shifter scales their sum v·v, and a table interpolates 1/√(v·v).
-//! The same 1/√(v·v) scales all components. For example, v = (0, 0, 0.5) gives (0, 0, 1). The zero vector, which has no
-//! direction, gives (0, 0, 0).
+//! A multiplier squares the components one after the other, a shifter scales their sum v·v, and a table interpolates 1/√(v·v),
+//! which scales all components. For example, v = (0, 0, 0.5) gives (0, 0, 1). The zero vector, which has no direction, gives (0,
+//! 0, 0).
 
 use glint_base::fixed::{Format, Overflow, Rounding};
 use glint_config::Config;
 use glint_keys::normaliser::Keys;
 use glint_rtl::dsl::{About, Designer, Signal, end, step, valid};
 
-/// Returns the format of an unsigned integer with `bits` bits.
 fn integer(bits: i32) -> Format {
     Format::unsigned(bits, 0)
 }
 
-/// Describes the hardware of `normaliser`, which computes the unit vector of a vector of any length. The zero vector gives zeros.
 pub fn describe(d: &Designer, config: &Config) {
     d.about(About {
         device: "normaliser".into(),
@@ -82,8 +80,7 @@ pub fn describe(d: &Designer, config: &Config) {
     ]);
 }
 
-/// Shifts a word left by pairs of bits until one of its two top bits is 1. Returns the shifted word and the number of pairs. A
-/// word of zeros stays 0.
+/// Shifts a word left by pairs of bits until one of its two top bits is 1, and returns the number of pairs too. Zeros stay 0.
 pub(super) fn by_pairs<'d>(d: &'d Designer, mut word: Signal<'d>) -> (Signal<'d>, Signal<'d>) {
     let width = word.format().width();
     let mut places = Vec::new();
@@ -100,9 +97,9 @@ pub(super) fn by_pairs<'d>(d: &'d Designer, mut word: Signal<'d>) -> (Signal<'d>
     (word, d.join("pairs", &places, count))
 }
 
-/// Builds 1/√m for the mantissa m, from 1.0 to below 4.0, by a chord between two rounded values of the function. A mantissa of 0,
-/// which only the zero vector has, gives 0. `address` is the number of address bits of the table, and `inverse` the number of
-/// fraction bits of the result, whose format is u1.`inverse`.
+/// Builds 1/√m for the mantissa m, from 1.0 to below 4.0, by a chord between two rounded values. The zero vector alone has the
+/// mantissa 0, and gets 0. `address` is the number of address bits of the table, and `inverse` the number of fraction bits of the
+/// result in u1.`inverse`.
 pub(super) fn inverse_root<'d>(
     d: &'d Designer,
     mantissa: Signal<'d>,

@@ -1,9 +1,8 @@
-//! Builds the hardware of a piecewise polynomial: a table of coefficients, and Horner's rule with one product and one sum in
-//! each step.
+//! Builds the hardware of a piecewise polynomial: a table of coefficients, and Horner's rule with one product and one sum in each
+//! step. The devices `function`, `expression`, `blinn` and `gauss` use it.
 //!
-//! The devices `function`, `expression`, `blinn` and `gauss` use this hardware. The position of the operand within its domain
-//! addresses the table, which gives the coefficients of the operand's segment. One multiplier serves all polynomials of a device;
-//! if the device is a pipeline, each step can get its own multiplier.
+//! The position of the operand within its domain addresses the table, which gives the coefficients of the operand's segment. One
+//! multiplier serves all polynomials of a device; in a pipeline, each step can get its own.
 
 use std::ops::Range;
 
@@ -11,8 +10,7 @@ use glint_approximate::{HornerStep, Layout, Piecewise};
 use glint_base::fixed::{Format, MAX_WIDTH, Overflow, Rounding};
 use glint_rtl::dsl::{Designer, OperandMux, Register, SharedProduct, Signal, StepSetting};
 
-/// One multiplier for the products in all steps of all polynomials of a device, and for other products. Each product has its
-/// own microinstruction.
+/// One multiplier for all steps of all polynomials, and for other products, each in its own microinstruction.
 pub struct StepMultiplier<'d> {
     d: &'d Designer,
     name: String,
@@ -21,8 +19,8 @@ pub struct StepMultiplier<'d> {
 }
 
 impl<'d> StepMultiplier<'d> {
-    /// Makes the multiplier. The four names are for its select lines, its two operands and its product. `others` has the names
-    /// and factors of products that belong to no polynomial. No two products may have the same first factor.
+    /// The four names are for the select lines, the two operands and the product. `others` has the names and factors of products
+    /// that belong to no polynomial. No two products may have the same first factor, by which a microinstruction selects them.
     pub fn new(
         d: &'d Designer,
         [select, sums, offsets, product]: [&str; 4],
@@ -49,8 +47,7 @@ impl<'d> StepMultiplier<'d> {
         Self { d, name: product.to_owned(), shared }
     }
 
-    /// Connects the register of one step of a polynomial, and returns the settings of the microinstruction that executes this
-    /// step.
+    /// Connects the register of one step of a polynomial, and returns the settings that execute this step.
     pub fn step(&self, polynomial: &PolynomialDatapath<'d, '_>, step: usize) -> Vec<StepSetting> {
         let mut settings = Vec::new();
         let mut product = None;
@@ -62,8 +59,8 @@ impl<'d> StepMultiplier<'d> {
         settings
     }
 
-    /// Returns the product of a pair of factors. If the device has several products, the pair must be one of the pairs that
-    /// [`StepMultiplier::new`] received.
+    /// Returns the product of a pair of factors, one that [`StepMultiplier::new`] received unless the device has only one
+    /// product.
     pub fn product(&self, [first, second]: [Signal<'d>; 2]) -> Signal<'d> {
         match &self.shared {
             Some((_, product)) => product.of(first, second),
@@ -71,45 +68,42 @@ impl<'d> StepMultiplier<'d> {
         }
     }
 
-    /// Returns the setting with which a microinstruction selects a pair of factors for the multiplier. Returns `None` if the
-    /// device has only one product, which needs no selection.
+    /// Selects a pair of factors. The only product of a device needs no selection.
     pub fn pick(&self, [first, _]: [Signal<'d>; 2]) -> Option<StepSetting> {
         let (factors, _) = self.shared.as_ref()?;
         Some(factors.pick(first))
     }
 }
 
-/// The form in which the table of a polynomial stores its coefficients.
+/// How the table of a polynomial stores its coefficients.
 #[derive(Clone, Copy, Debug)]
 pub struct Tables {
-    /// Whether each coefficient has its own table. Otherwise one table has all coefficients of a segment in one word, or
-    /// several tables if the word would be wider than a net can be.
+    /// Whether each coefficient has its own table. Otherwise one word has all coefficients of a segment, or several tables if the
+    /// word would be wider than a net can be.
     pub split: bool,
-    /// Whether the table is read at the rising clock edge. The coefficients then arrive one clock after the address.
+    /// Whether the table is read at the rising clock edge, so that the coefficients arrive one clock after the address.
     pub synchronous: bool,
 }
 
-/// The smallest size of a table, in bits, for which some family of FPGAs uses a block memory.
+/// The size of a table, in bits, from which on some family of FPGAs uses a block memory.
 const SMALLEST_BLOCK: u64 = 2048;
 
 impl Tables {
-    /// Returns the form of a table that is read at the rising clock edge. In a pipeline, each coefficient of a small table has
-    /// its own table, because registers then delay the address instead of the wider coefficient. Otherwise, one block memory
-    /// has all coefficients.
+    /// In a pipeline, each coefficient of a small table has its own table, because registers then delay the address instead of
+    /// the wider coefficient. Otherwise, one block memory has all coefficients.
     pub fn of(it: &Piecewise, is_pipelined: bool) -> Self {
         Self { split: is_pipelined && it.rom_bits() < SMALLEST_BLOCK, synchronous: true }
     }
 }
 
-/// Returns the raw value of a signal as an integer, with the same bits.
+/// Reads the bits of a signal as an integer.
 pub(super) fn whole(x: Signal) -> Signal {
     let Format { signed, .. } = x.format();
     let int = x.format().width() as i32 - i32::from(signed);
     x.read_as(Format { int, frac: 0, ..x.format() })
 }
 
-/// Builds the number of an operand within the domain of a table, an integer without a sign, as [`Piecewise::number`] computes
-/// it.
+/// Builds the number of an operand within the domain of a table, as [`Piecewise::number`] computes it.
 pub(super) fn number<'d>(d: &'d Designer, name: &str, x: Signal<'d>, it: &Piecewise) -> Signal<'d> {
     let width = x.format().width() as i32;
     let integer = |bits: i32| Format::unsigned(bits, 0);
@@ -126,25 +120,24 @@ pub(super) fn number<'d>(d: &'d Designer, name: &str, x: Signal<'d>, it: &Piecew
     if number.format() == integer(bits) { number } else { number.bits(0, integer(bits)) }
 }
 
-/// The table, the registers and the sums of one piecewise polynomial in a device.
 pub struct PolynomialDatapath<'d, 'p> {
     d: &'d Designer,
     it: &'p Piecewise,
     prefix: String,
     /// The coefficients of the operand's segment, the constant first.
     coefficients: Vec<Signal<'d>>,
-    /// The offset of the operand from the middle of its segment, shortened to the bits that each step multiplies.
+    /// The offset from the middle of the segment, shortened to the bits that each step multiplies.
     offsets: Vec<Signal<'d>>,
-    /// The registers of the partial sums. Register k has the sum of the terms from coefficient k on, so that the first register
-    /// has the whole polynomial.
+    /// The partial sums. Register k has the sum of the terms from coefficient k on, so that the first register has the whole
+    /// polynomial.
     registers: Vec<Register<'d>>,
 }
 
 impl<'d, 'p> PolynomialDatapath<'d, 'p> {
-    /// Makes the table, and the registers of the partial sums. `registers` are the names of these registers, starting with the
-    /// register of the whole polynomial. The names of other nets begin with `prefix`. `number` is the position of the operand in
-    /// its domain, an integer of [`glint_approximate::Segments::number_bits`] bits. `number` must be stable while the sums are
-    /// loaded, and also one clock earlier if the table is read at the rising clock edge.
+    /// Makes the table, and the registers of the partial sums with the names `registers`, the whole polynomial first. Other names
+    /// begin with `prefix`. `number` is the position of the operand in its domain, an integer of
+    /// [`glint_approximate::Segments::number_bits`] bits. It must be stable while the sums are loaded, and also one clock earlier
+    /// if the table is read at the rising clock edge.
     pub fn new(
         d: &'d Designer,
         prefix: &str,
@@ -167,22 +160,20 @@ impl<'d, 'p> PolynomialDatapath<'d, 'p> {
         Self { d, it, prefix: prefix.to_owned(), coefficients, offsets, registers }
     }
 
-    /// Returns the numbers of Horner's steps in the order of execution. The last step is 0. For example, two registers give the
-    /// steps 1 and 0.
+    /// Returns the numbers of Horner's steps in the order of execution; the last is 0.
     pub fn steps(&self) -> impl Iterator<Item = usize> + use<> {
         (0..self.registers.len()).rev()
     }
 
-    /// Returns the factors of the product that a step adds to its coefficient: the sum of the previous step, or the highest
-    /// coefficient, and the offset. Returns `None` for a step without a product, which occurs only if the polynomial is a
-    /// constant.
+    /// Returns the factors of a step's product: the sum of the previous step, or the highest coefficient, and the offset. A
+    /// constant polynomial has no product.
     fn factors(&self, step: usize) -> Option<[Signal<'d>; 2]> {
         let offset = *self.offsets.get(step)?;
         let above = self.registers.get(step + 1).map(|register| register.q());
         Some([above.unwrap_or(self.coefficients[step + 1]), offset])
     }
 
-    /// Connects the register of a step to its coefficient plus the product, and returns the setting that loads the register.
+    /// Connects the register of a step to its coefficient plus the product, and returns the setting that loads it.
     fn add(&self, step: usize, product: Option<Signal<'d>>) -> StepSetting {
         let Self { d, it, prefix, .. } = self;
         let coefficient = self.coefficients[step];
@@ -206,8 +197,8 @@ impl<'d, 'p> PolynomialDatapath<'d, 'p> {
     }
 }
 
-/// Returns the bits of a word with the top bit inverted, in a format of the same width. For example, this converts an unsigned
-/// number to its signed distance from the middle.
+/// Inverts the top bit, and reads the word in a format of the same width. For example, an unsigned number becomes its signed
+/// distance from the middle.
 pub(super) fn flipped<'d>(
     d: &'d Designer,
     name: &str,
@@ -222,8 +213,8 @@ pub(super) fn flipped<'d>(
     d.join(name, &[top, word.bits(0, Format::unsigned(low as i32, 0))], format)
 }
 
-/// Builds the address of the segment in the table, and the operand's offset from the middle of the segment. The offset is
-/// `None` if the polynomial is a constant.
+/// Builds the address of the segment in the table, and the operand's offset from the middle of the segment. A constant polynomial
+/// needs no offset.
 fn place<'d>(
     d: &'d Designer,
     prefix: &str,
@@ -278,8 +269,8 @@ fn place<'d>(
     (word, way.map(|way| offset_with_overhang(d, &name, way, beyond)))
 }
 
-/// Builds the offset from the middle of a segment. `way` is the offset from the segment's beginning. If `beyond` is 1, the
-/// operand lies beyond the last segment, and its offset is half a segment plus `way`.
+/// Builds the offset from the middle of a segment. `way` is the offset from its beginning. If `beyond` is 1, the operand lies
+/// beyond the last segment, and its offset is half a segment plus `way`.
 fn offset_with_overhang<'d>(
     d: &'d Designer,
     name: &str,
@@ -294,7 +285,7 @@ fn offset_with_overhang<'d>(
     d.join(name, &[sign, top, low], Format::signed(0, rest as i32))
 }
 
-/// Builds the tables, and returns the coefficients of the addressed segment, the constant coefficient first.
+/// Builds the tables, and returns the coefficients of the addressed segment, the constant first.
 fn table<'d>(
     d: &'d Designer,
     prefix: &str,

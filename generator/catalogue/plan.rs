@@ -1,9 +1,8 @@
 //! Builds the hardware of a plan: registers, the logic of the operations between them, and a microprogram.
 //!
 //! The devices `function` and `expression` use this hardware. A plan is a list of fixed-point operations ([`glint_plan`]). All
-//! products of a plan share one multiplier, and each product has its own microinstruction. If the device is a pipeline, the
-//! microprogram is unrolled, and each product gets its own multiplier. With the key `pipeline.interval` above 1, a pipeline
-//! accepts a point only every few clocks, and products can share multipliers.
+//! products of a plan share one multiplier, and each has its own microinstruction. In a pipeline the microprogram is unrolled,
+//! and each product gets its own multiplier. With an interval above 1 (the key `pipeline.interval`), products can share one.
 
 use glint_approximate::{Outside, Piecewise};
 use glint_base::fixed::{Format, Overflow, Rounding};
@@ -16,16 +15,13 @@ use glint_rtl::dsl::{Designer, Register, Signal, Step, end, step, valid};
 use crate::mirror::MirrorChain;
 use crate::piecewise::{PolynomialDatapath, StepMultiplier, Tables, number};
 
-/// An output port of a plan's hardware.
 pub(super) struct PlanOutput {
-    /// The name of the port.
     pub(super) name: String,
     /// The user's remark about the result; empty without one.
     pub(super) doc: String,
 }
 
-/// Describes the hardware of a plan. Result number k of the plan is connected to the port `outputs[k]`. `is_pipelined` decides
-/// how tables store their coefficients.
+/// Result number k of the plan is connected to the port `outputs[k]`. `is_pipelined` decides how tables store their coefficients.
 pub(super) fn describe_plan(
     d: &Designer,
     operands: &[StatedOperand],
@@ -46,25 +42,24 @@ pub(super) fn describe_plan(
     d.microprogram(steps);
 }
 
-/// The state of the construction of a plan's datapath.
 struct PlanDatapath<'d, 'p> {
     d: &'d Designer,
     operands: &'p [StatedOperand],
     plan: &'p ExpressionPlan,
     schedule: &'p PlanSchedule,
     is_pipelined: bool,
-    /// The register of each node of the plan; `None` for a node without a register. Polynomials have their own registers.
+    /// The register of each node that has one. Polynomials have their own registers.
     registers: Vec<Option<Register<'d>>>,
-    /// The signal that later nodes read for each node; `None` if the node is not built yet.
+    /// For each node that is built, the signal that later nodes read.
     signals: Vec<Option<Signal<'d>>>,
     polynomials: Vec<Option<PolynomialDatapath<'d, 'p>>>,
-    /// The two factors of each product, or `None` for a node that is no product.
+    /// The two factors of each product.
     factors: Vec<Option<[Signal<'d>; 2]>>,
-    /// The chain of mirrors that ends at each node; `None` if no chain ends at the node.
+    /// The chain of mirrors that ends at each node, if there is one.
     chains: Vec<Option<MirrorChain>>,
-    /// Whether each node is replaced by a chain of mirrors, and therefore not built.
+    /// Whether a chain of mirrors replaces each node, so that it is not built.
     is_inner: Vec<bool>,
-    /// Whether the hardware of a result reads each node.
+    /// Whether a result needs each node.
     is_read: Vec<bool>,
 }
 
@@ -100,9 +95,8 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
         }
     }
 
-    /// Builds the nodes in their order, except for nodes that no result reads, for nodes that a chain of mirrors replaces, for
-    /// products, and for the nodes between a product and the next register. `microprogram` builds the products, and these nodes behind
-    /// them, with the multiplier.
+    /// Builds the nodes that a result reads and no chain of mirrors replaces, in their order. `microprogram` builds the products,
+    /// and the nodes between a product and the next register, with the multiplier.
     fn build(&mut self) {
         let plan = self.plan;
         for (at, node) in plan.nodes.iter().enumerate() {
@@ -132,8 +126,8 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
         }
     }
 
-    /// Returns the factors of a product. If another product has the same first factor, the factor gets a new net, because the
-    /// microprogram selects a product by its first factor.
+    /// Returns the factors of a product. The microprogram selects a product by its first factor, so the factor gets a new net if
+    /// another product has the same one.
     fn distinct_factors(&self, name: &str, inputs: [NodeId; 2]) -> [Signal<'d>; 2] {
         let [first, second] = inputs.map(|input| self.signal(input));
         let mut others = self.factors.iter().flatten();
@@ -146,12 +140,12 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
         [first, second]
     }
 
-    /// Returns the signal of node `id`. Panics if the node is not built yet.
+    /// Panics if the node is not built yet.
     fn signal(&self, id: NodeId) -> Signal<'d> {
         self.signals[id.0].unwrap_or_else(|| panic!("`{}` is built", self.plan.node(id).name))
     }
 
-    /// Returns a signal in the format `format`. Bits above and below the format are dropped.
+    /// Drops bits above and below the format.
     fn in_format(&self, name: &str, signal: Signal<'d>, format: Format) -> Signal<'d> {
         if signal.format() == format {
             return signal;
@@ -161,7 +155,6 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
         self.d.narrow(&name, signal, format, Rounding::Truncate, Overflow::Wrap)
     }
 
-    /// Builds the chain of mirrors that ends at node `id`.
     fn mirrored(&self, id: NodeId) -> Signal<'d> {
         let PlanNode { name, format, .. } = self.plan.node(id);
         let chain = self.chains[id.0].as_ref().expect("a chain that ends at the node");
@@ -173,14 +166,12 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
         self.in_format(&name, value, *format)
     }
 
-    /// Builds the combinational logic of node `id`, and returns its value. The nodes that node `id` reads must already be built,
-    /// and the node must not be a product.
+    /// Builds the logic of node `id`, which must not be a product. The nodes that it reads must already be built.
     fn logic(&mut self, id: NodeId) -> Signal<'d> {
         let d = self.d;
         let plan = self.plan;
         let node = plan.node(id);
         let PlanNode { name, format, .. } = node;
-        // The register has the name of the node.
         let name = &match self.registers[id.0] {
             Some(_) => format!("{name}_next"),
             None => name.clone(),
@@ -253,7 +244,7 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
             Operation::Bit(a, number) => {
                 let a = input(a);
                 let top = a.format().width() - 1;
-                // Above its sign bit, a number has copies of the sign. Above its top bit, a number without a sign has zeros.
+                // Above its sign bit, a number has copies of the sign, and an unsigned number has zeros.
                 return match *number <= top || a.format().signed {
                     true => a.bit((*number).min(top)),
                     false => d.raw_constant(name, 0, Format::BIT),
@@ -297,7 +288,7 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
         self.in_format(name, value, *format)
     }
 
-    /// Builds a table of polynomials and its registers, and returns the signal of the register with the result.
+    /// Builds a table of polynomials and its registers, and returns the register with the result.
     fn polynomial(&mut self, id: NodeId, operand: Signal<'d>, it: &'p Piecewise) -> Signal<'d> {
         let prefix = self.plan.table_prefix(id);
         let number = number(self.d, &format!("{prefix}number"), operand, it);
@@ -337,7 +328,7 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
         steps
     }
 
-    /// Returns `name`, or `name` with a number if the name or a longer one that begins with it is an operand.
+    /// Appends a number to `name` if an operand's name begins with it.
     fn beside_operands(&self, name: &str) -> String {
         let mut free = name.to_owned();
         let mut number = 2;
@@ -383,8 +374,8 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
         }
     }
 
-    /// Returns the value of the node `held`, computed from the signal `product` of the node `from`. The nodes between these two
-    /// only scale and shorten the value.
+    /// Returns the value of the node `held`, computed from the signal `product` of the node `from`. The nodes between them only
+    /// scale and shorten the value.
     fn following(&self, product: Signal<'d>, from: NodeId, held: NodeId) -> Signal<'d> {
         let node = self.plan.node(held);
         if held == from {
@@ -405,7 +396,7 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
     }
 }
 
-/// Returns a signal with its low bits replaced by a single 1, which is the lowest bit of `format`.
+/// Replaces the low bits by a single 1, the lowest bit of `format`.
 fn middle<'d>(d: &'d Designer, name: &str, signal: Signal<'d>, format: Format) -> Signal<'d> {
     let kept = Format { frac: format.frac - 1, ..format };
     let name_of_kept = format!("{name}_kept");
@@ -414,7 +405,7 @@ fn middle<'d>(d: &'d Designer, name: &str, signal: Signal<'d>, format: Format) -
     d.join(name, &[upper, one], format)
 }
 
-/// Returns for each node of a plan the chain of mirrors that ends at the node, and whether a chain replaces the node.
+/// Returns for each node the chain of mirrors that ends there, and whether a chain replaces the node.
 fn mirror_chains(
     plan: &ExpressionPlan,
     schedule: &PlanSchedule,
@@ -438,13 +429,12 @@ fn mirror_chains(
     (chains, is_inner)
 }
 
-/// Returns two signals with the same number of fraction bits, the larger of both.
 fn aligned(signals: [Signal<'_>; 2]) -> [Signal<'_>; 2] {
     let [first, second] = signals.map(|signal| signal.format().frac);
     signals.map(|signal| signal.with_fraction(first.max(second)))
 }
 
-/// Builds x · 2^`places` in `format`. Bits above and below the format are dropped.
+/// Builds x · 2^`places` in `format`, without bits above and below the format.
 fn left_by<'d>(
     d: &'d Designer,
     name: &str,
@@ -469,15 +459,15 @@ fn left_by<'d>(
     row.read_as(format)
 }
 
-/// Returns whether the bits of two numbers, one after the other, are their sum in the format `sum`, so that the sum needs no
-/// adder. The second number must have no sign, and all bits of the first number must have larger weights than its bits.
+/// Returns whether the bits of two numbers, one after the other, are their sum in the format `sum`, which then needs no adder.
+/// All bits of the first number must have larger weights than the second number, which must have no sign.
 fn are_joined(first: Signal<'_>, second: Signal<'_>, sum: Format) -> bool {
     let [upper, lower] = [first, second].map(|number| number.format());
     let is_above = !lower.signed && lower.int == -upper.frac;
     is_above && upper.width() + lower.width() == sum.width()
 }
 
-/// Returns a noun in the singular for a count of 1, and in the plural otherwise. For example, 2 gives `operands`.
+/// Appends an `s` unless the count is 1.
 fn noun(count: usize, noun: &str) -> String {
     if count == 1 { noun.to_owned() } else { format!("{noun}s") }
 }

@@ -1,17 +1,14 @@
 //! The hardware description of the device `quad-cosine`, which computes f = cosᵏ(√(n/k)·δ) for the points of a scan line.
 //!
-//! δ is the angle at a point of the line; n is the specular exponent; f is the reflectance, the factor by which the device
-//! multiplies an amplitude. Decoder 10 chooses k from n: 1 for n = 1, 2 for n = 2, 4 for n = 3 to 6, and 16 for all other n. f
-//! is 0 if δ does not lie from −90° (included) to 90°, or if √(n/k)·|δ| is 90° or more. The source is a patent that claims this
-//! device; Glint calls it seed 000. The numbers of blocks and outputs are the numbers in the patent's figure.
+//! δ is the angle at a point of the line, and n the specular exponent. Decoder 10 chooses k from n: 1 for n = 1, 2 for n = 2, 4
+//! for n = 3 to 6, and 16 for all other n. f is 0 if δ does not lie from −90° (included) to 90°, or if √(n/k)·|δ| is 90° or
+//! more. The source is [seed 000](crate#symbols), whose figure numbers the blocks and outputs. Its control unit, block 14,
+//! consists of triggers (flip-flops); Glint replaces them by a microprogram with the same order of events.
 //!
-//! Block 14 is the control unit. The patent builds the control unit from triggers (flip-flops). Glint replaces the triggers by
-//! a microprogram with the same order of events.
-//!
-//! Output 37 (`write_angle`) writes the angle of a point into register 8. The output `valid` is a copy of output 37, delayed
-//! until the result of the point is ready. With the default key `line.stages` = 2 the delay is two clocks: one for register 8,
-//! and one for ROM 12, which is synchronous like ROM 9. With `line.stages` = 7 five more registers lie between register 8 and
-//! the output, and the delay is seven clocks. Registers behind the outputs (`output.registered`) add another clock.
+//! Output 37 (`write_angle`) writes the angle of a point into register 8. The output `valid` is a copy of it, delayed until the
+//! result of the point is ready. With the default key `line.stages` = 2 the delay is two clocks: one for register 8, and one
+//! for ROM 12, which is synchronous like ROM 9. With `line.stages` = 7 five more registers lie between register 8 and the
+//! output. Registers behind the outputs (`output.registered`) add another clock.
 
 use glint_base::fixed::Format;
 use glint_config::Config;
@@ -27,11 +24,10 @@ use super::common;
 /// The powers k, in the order of ROM 12's tables and of the decoder's outputs 30 to 33.
 const POWERS: [u32; 4] = [1, 2, 4, 16];
 
-/// The numbers that the patent's figure gives to the inputs, the register, the multiplier and the output of the amplitude.
+/// The numbers of the amplitude's blocks in the patent's figure.
 pub(super) const AMPLITUDE: ChannelBlocks =
     ChannelBlocks { inputs: (15, 16), register: 1, multiplier: 13, output: 27 };
 
-/// Describes the hardware of `quad-cosine`, which computes `cosᵏ(√(n/k)·δ)` for the angle δ at each point of a scan line.
 pub fn describe<'d>(d: &'d Designer, config: &Config) {
     let keys = Keys::of(config);
     let table = keys.table_address as i32;
@@ -90,7 +86,7 @@ pub fn describe<'d>(d: &'d Designer, config: &Config) {
     line.microprogram(keys.stages);
 }
 
-/// Builds decoder 10, whose outputs 30 to 33 have a single 1, and returns the number of the output that is 1, from 0.
+/// Builds decoder 10, and returns which of its outputs 30 to 33 is 1, counted from 0.
 fn decoder<'d>(d: &'d Designer, exponent: Signal<'d>) -> Signal<'d> {
     let constant = |name: &str, raw: i128| d.raw_constant(name, raw, exponent.format());
     let first = constant("first_exponent", 1);
@@ -109,7 +105,7 @@ fn decoder<'d>(d: &'d Designer, exponent: Signal<'d>) -> Signal<'d> {
     d.concat("power_code", high, low).block(10).doc("the number of the decoder output that is 1")
 }
 
-/// Returns the index in `POWERS` of the power for the exponent n. For example, n = 5 gives 2, and `POWERS[2]` is 4.
+/// Returns the index in `POWERS` for the exponent n: 2 for n = 5, whose power is 4.
 fn power_of(n: i64) -> usize {
     match n {
         1 => 0,

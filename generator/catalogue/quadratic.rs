@@ -1,11 +1,9 @@
-//! The hardware description of the device `quadratic`, which computes f = max(0, c + a(n)·(c² − c)).
+//! The hardware description of the device `quadratic`, which computes f = max(0, c + a(n)·(c² − c)) ([symbols](crate#symbols)).
 //!
-//! c = cos γ, where γ is the angle between the surface normal and the half vector, and n is the specular exponent. A table,
-//! ROM(n), has the coefficients a(n); n = 0 has the coefficient 0, as n = 1. f is the reflectance, the factor by which the device
-//! multiplies colours. The source is the patent UA 20998, which the patent UA 60139 (Glint calls it seed 001) cites. UA 20998
-//! connects its blocks without a control block; this description adds two registers, so that no clock contains more than one
-//! multiplier before the outputs. Each kind of block is numbered from 1, as in the text of seed 001: register 1, adder 1,
-//! multiplier 1.
+//! A table, ROM(n), has the coefficients a(n); n = 0 has the coefficient 0, as n = 1. The source is the patent UA 20998, which
+//! seed 001 cites. UA 20998 connects its blocks without a control block. This description adds two registers, so that no clock
+//! contains more than one multiplier before the outputs. Each kind of block is numbered from 1, as in the text of seed 001:
+//! register 1, adder 1, multiplier 1.
 
 mod coefficient;
 
@@ -18,7 +16,6 @@ use glint_rtl::netlist::About;
 
 use super::common::{self, ColourProducts};
 
-/// The numbers of the colour channels' blocks in the source.
 const CHANNELS: [ChannelBlocks; 3] = [channel(1), channel(2), channel(3)];
 
 const fn channel(output: u16) -> ChannelBlocks {
@@ -30,7 +27,6 @@ const fn channel(output: u16) -> ChannelBlocks {
     }
 }
 
-/// Describes the hardware of `quadratic`, which computes `max(0, c + a(n)·(c² − c))` with a(n) from ROM(n).
 pub fn describe(d: &Designer, config: &Config) {
     let keys = Keys::of(config);
     d.about(about(&keys));

@@ -1,13 +1,11 @@
 //! The hardware description of the device `rough`, which computes f = (n/2·(cos(γ ± dγ) − 1) + 1)², the highlight of a rough
-//! surface.
+//! surface ([symbols](crate#symbols)).
 //!
-//! γ is the angle between the surface normal and the half vector, dγ is the deviation of the normal on a rough surface, and n
-//! is the specular exponent. f is the reflectance, the factor by which the device multiplies colours. The source is the patent
-//! UA 60139 (Glint calls it seed 001), and block numbers are the numbers in its figure. Multiplier 10 computes four products
-//! one after the other, and the select lines V1 and V2 choose its operands. The microprogram equals table 1 of the patent, word
-//! by word. Only with one multiplier for all colours, or with output registers, it has additional microinstructions. With the
-//! default key `arithmetic` = `"exact"`, f is 0 for cos γ ≤ 0. With the default key `clamp` = true, f is 0 too where n/2·(cos(γ
-//! ± dγ) − 1) + 1 is negative.
+//! dγ is the deviation of the normal on a rough surface. The source is [seed 001](crate#symbols), whose figure has the block
+//! numbers. Multiplier 10 computes four products one after the other, and the select lines V1 and V2 choose its operands. The
+//! microprogram equals table 1 of the patent, word by word. Only with one multiplier for all colours, or with output registers,
+//! it has additional microinstructions. With the default key `arithmetic` = `"exact"`, f is 0 for cos γ ≤ 0. With the default
+//! key `clamp` = true, f is 0 too where n/2·(cos(γ ± dγ) − 1) + 1 is negative.
 
 mod sine;
 
@@ -21,21 +19,20 @@ use glint_rtl::netlist::{About, Note, Topic};
 use super::common::{self, ColourProducts};
 use sine::sine_rom;
 
-/// The numbers of the colour channels' blocks in the patent.
 const CHANNELS: [ChannelBlocks; 3] = [
     ChannelBlocks { inputs: (32, 33), register: 5, multiplier: 20, output: 40 },
     ChannelBlocks { inputs: (34, 35), register: 6, multiplier: 21, output: 41 },
     ChannelBlocks { inputs: (36, 37), register: 7, multiplier: 22, output: 42 },
 ];
 
-/// The formats and roundings of a configuration. With `patent`, all numbers are fractions modulo 1.0.
+/// The formats and roundings. With `patent`, all numbers are fractions modulo 1.0.
 struct Formats {
     cosine: Format,
     sine: Format,
     cos_cos: Format,
     sin_sin: Format,
     result: Format,
-    /// The format of the reflectance f, the low bits of register 13.
+    /// The low bits of register 13.
     f: Format,
     product_rounding: Rounding,
     result_rounding: Rounding,
@@ -75,7 +72,6 @@ impl Formats {
     }
 }
 
-/// Describes the hardware of `rough` with the blocks and the microprogram of UA 60139.
 pub fn describe(d: &Designer, config: &Config) {
     let keys = Keys::of(config);
     let formats = Formats::of(&keys);
@@ -209,7 +205,7 @@ pub fn describe(d: &Designer, config: &Config) {
     d.microprogram(steps);
 }
 
-/// Builds the registers 1 and 2. With exact arithmetic, both limit written values to 0 … 1.0. A negative cos γ becomes 0, for
+/// Builds the registers 1 and 2, which limit written values to 0 … 1.0 with exact arithmetic. A negative cos γ becomes 0, for
 /// which [`facing_only`] makes f = 0.
 fn operands<'d>(d: &'d Designer, formats: &Formats) -> (Signal<'d>, Signal<'d>) {
     let operand = |name: &str, format: Format| {
@@ -231,10 +227,9 @@ fn operands<'d>(d: &'d Designer, formats: &Formats) -> (Signal<'d>, Signal<'d>) 
     (r1.q(), r2.q())
 }
 
-/// Builds adder 15, n/2 and adder 16 with integer bits.
-///
-/// Adder 15 computes register 11 ∓ register 12 − 1.0. For the minus sign, mux 14 passes the inverse of 1.0 + register 12, and
-/// the carry-in adds the missing unit in the last place. For the plus sign, mux 14 passes register 12 − 1.0 from adder 31.
+/// Builds adder 15, n/2 and adder 16 with integer bits. Adder 15 computes register 11 ∓ register 12 − 1.0. For the minus sign,
+/// mux 14 passes the inverse of 1.0 + register 12, and the carry-in adds the missing unit in the last place. For the plus sign,
+/// mux 14 passes register 12 − 1.0 from adder 31.
 fn exact_sums<'d>(
     d: &'d Designer,
     negative: Signal<'d>,
@@ -262,7 +257,7 @@ fn exact_sums<'d>(
 /// Builds adder 15, n/2 and adder 16 as in the patent. All numbers are fractions modulo 1.0, so that a missing carry replaces
 /// each "− 1". The low bit of n is dropped.
 ///
-/// The patent contradicts itself about the second input of adder 31: the input is all ones in the claim and in the description,
+/// The patent contradicts itself about the second input of adder 31. The input is all ones in the claim and in the description,
 /// and zeros in the summary. This circuit uses ones.
 fn patent_sums<'d>(
     d: &'d Designer,
@@ -293,7 +288,7 @@ fn patent_sums<'d>(
     (adder15, half, adder16)
 }
 
-/// Returns the next value of register 13: the product if cos γ > 0, and otherwise −1.0, which makes f = 0.
+/// Returns the next value of register 13: −1.0, which makes f = 0, unless cos γ > 0.
 fn facing_only<'d>(d: &'d Designer, cos_gamma: Signal<'d>, result: Signal<'d>) -> Signal<'d> {
     let facing = d.any("facing", cos_gamma).doc("1 if the surface faces the half vector");
     let dark = d.constant("minus_one", -1.0, Format::signed(0, result.format().frac));

@@ -1,11 +1,8 @@
-//! The hardware description of the device `schlick`, which computes f = c / (n − n·c + c).
+//! The hardware description of the device `schlick`, which computes f = c / (n − n·c + c) ([symbols](crate#symbols)).
 //!
-//! c = cos γ, where γ is the angle between the surface normal and the half vector; n is the specular exponent; f is the
-//! reflectance, the factor by which the device multiplies colours. The source is the paper "A model for reproducing the
-//! specular component of colour in computer graphics" (in Ukrainian; Glint calls it seed 002). The paper says that the division
-//! makes this function of Schlick hard to build, and gives no circuit. The sequential core has one multiplier for the divisor,
-//! n·(1 − c) + c, and a divider that computes one bit of the quotient a clock. For c ≤ 0 the result is 0, for n = 0 too; a
-//! quotient of 1.0 becomes the largest value below 1.
+//! Seed 002 says that the division makes this function of Schlick hard to build, and gives no circuit. The sequential core has
+//! one multiplier for the divisor, n·(1 − c) + c, and a divider that computes one bit of the quotient a clock. For c ≤ 0 the
+//! result is 0, for n = 0 too; a quotient of 1.0 becomes the largest value below 1.
 
 use glint_base::fixed::{Format, Overflow, Rounding};
 use glint_config::Config;
@@ -16,7 +13,6 @@ use glint_rtl::netlist::{About, Topic};
 
 use super::common::{self, ColourProducts};
 
-/// Describes the hardware of `schlick`, which computes `c / (n − n·c + c)` with one multiplier and an iterative divider.
 pub fn describe(d: &Designer, config: &Config) {
     let keys = Keys::of(config);
     d.about(about(&keys));
@@ -43,8 +39,8 @@ pub fn describe(d: &Designer, config: &Config) {
     d.microprogram(steps.into_iter().chain(outputs));
 }
 
-/// Builds the exact divisor `n·(1 − cos γ) + cos γ`. If cos γ = 0, the divisor is larger by one unit in the last place, so that
-/// it is not 0 for n = 0. The quotient is then 0, whatever the divisor is.
+/// Builds the exact divisor. If cos γ = 0, it is larger by one unit in the last place, so that it is not 0 for n = 0. The
+/// quotient is then 0, whatever the divisor is.
 fn divisor<'d>(d: &'d Designer, cos_gamma: Signal<'d>, exponent: Signal<'d>) -> Signal<'d> {
     let (c, n) = (cos_gamma.format(), exponent.format());
     let one = d.constant("one", 1.0, Format::unsigned(1, c.frac));

@@ -1,9 +1,9 @@
 //! The hardware description of the device `shading`, which computes a colour as ambient + Σ (diffuse·cos α + specular·f(cos γ)).
 //!
-//! The sum runs over the lights. α is the angle between the surface normal and the direction of a light, γ the angle between the
-//! normal and the half vector of the light; f is the highlight's formula, for example cⁿ with c = cos γ. `shading` consists of
-//! other devices, called its parts: for each light two `dot-product` devices and a highlight device, such as `blinn` or
-//! `function`. A sum above the largest colour becomes the largest colour.
+//! The sum runs over the lights. α is the angle between the surface normal and the direction of a light, and f the highlight's
+//! formula, for example cⁿ ([symbols](crate#symbols)). `shading` consists of other devices, called its parts: for each light two
+//! `dot-product` devices and a highlight device, such as `blinn` or `function`. A sum above the largest colour becomes the
+//! largest colour.
 
 use super::{blinn, cosine_power, dot_product, function, gauss, quadratic, schlick, threshold};
 use glint_base::fixed::{Overflow, Rounding};
@@ -11,8 +11,7 @@ use glint_config::Config;
 use glint_keys::shading::{HighlightDevice, HighlightPart, Keys, LightParts};
 use glint_rtl::dsl::{About, Designer, Signal};
 
-/// Describes the hardware of `shading`: its parts, which are other devices, and the sum of ambient, diffuse and specular light
-/// for each colour. `parts` has the configurations of the parts.
+/// `parts` has the configurations of the parts.
 pub fn describe<'d>(d: &'d Designer, config: &Config, parts: &LightParts) {
     let keys = Keys::of(config);
     d.about(about(&keys));
@@ -97,7 +96,6 @@ pub fn describe<'d>(d: &'d Designer, config: &Config, parts: &LightParts) {
     d.dataflow();
 }
 
-/// Describes the hardware of the part that computes the highlight.
 fn describe_highlight(d: &Designer, keys: &Keys, part: &HighlightPart) {
     let config = match part {
         HighlightPart::OfExponent(config) => config,
@@ -114,7 +112,7 @@ fn describe_highlight(d: &Designer, keys: &Keys, part: &HighlightPart) {
     }
 }
 
-/// Returns the reflectance f as a function of the cosine c and the exponent n. For example, `c^n`.
+/// Returns f as text, such as `c^n`.
 fn highlight_formula(keys: &Keys) -> String {
     let power = keys.power;
     let formula = match keys.highlight {

@@ -1,12 +1,10 @@
 //! The hardware description of the device `threshold`, which computes f = (n/2·(c − 1) + 1)², or 0 if this square is below a
-//! level.
+//! level ([symbols](crate#symbols)).
 //!
-//! c = cos γ, where γ is the angle between the surface normal and the half vector, and n is the specular exponent. The level
-//! comes from a table, ROM(n), and f is the reflectance, the factor by which the device multiplies colours. f is 0 too for c ≤ 0,
-//! and where n/2·(c − 1) + 1 is negative. The source is the patent UA 30041, which the patent UA 60139 (Glint calls it seed 001)
-//! cites. UA 30041 connects its blocks without a control block; this description adds two registers, so that no clock contains
-//! more than one multiplier before the outputs. Each kind of block is numbered from 1, as in the text of seed 001: register 1,
-//! adder 1, multiplier 1.
+//! The level comes from a table, ROM(n). f is 0 too for c ≤ 0, and where n/2·(c − 1) + 1 is negative. The source is the patent UA
+//! 30041, which seed 001 cites. UA 30041 connects its blocks without a control block. This description adds two registers, so
+//! that no clock contains more than one multiplier before the outputs. Each kind of block is numbered from 1, as in the text of
+//! seed 001: register 1, adder 1, multiplier 1.
 
 use glint_base::fixed::{Format, Overflow, Rounding, exp2};
 use glint_config::Config;
@@ -17,7 +15,6 @@ use glint_rtl::netlist::About;
 
 use super::common::{self, ColourProducts};
 
-/// The numbers of the colour channels' blocks in the source.
 const CHANNELS: [ChannelBlocks; 3] = [channel(3), channel(4), channel(5)];
 
 const fn channel(number: u16) -> ChannelBlocks {
@@ -29,8 +26,6 @@ const fn channel(number: u16) -> ChannelBlocks {
     }
 }
 
-/// Describes the hardware of `threshold`: the square `(n/2·(cos γ − 1) + 1)²`, which a comparator sets to 0 if the square is
-/// below the level in ROM(n). The result is 0 too if cos γ ≤ 0 or if the base of the square is negative.
 pub fn describe(d: &Designer, config: &Config) {
     let keys = Keys::of(config);
     let f = keys.f.format();
@@ -67,7 +62,7 @@ pub fn describe(d: &Designer, config: &Config) {
     d.microprogram(steps.into_iter().chain(outputs));
 }
 
-/// Returns the square, or 0 if the square is below ROM(n) or the surface faces away.
+/// Returns the square, or 0 if it is below ROM(n) or the surface faces away.
 fn gates<'d>(
     d: &'d Designer,
     keys: &Keys,
@@ -103,16 +98,16 @@ fn level_rom<'d>(d: &'d Designer, keys: &Keys, exponent: Signal<'d>) -> Rom<'d> 
         .comments(comments)
 }
 
-/// Returns the level for the exponent n in hundredths of an output unit: the configured level of n's octave. For example, n = 20
-/// is in octave 4, from 16 to 31; n = 0 is in octave 0, like n = 1. Octaves beyond the configured levels have the last level.
+/// Returns the level for the exponent n in hundredths of an output unit, by n's octave. n = 20 is in octave 4, from 16 to 31, and
+/// n = 0 in octave 0. Octaves beyond the configured levels have the last level.
 fn hundredths(keys: &Keys, n: i64) -> u32 {
     let levels = &keys.levels;
     let octave = n.max(1).ilog2() as usize;
     levels[octave.min(levels.len() - 1)]
 }
 
-/// Returns the smallest word of f whose product with the largest colour reaches a level in hundredths of an output unit, but at
-/// most the largest word. For example, the level 100 gives 258 for colours of 8 bits and an f of 16 fraction bits.
+/// Returns the smallest word of f whose product with the largest colour reaches a level in hundredths of an output unit, at most
+/// the largest word. The level 100 gives 258 for colours of 8 bits and an f of 16 fraction bits.
 fn level_word(keys: &Keys, hundredths: u32) -> i128 {
     let unit = 100 * ((1 << keys.operands.colours.bits) - 1);
     let words = 1i128 << keys.f.fraction;
@@ -142,8 +137,7 @@ fn about(keys: &Keys) -> About {
     }
 }
 
-/// Returns a sentence for the device's page that says whether the comparator changes any output, beyond the effect of the
-/// clamp.
+/// Returns a sentence for the device's page on whether the comparator changes any output beyond the clamp.
 fn comparator_note(keys: &Keys) -> String {
     let largest = (1i128 << keys.operands.colours.bits) - 1;
     let blocked = (0..1i64 << keys.operands.exponent_bits)

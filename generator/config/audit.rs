@@ -1,5 +1,4 @@
-//! Finds mistakes in a device's schema, the list of its configuration keys. Tests of devices call the function `Schema::mistakes`
-//! of this file. For example, the function reports a default that is outside the range of its key.
+//! Finds mistakes in a device's schema, the list of its configuration keys, for tests of devices.
 
 use super::problems::Problems;
 use super::schema::{Condition, Key, KeyKind, Schema};
@@ -7,13 +6,10 @@ use super::shared::shared_keys;
 use super::values::Config;
 
 impl Schema {
-    /// Returns a sentence for each mistake in the schema itself, for a device's own tests. A name is a mistake if it repeats, is
-    /// a key of every device, names both a table and a value, or is not made of plain lower-case words. A default is a mistake if
-    /// it is outside its range. A condition is a mistake if its key is not declared before, or can never have its value. If the
-    /// schema has no such mistake, the device's `check` must accept the defaults.
-    ///
-    /// A schema without mistakes gives an empty list. The schema of a device must have no mistakes, because the reader of
-    /// configurations relies on a correct schema.
+    /// Returns a sentence for each mistake in the schema itself. A name is a mistake if it repeats, is a key of every device, or
+    /// names both a table and a value. It must consist of plain lower-case words. A default is a mistake if it is outside its
+    /// range. A condition is a mistake if its key is not declared before, or can never have its value. If the schema has no such
+    /// mistake, the device's `check` must accept the defaults. The reader of configurations relies on a schema without mistakes.
     pub fn mistakes(&self) -> Vec<String> {
         let mut mistakes = Vec::new();
         for (index, key) in self.keys.iter().enumerate() {
@@ -62,8 +58,8 @@ impl Schema {
 }
 
 impl Key {
-    /// Returns whether the key accepts a value that [`super::Value::bare`] displays as `bare`. Returns false for keys of numbers
-    /// with fractions, lists, texts and tables, which cannot be the subject of a condition.
+    /// Returns whether the key accepts a value that [`super::Value::bare`] displays as `bare`. Keys of numbers with fractions,
+    /// lists, texts and tables cannot be the subject of a condition.
     fn can_be(&self, bare: &str) -> bool {
         match &self.kind {
             KeyKind::Choice(options) => options.contains(&bare),

@@ -1,9 +1,9 @@
 //! Adjusts the defaults of keys that the user left out.
 //!
 //! If the user's values and a default are invalid together, the default moves to the value with which the fewest conditions
-//! fail, and of several such values to the nearest. For example, `exponent.bits = 8` lowers the default of
-//! `domain.exponent_max` from 1000 to 255. Only integers and lists of integers are adjusted. Keys of all other types keep their
-//! defaults, and so do keys with a [`Key::drawn`] range and the keys that every device shares.
+//! fail. The nearest of several such values wins. For example, `exponent.bits = 8` lowers the default of `domain.exponent_max`
+//! from 1000 to 255. Only integers and lists of integers are adjusted. Keys of all other types keep their defaults, and so do
+//! keys with a [`Key::drawn`] range and the keys that every device shares.
 
 use std::collections::BTreeSet;
 
@@ -11,10 +11,9 @@ use super::problems::Problems;
 use super::schema::{Key, KeyKind, Schema};
 use super::values::{Config, Value};
 
-/// Returns the configuration with adjusted defaults. In each step, the function moves one key that is not in `given` to the
-/// value with which the fewest conditions of the device fail; a key moves at most once. Only keys of the device that apply,
-/// take an integer or a list of integers, and have no range from [`Key::drawn`] can move. The function stops if no condition
-/// fails, or if no move of a single key helps. Conditions can therefore still fail in the result.
+/// Adjusts defaults. Each step moves one key that is not in `given` to the value with which the device's fewest conditions
+/// fail. A key moves at most once. The function stops if no condition fails, or if no move of a single key helps. Conditions
+/// can therefore still fail in the result.
 pub fn follow(schema: &Schema, config: &Config, given: &BTreeSet<&str>) -> Config {
     let mut config = config.clone();
     let mut left = complaints(schema, &config);
@@ -35,9 +34,9 @@ pub fn follow(schema: &Schema, config: &Config, given: &BTreeSet<&str>) -> Confi
     config
 }
 
-/// Finds the value of the key `key` with which the fewest conditions fail. Among several such values, the function takes the
-/// value nearest to the default. Returns the number of failing conditions, the key, and the configuration with this value.
-/// Returns `None` if `limit` or more conditions fail with every value.
+/// Finds the value of `key` with which the fewest conditions fail, and of several the nearest to the default. Returns the
+/// number of failing conditions, the key, and the configuration. Returns `None` if `limit` or more conditions fail with every
+/// value.
 fn best<'k>(
     schema: &Schema,
     config: &Config,
@@ -66,8 +65,8 @@ fn complaints(schema: &Schema, config: &Config) -> Vec<String> {
     problems.iter().map(|problem| problem.error.key.clone()).collect()
 }
 
-/// Returns the other values of a key for an integer, or the lists of [`lists`] for a list of integers, the value nearest to the
-/// default first. If two integers are equally near, the smaller comes first. Returns an empty list for keys of other types.
+/// Returns the other values of a key for an integer, or the lists of [`lists`] for a list of integers. The nearest to the
+/// default comes first, and the smaller of two equally near ones. Keys of other types have none.
 fn neighbours(key: &Key) -> Vec<Value> {
     match (&key.kind, &key.default) {
         (KeyKind::Integer { min, max }, Value::Integer(default)) => {

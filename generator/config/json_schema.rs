@@ -6,12 +6,12 @@ use super::schema::{Key, KeyKind, Schema};
 use super::values::Value;
 
 /// Returns a JSON Schema (draft 7) for configurations of any of these devices: names, types, ranges, defaults and the meaning of
-/// each key. The condition under which a key applies is only mentioned in the description of the key. The checks of a device
-/// between its keys are not in the JSON Schema; Glint makes these checks when it reads a file.
+/// each key. The description of a key mentions the condition under which it applies. Only Glint itself makes the checks of a
+/// device between its keys.
 pub fn json_schema(schemas: &[Schema]) -> Json {
     let names: Vec<&str> = schemas.iter().map(|schema| schema.device).collect();
-    // Not `oneOf`: if a file is wrong, editors then say only that no alternative fits. With `if` and `then` they name the
-    // wrong key.
+    // Not `oneOf`: if a file is wrong, editors then say only that no alternative fits. With `if` and `then` they name the wrong
+    // key.
     let by_device = schemas.iter().map(|schema| {
         let is_it = json!({
             "required": ["device"],
@@ -60,7 +60,7 @@ fn of_device(schema: &Schema) -> Json {
     device
 }
 
-/// Returns the schema of a table without keys, in which no other keys are allowed.
+/// The table allows only the keys that the caller adds.
 fn table() -> Json {
     json!({ "type": "object", "additionalProperties": false, "properties": {} })
 }
@@ -113,8 +113,7 @@ fn of_key(key: &Key) -> Json {
     entry
 }
 
-/// Returns the schema of an entry: a table with these fields. If `shorthand` names a field, an entry may also be only the value
-/// of this field.
+/// Returns the schema of an entry: a table with these fields, or only the value of the field `shorthand`.
 fn record(fields: &[Key], shorthand: Option<&str>) -> Json {
     let mut entry = table();
     let of_fields = properties(&mut entry);
@@ -132,8 +131,7 @@ fn record(fields: &[Key], shorthand: Option<&str>) -> Json {
     }
 }
 
-/// Returns the option `option` of a key as a file writes it: an integer without quotes if the key takes integers and the option
-/// is an integer, and otherwise a text.
+/// Returns an option as a file writes it: an integer without quotes if the key takes integers, and otherwise a text.
 fn choice(key: &Key, option: &str) -> Json {
     match option.parse::<i64>() {
         Ok(number) if key.kind.takes_integers() => json!(number),

@@ -1,19 +1,19 @@
-//! Declares configuration keys as the fields of a struct. The hardware description and the golden model of a device both read
-//! this struct. For example, the key `exponent.bits` is the field `exponent_bits`.
+//! Declares configuration keys as the fields of a struct, which the hardware description and the golden model of a device both
+//! read.
 
 use super::schema::Key;
 use super::values::{Config, TableEntries};
 use glint_base::fixed::Rounding;
 
-/// A type of configuration values: a field of a struct that [`keys!`](macro@crate::keys) declares has such a type.
+/// A type of fields in a struct that [`keys!`](macro@crate::keys) declares.
 pub trait Setting: Sized {
     /// Reads the value of the field from a configuration. `keys` are the configuration keys of the field, at least one. Panics if
-    /// the configuration does not have the keys, or if the keys have another type.
+    /// the configuration does not have the keys, or if they have another type.
     fn read(config: &Config, keys: &[Key]) -> Self;
 }
 
 /// Declares a struct whose fields are configuration keys. Its function `keys` returns the keys for a [`Schema`](super::Schema),
-/// in the order of the fields, and its function `of` reads the values of these keys from a configuration. `of` panics if the
+/// in the order of the fields. Its function `of` reads the values of these keys from a configuration. `of` panics if the
 /// configuration belongs to a device without these keys. Each field has a [`Key`], or is another such struct with several keys.
 ///
 /// ```
@@ -100,7 +100,7 @@ impl From<Key> for Vec<Key> {
 }
 
 impl Key {
-    /// Makes a key with the name `name` whose value is `"truncate"` or `"nearest"`. `doc` is the description of the key.
+    /// Makes a key whose value is `"truncate"` or `"nearest"`.
     pub fn rounding(name: &'static str, default: &'static str, doc: &'static str) -> Self {
         Self::choice(name, default, &["truncate", "nearest"], doc)
     }
@@ -121,7 +121,7 @@ impl Setting for i64 {
     }
 }
 
-/// A number of bits. The range of the key must exclude negative values.
+/// The range of the key must exclude negative values.
 impl Setting for u32 {
     fn read(config: &Config, keys: &[Key]) -> Self {
         u32::try_from(config.integer(keys[0].name)).expect("no negative number")

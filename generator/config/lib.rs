@@ -1,9 +1,9 @@
 //! Reads configurations, which are TOML files with the choices for one device, such as the width of an operand.
 //!
 //! A device declares its keys as a [`Schema`]; this crate knows no device. [`read()`] and [`parse()`] turn a file into a
-//! [`Config`], whose values need no further checks, or into [`Problems`], which list the mistakes of the file, each with a
-//! remedy, and with its location if the mistake has one. [`brief`] and [`commented`] write files from which a user can start,
-//! and [`sample()`] draws random valid configurations for tests.
+//! [`Config`], whose values need no further checks, or into [`Problems`]. These list the mistakes of the file, each with a
+//! remedy and its location. [`brief`] and [`commented`] write files from which a user can start, and [`sample()`] draws
+//! random valid configurations for tests.
 
 mod audit;
 mod follow;
@@ -42,7 +42,7 @@ pub use text_pattern::TextPattern;
 pub use values::{Config, TableEntries, TableEntry, Value};
 pub use write::{brief, commented};
 
-/// The keys that every device has and that a [`Config`] stores in fields of its own, each with its meaning.
+/// The keys that every device has and that a [`Config`] stores in fields of its own.
 const COMMON: [(&str, &str); 3] = [
     ("device", "The device that Glint generates."),
     (

@@ -1,15 +1,14 @@
-//! Checks whether a name can be the name of a Verilog module, and explains the mistake if the name cannot. For example, the name
-//! `2fast` begins with a digit.
+//! Checks whether a name can be the name of a Verilog module, and explains why not.
 
 use super::problems::quoted;
 use glint_base::config_error::ConfigError;
 use glint_base::keywords::is_keyword;
 
-/// The largest number of characters of a name. Derived modules and files append endings to the name.
+/// The limit is in characters. Derived modules and files append endings to the name.
 const LONGEST: usize = 60;
 
-/// Checks a module name. Returns `None` if the name has 1 to 60 ASCII letters, digits and `_`, does not begin with a digit, and
-/// is no keyword of Verilog or SystemVerilog. Otherwise returns the error, with a similar valid name in the remedy.
+/// Returns an error unless the name has 1 to 60 ASCII letters, digits and `_`, does not begin with a digit, and is no keyword of
+/// Verilog or SystemVerilog. The remedy has a similar valid name.
 pub(super) fn error(name: &str) -> Option<ConfigError> {
     let message = complaint(name)?;
     let remedy = format!(
@@ -44,10 +43,10 @@ fn complaint(name: &str) -> Option<String> {
     }
 }
 
-/// Returns a valid module name that is similar to a name or path. The function takes the part between the last slash and the
-/// first dot, writes a single `_` for other characters than ASCII letters and digits, and keeps at most 54 characters. If this
-/// part is still not valid, the function adds `glint_` at its front; an empty part gives `glint_device`. For example,
-/// `cores/my-core.toml` gives `my_core`, and `2fast` gives `glint_2fast`.
+/// Returns a valid module name that is similar to a name or path: `cores/my-core.toml` gives `my_core`, and `2fast` gives
+/// `glint_2fast`. The function takes the part between the last slash and the first dot, and keeps at most 54 characters. It
+/// writes a single `_` for other characters than ASCII letters and digits. If this is still not valid, it adds `glint_` in
+/// front; an empty part gives `glint_device`.
 fn legalised(name: &str) -> String {
     let file = name.rsplit(['/', '\\']).find(|part| !part.is_empty()).unwrap_or("");
     let stem = file.split('.').find(|part| !part.is_empty()).unwrap_or("");

@@ -1,12 +1,10 @@
-//! Suggests the valid word for a misspelt word, and joins words for a sentence. For example, the file suggests the valid key
-//! `colours` if a user writes `colour`.
+//! Suggests the valid word for a misspelt one, and joins words for a sentence.
 
-/// Returns the candidate that is most similar to `word`, if at most a third of the letters of the longer word differ, or one
+/// Returns the candidate that is most similar to `word`. At most a third of the letters of the longer word may differ, or one
 /// letter in shorter words. Otherwise returns the first candidate that begins with `word`, if `word` has more than two bytes.
-/// Returns `None` if there is no such candidate, or if `word` has more than 100 bytes.
+/// A `word` of more than 100 bytes has no candidate.
 ///
-/// The comparison ignores case and the difference between `-` and `_`. If several candidates are equally similar, the function
-/// returns the first of these candidates.
+/// The comparison ignores case and the difference between `-` and `_`. Of equally similar candidates, it takes the first.
 pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let fold = |text: &str| text.to_lowercase().replace('-', "_");
     // A longer word is no misspelling, and the time of the comparison grows with the square of the length.
@@ -24,7 +22,7 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
     slip.or_else(|| candidates.iter().find(begins)).copied()
 }
 
-/// Joins words for a sentence. For example, `a`, `b` and `c` become `a, b and c`. No words give an empty text.
+/// Joins words: `a`, `b` and `c` become `a, b and c`.
 pub fn listed<S: AsRef<str>>(words: &[S]) -> String {
     match words {
         [] => String::new(),

@@ -1,9 +1,9 @@
-//! Finds the key, the field or the choice that a user means by a word that Glint does not use for it. For example,
-//! `interface.axi_lite = true` means `interface.registers = "axi-lite"`, and `target = "artix7"` means `"xilinx7"`.
+//! Finds the setting that a user means by a word that Glint does not use for it. For example, `interface.axi_lite = true` means
+//! `interface.registers = "axi-lite"`, and `target = "artix7"` means `"xilinx7"`.
 
 use super::schema::{Key, KeyKind};
 
-/// A setting that a user may mean: a key and its value as TOML, or an empty value if any value can be meant.
+/// A key and its value as TOML, or an empty value if any value can be meant.
 #[derive(Clone, Copy)]
 pub(super) struct MeantSetting {
     pub(super) key: &'static str,
@@ -14,7 +14,7 @@ const AXI_LITE: MeantSetting = MeantSetting::to("interface.registers", "\"axi-li
 const WISHBONE: MeantSetting = MeantSetting::to("interface.registers", "\"wishbone\"");
 const STREAM: MeantSetting = MeantSetting::to("interface.stream", "true");
 
-/// Words for the keys that every device has. The words are folded ([`folded`]).
+/// Words, [`folded`], for the keys that every device has.
 const SETTINGS: [(&[&str], &[MeantSetting]); 21] = [
     (&["axilite", "axi4lite", "axil"], &[AXI_LITE]),
     (&["wishbone", "wb"], &[WISHBONE]),
@@ -93,7 +93,7 @@ impl MeantSetting {
         Self { key, value }
     }
 
-    /// Returns the setting for a message, in backticks. For example, `` `interface.stream = true` ``.
+    /// Returns the setting in backticks, such as `` `interface.stream = true` ``.
     pub(super) fn words(self) -> String {
         match self.value {
             "" => format!("`{}`", self.key),
@@ -102,21 +102,19 @@ impl MeantSetting {
     }
 }
 
-/// Returns a word in lower case without `-` and `_`.
+/// Removes case, `-` and `_`.
 fn folded(word: &str) -> String {
     word.to_lowercase().replace(['-', '_'], "")
 }
 
-/// Returns the settings that a user may mean by the name of a key, without the table before it. An unknown word gives an empty
-/// list.
+/// Returns the settings that a user may mean by the name of a key, without the table before it.
 pub(super) fn settings(name: &str) -> &'static [MeantSetting] {
     let name = folded(name);
     let found = SETTINGS.iter().find(|(words, _)| words.contains(&name.as_str()));
     found.map_or(&[], |(_, meant)| *meant)
 }
 
-/// Returns the name among `names` that a user means by `word`: the last part of a key, or a field. Returns `None` for an unknown
-/// word, and if `names` lacks the meaning of the word.
+/// Returns the name among `names` that a user means by `word`, the last part of a key, or a field.
 pub(super) fn last_part<'a>(
     word: &str,
     mut names: impl Iterator<Item = &'a str>,
@@ -126,8 +124,8 @@ pub(super) fn last_part<'a>(
     names.find(|name| name == meant)
 }
 
-/// Returns the choice of `key` that a user means by `word`, as TOML, or the setting of another key in the same table. For
-/// example, `interface.registers = "axis"` means `` `interface.stream = true` ``. Returns `None` for an unknown word.
+/// Returns the choice of `key` that a user means by `word`, as TOML, or the setting of another key in the same table:
+/// `interface.registers = "axis"` means `` `interface.stream = true` ``.
 pub(super) fn choice(key: &Key, word: &str) -> Option<String> {
     let KeyKind::Choice(options) = key.kind else { return None };
     let (table, leaf) = key.name.rsplit_once('.').unwrap_or(("", key.name));

@@ -1,4 +1,4 @@
-//! Parses the text of a TOML file, which a user writes for one device, to a [`Config`] with valid values.
+//! Parses the text of a TOML file to a [`Config`] with valid values.
 
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -21,23 +21,19 @@ use super::values::{Config, TableEntries, TableEntry, Value};
 use glint_base::config_error::ConfigError;
 use glint_base::program::Program;
 
-/// Parses a configuration from the text of a TOML file.
+/// Parses a configuration from the text of a TOML file. `schemas` must contain the schemas of all devices.
 ///
-/// Messages show `file_name`. Its stem (with `_` for `-`) is the module name unless the text states a `name`; a text from
-/// standard input must state a `name`. `schemas` must contain the schemas of all devices. Defaults of keys that the text does not
-/// set are adjusted to the values that it sets.
+/// Messages show `file_name`. Its stem (with `_` for `-`) is the module name unless the text states a `name`, which a text from
+/// standard input must do. Defaults of keys that the text does not set are adjusted to the values that it sets.
 ///
 /// # Errors
-/// Fails if the text has any problem. The error lists all problems at once, at most 200. Conditions between keys are checked only
-/// if the text is valid TOML and names a device, because otherwise some keys of the file are unknown.
+/// Fails with all problems of the text at once, at most 200. Conditions between keys are checked only if the text is valid TOML
+/// and names a device, because otherwise some keys of the file are unknown.
 pub fn parse(file_name: &str, text: &str, schemas: &[Schema]) -> Result<Config, Problems> {
     parse_located(file_name, text, schemas).map(|(config, _)| config)
 }
 
 /// Parses a text as [`parse`] does. Also returns the location of each key in the text, for errors that are found later.
-///
-/// # Errors
-/// Fails as [`parse`] does.
 pub fn parse_located(
     file_name: &str,
     text: &str,
@@ -67,13 +63,12 @@ pub fn parse_located(
 
 struct TomlReader<'t> {
     text: &'t str,
-    /// The directory of the file, relative to which the file names other files.
+    /// The file names other files relative to this directory.
     directory: &'t Path,
-    /// The offset of each newline in the text.
     newlines: Vec<usize>,
     problems: Problems,
-    /// The lines, counted from 0, that contain a syntax error. The parser's result for such a line may be wrong, so no further
-    /// problem is reported there.
+    /// The lines, counted from 0, with a syntax error. The parser's result for such a line may be wrong, so no further problem is
+    /// reported there.
     broken: BTreeSet<usize>,
     valid_toml: bool,
 }
@@ -105,13 +100,12 @@ impl TomlReader<'_> {
         self.problems.push_error_at(span, ConfigError::new("", message, remedy));
     }
 
-    /// Returns the number of the line that contains the byte `offset`, counted from 0.
+    /// Returns the line of the byte `offset`, counted from 0.
     fn line(&self, offset: usize) -> usize {
         self.newlines.partition_point(|newline| *newline < offset)
     }
 
-    /// Adds the lines below a heading with a syntax error to the lines with syntax errors, because the table of their keys is
-    /// unknown.
+    /// Counts the lines below a heading with a syntax error as broken too, because the table of their keys is unknown.
     fn spoil_below_broken_headings(&mut self) {
         let mut spoilt = false;
         for (number, line) in self.text.lines().enumerate() {
@@ -147,9 +141,8 @@ impl TomlReader<'_> {
         }
     }
 
-    /// Returns the schema of the device that the file names, or else of the device with the most similar name. Returns `None` if
-    /// the file names no device, or if no name is similar. A missing or wrong name is reported as a problem; if the TOML has a
-    /// syntax error, a missing name is not reported.
+    /// Returns the schema of the device that the file names, or else of the most similar one. Reports a missing or wrong name,
+    /// but after a syntax error no missing one.
     fn device<'s>(&mut self, document: &DeTable, schemas: &'s [Schema]) -> Option<&'s Schema> {
         let devices: Vec<&str> = schemas.iter().map(|schema| schema.device).collect();
         let remedy = format!("devices: {}", devices.join(", "));
@@ -229,7 +222,7 @@ impl TomlReader<'_> {
         }
     }
 
-    /// Reads the keys of a table. `prefix` is the name of the table followed by a dot, or empty.
+    /// `prefix` is the name of the table followed by a dot, or empty.
     fn table<'s>(
         &mut self,
         table: &DeTable,
@@ -313,7 +306,7 @@ impl TomlReader<'_> {
         }
     }
 
-    /// Reads the entries of a table whose entries the user names, in the order of the file.
+    /// Reads a table whose entries the user names, in the order of the file.
     fn records<'s>(
         &mut self,
         key: &'s Key,
@@ -371,8 +364,7 @@ impl TomlReader<'_> {
         draft.give(key, is_good.then_some(value));
     }
 
-    /// Returns the fields of one entry in a table whose entries the user names. Returns `None` if a field is wrong or unknown,
-    /// and reports the problem.
+    /// Returns the fields of an entry, or reports a wrong or unknown field.
     fn record(
         &mut self,
         key: &Key,
@@ -411,7 +403,7 @@ impl TomlReader<'_> {
         is_good.then_some(given)
     }
 
-    /// Returns the value of a field of an entry. Returns `None` if the value is wrong, and reports the problem.
+    /// Returns the value of a field, or reports that it is wrong.
     fn field(
         &mut self,
         key: &Key,
@@ -485,7 +477,7 @@ impl TomlReader<'_> {
     }
 }
 
-/// Returns a value in the type of its key. Fails with all mistakes of the value if its type or its range is wrong.
+/// Converts a value to the type of its key. Fails with all mistakes if its type or its range is wrong.
 fn converted(key: &Key, value: &Spanned<DeValue>) -> Result<Value, Vec<Violation>> {
     let wrong_type = || vec![key.wrong_type(&described(value))];
     let too_large = || vec![key.violation(out_of_range(key.name, written(value)))];
@@ -536,13 +528,13 @@ fn converted(key: &Key, value: &Spanned<DeValue>) -> Result<Value, Vec<Violation
     if violations.is_empty() { Ok(converted) } else { Err(violations) }
 }
 
-/// Returns the value of an integer. Returns `None` if `value` is no integer, or does not fit into 64 bits with a sign.
+/// Returns a signed integer of at most 64 bits.
 fn integer(value: &Spanned<DeValue>) -> Option<i64> {
     let integer = value.get_ref().as_integer()?;
     i64::from_str_radix(integer.as_str(), integer.radix()).ok()
 }
 
-/// Returns a number as the file writes the number, without underscores. Any other value gives an empty text.
+/// Returns a number as the file writes it, without underscores, or an empty text.
 fn written(value: &Spanned<DeValue>) -> String {
     match value.get_ref() {
         DeValue::Integer(integer) => integer.to_string(),
@@ -550,7 +542,7 @@ fn written(value: &Spanned<DeValue>) -> String {
     }
 }
 
-/// Returns the type and the value for a message. For example, `the integer 7`.
+/// Returns the type and the value for a message, such as `the integer 7`.
 fn described(value: &Spanned<DeValue>) -> String {
     match value.get_ref() {
         DeValue::String(text) => format!("the string {}", quoted(text)),

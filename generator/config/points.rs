@@ -1,18 +1,17 @@
-//! Reads samples, which are measured points of a curve, from a text file, such as a CSV file, that a configuration of the
-//! device `function` names.
+//! Reads samples, the measured points of a curve, from a text file, such as a CSV file, that a configuration of the device
+//! `function` names.
 
 use std::path::Path;
 use std::{fs, io};
 
-/// Reads the points of a file, and returns them in the form `x,y x,y`.
+/// Reads the points of a file in the form `x,y x,y`: the lines `x,y`, `0,0` and `1; -0.5 # low` give `0,0 1,-0.5`.
 ///
 /// A line must have two numbers, with or without quotes, that are separated by a comma, a semicolon, blanks or a tab. Lines
-/// without a number before the first point are headings, `#` begins a comment, and empty lines are skipped. For example, the
-/// lines `x,y`, `0,0` and `1; -0.5 # low` give `0,0 1,-0.5`.
+/// without a number before the first point are headings, `#` begins a comment, and empty lines are skipped.
 ///
 /// # Errors
-/// Fails if the file is no regular file, cannot be read or is not UTF-8, if a line is not two finite numbers, or if the file has
-/// no points. The error is a message and a remedy.
+/// Fails with a message and a remedy if the file is no regular file, cannot be read or is not UTF-8. Also fails if a line is not
+/// two finite numbers, or the file has no points.
 pub(super) fn read(path: &Path) -> Result<String, (String, String)> {
     let name = path.display();
     let text = text(path).map_err(|error| {
@@ -64,9 +63,6 @@ fn has_decimal_commas(line: &str) -> bool {
 
 /// Reads a file in UTF-8, and converts the line ends of any system to newlines. The path must name a regular file, because a
 /// pipe may never end.
-///
-/// # Errors
-/// Fails if the path names no regular file, or if the file cannot be read or is not UTF-8.
 fn text(path: &Path) -> io::Result<String> {
     let refused = |message: String| Err(io::Error::new(io::ErrorKind::InvalidInput, message));
     if !fs::metadata(path)?.is_file() {

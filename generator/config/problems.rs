@@ -1,5 +1,5 @@
-//! Collects the mistakes of a configuration file, each with a remedy, and with its location if the mistake has one. A missing
-//! key has none. The list has at most 200 mistakes; further mistakes are only counted.
+//! Collects the mistakes of a configuration file, each with a remedy, and with its location if it has one. A missing key has
+//! none.
 
 use std::fmt;
 use std::ops::Range;
@@ -11,10 +11,8 @@ use glint_base::config_error::ConfigError;
 
 use super::source::ConfigSource;
 
-/// The mistakes of one configuration file, in the order of their locations. The list has at most 200 mistakes; further mistakes
-/// are only counted.
-///
-/// `Display` shows each mistake with its lines of the file in plain text. [`Problems::to_json`] returns JSON for scripts.
+/// The mistakes of one configuration file, in the order of their locations: at most 200, while further ones are only counted.
+/// `Display` shows each mistake with its lines of the file in plain text.
 #[derive(Clone, Debug, Default)]
 pub struct Problems {
     source: ConfigSource,
@@ -25,28 +23,24 @@ pub struct Problems {
     refused: bool,
 }
 
-/// The name of standard input in messages.
 pub(super) const STANDARD_INPUT: &str = "standard input";
 
-/// The largest number of problems in a list. A file that is no configuration at all could have very many.
+/// A file that is no configuration at all could have very many problems.
 const LIMIT: usize = 200;
 
-/// A mistake in a configuration key, with its location in the file.
+/// A mistake of a key, with its location in the file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Problem {
-    /// The key, the message and the remedy.
     pub error: ConfigError,
-    /// The range of bytes in the file. `None` if the mistake is something that the file does not contain.
+    /// The range of bytes in the file. `None` if the file does not contain what is wrong.
     span: Option<Range<usize>>,
 }
 
 impl Problems {
-    /// Makes an empty list of problems for a file with this name and text.
     pub(super) fn of_file(file: &str, text: &str) -> Self {
         Self::of_source(ConfigSource::new(file, text))
     }
 
-    /// Makes an empty list of problems for a file.
     pub(super) fn of_source(source: ConfigSource) -> Self {
         Problems { source, ..Problems::default() }
     }
@@ -56,15 +50,14 @@ impl Problems {
         &self.source
     }
 
-    /// Adds a mistake of a key. The report shows the location of the key in the file, or only the name of the file if the file
-    /// does not set the key.
+    /// Adds a mistake of a key. The report shows the location of the key, or only the name of the file if the file does not set
+    /// the key.
     pub fn push(&mut self, key: &str, message: impl Into<String>, remedy: impl Into<String>) {
         self.push_error(ConfigError::new(key, message, remedy));
     }
 
-    /// Adds the mistake `error` of a key. If the error concerns some bytes of the key's text, the report marks these bytes,
-    /// provided that the file contains the text literally, in quotes and without escapes. Otherwise the report marks the whole
-    /// value.
+    /// Adds the mistake `error` of a key. If it concerns some bytes of the key's text, the report marks them. The file must
+    /// contain the text literally, in quotes and without escapes. Otherwise it marks the whole value.
     pub fn push_error(&mut self, error: ConfigError) {
         let span = self.source.span_of(&error);
         self.insert(Problem { error, span });
@@ -78,24 +71,21 @@ impl Problems {
         self.insert(Problem { error, span: Some(span) });
     }
 
-    /// Records the location of a key in the file.
     pub(super) fn locate(&mut self, key: &str, span: Range<usize>) {
         self.source.locate(key, span);
     }
 
-    /// Returns whether the configuration file sets the key `key`.
     pub fn gives(&self, key: &str) -> bool {
         self.source.gives(key)
     }
 
-    /// Returns a list for the same file and with the same locations, but without problems. A check can fill this list for a
-    /// trial. [`Problems::is_refused`] gives the same result for both lists.
+    /// Returns a list for the same file and with the same locations, but without problems, which a check can fill for a trial.
+    /// [`Problems::is_refused`] gives the same result for both lists.
     pub(super) fn cleared(&self) -> Self {
         Problems { list: Vec::new(), further: 0, refused: self.is_refused(), ..self.clone() }
     }
 
-    /// Returns whether the file already has a mistake for which Glint must refuse it. A check may then skip work that takes a
-    /// long time.
+    /// Returns whether Glint must already refuse the file. A check may then skip work that takes a long time.
     pub fn is_refused(&self) -> bool {
         self.refused || !self.is_empty()
     }
@@ -107,8 +97,7 @@ impl Problems {
         }
     }
 
-    /// Inserts a problem, unless the list already has the problem. If the list has 200 problems, the problem is only counted. The
-    /// list is sorted by location; problems without a location come last.
+    /// Inserts a problem, unless the list already has it. Problems without a location come last.
     fn insert(&mut self, problem: Problem) {
         if self.list.len() == LIMIT {
             self.further += 1;
@@ -119,17 +108,16 @@ impl Problems {
         }
     }
 
-    /// Returns whether there are no mistakes.
     pub fn is_empty(&self) -> bool {
         self.list.is_empty()
     }
 
-    /// Returns the number of mistakes, including the mistakes that are only counted.
+    /// Returns the number of mistakes, including the ones that are only counted.
     pub fn len(&self) -> usize {
         self.list.len() + self.further
     }
 
-    /// Returns the mistakes in the list, at most 200, in the order of their locations. Mistakes without a location come last.
+    /// Returns the mistakes in the list, in the order of their locations. Mistakes without a location come last.
     pub fn iter(&self) -> impl Iterator<Item = &Problem> {
         self.list.iter()
     }
@@ -139,14 +127,14 @@ impl Problems {
         &self.source.file
     }
 
-    /// Returns the line and the column of a mistake in this list, both counted from 1. Columns count characters. Returns `None`
-    /// if the mistake has no location.
+    /// Returns the line and the column of a mistake in this list, if it has a location. Both are counted from 1, and columns
+    /// count characters.
     pub fn position(&self, problem: &Problem) -> Option<(usize, usize)> {
         self.source.line_and_column(problem.start()?)
     }
 
-    /// Returns a JSON array with one object per problem: `file`, `line` and `column` (null without a location), `key` (null if
-    /// the problem concerns the whole file), `message` and `remedy`. Problems beyond the limit of the list are left out.
+    /// Returns a JSON array with one object per problem in the list: `file`, `line` and `column` (null without a location), `key`
+    /// (null if the problem concerns the whole file), `message` and `remedy`.
     pub fn to_json(&self) -> Json {
         let each = |problem: &Problem| {
             let (line, column) = self.position(problem).unzip();
@@ -163,8 +151,8 @@ impl Problems {
         Json::Array(self.list.iter().map(each).collect())
     }
 
-    /// Returns the report for people, in the style of `renderer`, which also chooses colours. The report ends with the number of
-    /// mistakes that are only counted, if there are any.
+    /// Returns the report for people, in the style and the colours of `renderer`. It ends with the number of mistakes that are
+    /// only counted.
     pub fn render(&self, renderer: &Renderer) -> String {
         let each = |problem: &Problem| {
             let title = Level::ERROR.primary_title(&problem.error.message);
@@ -189,7 +177,7 @@ impl Problems {
 }
 
 impl Problem {
-    /// Returns the problem with the message that `words` makes from its message.
+    /// Replaces the message by the result of `words`.
     pub(super) fn told(self, words: impl FnOnce(&str) -> String) -> Self {
         let message = words(&self.error.message);
         let error = ConfigError { message, ..self.error };
@@ -211,9 +199,8 @@ impl std::error::Error for Problems {}
 
 /// An error of a key's value, before the location of the value is known.
 pub(super) struct Violation {
-    /// The index of the list entry that is wrong; `None` if the error concerns the whole value.
+    /// The list entry that is wrong; `None` if the error concerns the whole value.
     pub entry: Option<usize>,
-    /// The key, the message and the remedy.
     pub error: ConfigError,
 }
 
@@ -221,7 +208,7 @@ pub(super) fn out_of_range(name: &str, given: impl std::fmt::Display) -> String 
     format!("`{name}` = {} is out of range", shown(&given.to_string()))
 }
 
-/// Returns the first 40 characters of a text, followed by `…` if the text is longer.
+/// Cuts a text after 40 characters, and adds `…`.
 pub(super) fn shown(text: &str) -> String {
     const LIMIT: usize = 40;
     match text.char_indices().nth(LIMIT) {
@@ -230,8 +217,8 @@ pub(super) fn shown(text: &str) -> String {
     }
 }
 
-/// Returns a text from a file for a message: in quotes, and with quotes, backslashes and control characters escaped. A text of
-/// more than 40 characters is cut, and ends in `…`.
+/// Quotes a text from a file for a message, with quotes, backslashes and control characters escaped, and cuts it as [`shown`]
+/// does.
 pub(super) fn quoted(text: &str) -> String {
     format!("\"{}\"", shown(&text.escape_debug().to_string()))
 }

@@ -13,22 +13,19 @@ use glint_base::config_error::ConfigError;
 use glint_base::input;
 use glint_base::program::Program;
 
-/// The largest size of a configuration file in bytes. The limit protects against files that would exhaust the memory.
+/// The limit, in bytes, protects against files that would exhaust the memory.
 const LARGEST: u64 = 1 << 16;
 
 /// Reads a configuration file, or standard input if the path is `-`. `schemas` must contain the schemas of all devices.
 ///
 /// # Errors
-/// Fails if the path is a pipe, a device or a directory, or if the file cannot be read, has more than 65,536 bytes, is not
-/// UTF-8, or has a problem that [`parse`](super::parse()) finds. The error lists all problems at once.
+/// Fails with all problems at once. Fails if the path is a pipe, a device or a directory, or if the file cannot be read.
+/// Also fails if the file has more than 65,536 bytes, is not UTF-8, or has a problem that [`parse`](super::parse()) finds.
 pub fn read(path: &Path, schemas: &[Schema]) -> Result<Config, Problems> {
     read_located(path, schemas).map(|(config, _)| config)
 }
 
 /// Reads a file as [`read`] does. Also returns the location of each key in the file, for errors that are found later.
-///
-/// # Errors
-/// Fails as [`read`] does.
 pub fn read_located(path: &Path, schemas: &[Schema]) -> Result<(Config, ConfigSource), Problems> {
     let file_name = if path == Path::new(input::STDIN) {
         STANDARD_INPUT.to_owned()
@@ -61,7 +58,7 @@ pub fn read_located(path: &Path, schemas: &[Schema]) -> Result<(Config, ConfigSo
     }
 }
 
-/// Returns the bytes of a file. Fails with a message and a remedy if the file cannot be read or is too large.
+/// Fails with a message and a remedy if the file cannot be read or is too large.
 fn contents(path: &Path) -> Result<Vec<u8>, (String, String)> {
     let mut bytes = Vec::new();
     let read = input::open(path).and_then(|file| file.take(LARGEST + 1).read_to_end(&mut bytes));
@@ -92,7 +89,7 @@ fn contents(path: &Path) -> Result<Vec<u8>, (String, String)> {
     }
 }
 
-/// Returns the path of the TOML file in the same directory with the most similar name. Returns `None` if no name is similar.
+/// Returns the path of the TOML file in the same directory with the most similar name.
 fn neighbour(path: &Path) -> Option<String> {
     let wanted = path.file_name()?.to_str()?;
     let parent = path.parent()?;

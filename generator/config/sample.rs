@@ -1,4 +1,4 @@
-//! Draws random valid configurations of a device, for tests. The same seed always draws the same configuration.
+//! Draws random valid configurations of a device, for tests.
 
 use glint_base::config_error::ConfigError;
 use rand_chacha::ChaCha8Rng;
@@ -8,23 +8,21 @@ use super::problems::Problems;
 use super::schema::{Key, KeyKind, Schema};
 use super::values::{Config, Value};
 
-/// The number of configurations that are drawn before the search for a valid one fails.
+/// After this number of drawn configurations, the search for a valid one fails.
 const DRAWS: usize = 1000;
-/// The number of times that keys of one drawn configuration are drawn again, because the device's check reports them.
+/// In one configuration, keys that the device's check reports are drawn again this number of times.
 const REPAIRS: usize = 100;
 
-/// Returns a random valid configuration of a device. The same seed gives the same configuration.
+/// Returns a random valid configuration of a device. The same seed always gives the same configuration, with a name such as
+/// `dot_product_7`.
 ///
-/// Integers, numbers, choices, flags and lists of the device are drawn from their ranges. A key with a [`Key::drawn`] range is
-/// drawn from that range. The ends of a range are drawn more often than other values. Texts, tables, keys that do not apply and
-/// the keys that every device shares keep their defaults. If the device refuses a combination, the offending key is drawn again,
-/// so that keys with narrow conditions vary too. `refusal` returns the error of a configuration that the schema accepts and the
-/// device cannot have. The name of the configuration is the device's name, with `_` for `-`, and the
-/// seed. For example, seed 7 of `dot-product` gives the name `dot_product_7`.
+/// Integers, numbers, choices, flags and lists of the device are drawn from their ranges, or from the range of [`Key::drawn`].
+/// The ends are drawn more often than other values. Texts, tables, keys that do not apply and the keys that every device shares
+/// keep their defaults. If the device refuses a combination, the offending key is drawn again, so that keys with narrow
+/// conditions vary too. `refusal` returns the error of a configuration that the schema accepts and the device cannot have.
 ///
 /// # Panics
-/// Panics if the device refuses all 1000 configurations that are drawn. The ranges of a schema must allow enough valid
-/// combinations.
+/// Panics if the device refuses all 1000 configurations that are drawn.
 pub fn sample(
     schema: &Schema,
     seed: u64,
@@ -87,7 +85,7 @@ fn draw(key: &Key, rng: &mut ChaCha8Rng) -> Value {
     }
 }
 
-/// Returns a random integer from `min` to `max`. Each end has a probability of at least 1/8; the rest is uniform.
+/// Each end has a probability of at least 1/8; the rest is uniform.
 fn integer(min: i64, max: i64, rng: &mut ChaCha8Rng) -> i64 {
     match rng.next_u32() % 8 {
         0 => min,

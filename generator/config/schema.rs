@@ -10,63 +10,57 @@ use glint_base::keywords::is_keyword;
 /// The keys of one device, and the conditions between them.
 #[derive(Clone, Debug)]
 pub struct Schema {
-    /// The name of the device, which a configuration has under the key `device`.
+    /// A configuration has this name under the key `device`.
     pub device: &'static str,
-    /// The device's own keys, in the order in which a written file shows them. The keys that every device shares
-    /// ([`super::shared_keys`]) are not among them.
+    /// The device's own keys, in the order in which a written file shows them, without the keys that every device shares
+    /// ([`super::shared_keys`]).
     pub keys: Vec<Key>,
-    /// Checks the conditions between keys. The function gets configurations in which every value is inside its own range, in any
-    /// combination, and must not panic. The function must report each violated condition under the key that the user should
-    /// change.
+    /// Checks the conditions between keys. It gets configurations in which every value is inside its own range, in any
+    /// combination, and must not panic. It must report each violated condition under the key that the user should change.
     pub check: fn(&Config, &mut Problems),
 }
 
 impl Schema {
-    /// Returns the default name of the Verilog module: the name of the device with `_` for `-`. If this name is a Verilog
-    /// keyword, `my_` is added at its front. For example, a device `table` would have the module `my_table`.
+    /// Returns the default name of the Verilog module: the device with `_` for `-`, and with `my_` in front of a Verilog keyword,
+    /// as in `my_table`.
     pub fn module(&self) -> String {
         let name = self.device.replace('-', "_");
         if is_keyword(&name) { format!("my_{name}") } else { name }
     }
 }
 
-/// A configuration key of a device, with its type, range, default and description.
+/// A configuration key of a device.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Key {
-    /// The dotted name, for example `cosine.fraction`. Everything before the last dot is the name of a TOML table.
+    /// The dotted name, for example `cosine.fraction`. Everything before the last dot is a TOML table.
     pub name: &'static str,
-    /// The type and the range of the values.
     pub kind: KeyKind,
-    /// The value that the key has if a file does not set it.
+    /// The value if a file does not set the key.
     pub default: Value,
     /// The meaning of the key, in one or two sentences.
     pub doc: &'static str,
-    /// The condition under which the key applies, or `None` if the key always applies. If the condition does not hold, a file
-    /// may set the key only to its default.
+    /// The condition under which the key applies. If it does not hold, a file may set the key only to its default.
     pub condition: Option<Condition>,
-    /// Whether the key was added when configurations of the device already existed. Such a key is not written while it has its
-    /// default, so that digests of older configurations stay valid.
+    /// Whether configurations of the device existed before the key. Such a key is not written while it has its default, so that
+    /// digests of older configurations stay valid.
     pub joined_later: bool,
     /// The range from which random configurations draw an integer, if larger values would make a configuration too slow to test.
-    /// The default of a key with such a range is never adjusted to other keys. `None` if random configurations draw from the
-    /// whole range.
+    /// The default of such a key is never adjusted to other keys.
     pub drawn: Option<(i64, i64)>,
 }
 
-/// The condition under which a key applies: another key has, or does not have, a certain value.
+/// When a key applies: another key has, or does not have, a certain value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Condition {
-    /// The name of the other key.
     pub key: &'static str,
     /// A value of the other key, without quotes.
     pub value: &'static str,
-    /// Whether the other key must have this value; otherwise it must have a different one.
+    /// Whether the other key must have this value, not a different one.
     pub is_equal: bool,
 }
 
 impl Condition {
-    /// Returns whether the condition holds if the other key has the value `value`. For example, `architecture = "pipelined"`
-    /// holds for the value `pipelined`.
+    /// `architecture = "pipelined"` holds for the value `pipelined`.
     pub fn holds(&self, value: &Value) -> bool {
         (value.bare() == self.value) == self.is_equal
     }
@@ -83,15 +77,13 @@ impl Condition {
     }
 }
 
-/// The type of a key, and the values that it may have.
 #[derive(Clone, Debug, PartialEq)]
 pub enum KeyKind {
     /// An integer between two limits, both included.
     Integer { min: i64, max: i64 },
-    /// A finite number between two limits, both included. If `or_zero` is true, the number may also be 0. A file may write the
-    /// number as an integer.
+    /// A finite number between two limits, both included, or 0 if `or_zero`. A file may write the number as an integer.
     Number { min: f64, max: f64, or_zero: bool },
-    /// One of several texts. A file writes an option that is a decimal integer without quotes, for example `power = 16`.
+    /// One of several texts. A file writes an option that is a decimal integer without quotes, as in `power = 16`.
     Choice(&'static [&'static str]),
     /// `true` or `false`.
     Flag,
@@ -101,15 +93,11 @@ pub enum KeyKind {
     Integers { min: i64, max: i64, len_min: usize, len_max: usize },
     /// A table whose entries have names that the user chooses, such as `operands` of the device `expression`.
     Table {
-        /// The fields that an entry can have. The defaults of these keys are only examples: a field that is not given has no
-        /// value.
+        /// The fields of an entry. The defaults of these keys are only examples: a field that is not given has no value.
         fields: Vec<Key>,
-        /// The field whose value may replace a whole entry, or `None` if an entry must be a table. For example, `s = "x^2"`
-        /// means `s = { formula = "x^2" }`.
+        /// The field whose value may replace a whole entry: `s = "x^2"` means `s = { formula = "x^2" }`.
         shorthand: Option<&'static str>,
-        /// The smallest number of entries.
         least: usize,
-        /// The largest number of entries.
         most: usize,
     },
 }
@@ -119,8 +107,7 @@ impl Key {
         Key { name, kind, default, doc, condition: None, joined_later: false, drawn: None }
     }
 
-    /// Makes a key for an integer in a range. For example, `Key::integer("cosine.fraction", 20, 6..=24, "…")` accepts 6 to 24 and
-    /// has the default 20.
+    /// Makes a key for an integer: `Key::integer("cosine.fraction", 20, 6..=24, "…")` accepts 6 to 24 and has the default 20.
     pub fn integer(
         name: &'static str,
         default: i64,
@@ -131,7 +118,7 @@ impl Key {
         Self::new(name, KeyKind::Integer { min, max }, Value::Integer(default), doc)
     }
 
-    /// Makes a key for a number in a range, both ends included. The default must be in the range.
+    /// Makes a key for a number in a range, both ends included.
     pub fn number(
         name: &'static str,
         default: f64,
@@ -152,8 +139,8 @@ impl Key {
         Self::new(name, KeyKind::Number { min, max, or_zero: true }, Value::Number(0.0), doc)
     }
 
-    /// Makes a key whose value is one of several texts. The default must be one of these texts. If all texts are decimal
-    /// integers, such as `["2", "4"]`, a file must write an integer, and [`Config::integer`] returns this integer.
+    /// Makes a key whose value is one of several texts. If all texts are decimal integers, such as `["2", "4"]`, a file must
+    /// write an integer, and [`Config::integer`] returns it.
     pub fn choice(
         name: &'static str,
         default: &'static str,
@@ -164,12 +151,11 @@ impl Key {
         Self::new(name, KeyKind::Choice(options), default, doc)
     }
 
-    /// Makes a key whose value is `true` or `false`.
     pub fn flag(name: &'static str, default: bool, doc: &'static str) -> Self {
         Self::new(name, KeyKind::Flag, Value::Flag(default), doc)
     }
 
-    /// Makes a key for a text that matches a pattern. The default must match it.
+    /// Makes a key for a text that matches a pattern, as the default must.
     pub fn text(
         name: &'static str,
         default: &'static str,
@@ -193,9 +179,9 @@ impl Key {
         Self::new(name, kind, Value::Integers(default.to_vec()), doc)
     }
 
-    /// Makes a key for a table whose entries the user names. For example, the table `operands` may have an entry `x`, whose
-    /// fields are the keys in `fields`. The number of entries must be in `entries`. `shorthand` names a field whose value may
-    /// replace a whole entry.
+    /// Makes a key for a table whose entries the user names: the table `operands` may have an entry `x`, whose fields are the
+    /// keys in `fields`. The number of entries must be in `entries`. `shorthand` names a field whose value may replace a whole
+    /// entry.
     pub fn records(
         name: &'static str,
         default: &[TableEntry],
@@ -209,41 +195,37 @@ impl Key {
         Self::new(name, kind, Value::Table(TableEntries(default.to_vec())), doc)
     }
 
-    /// Restricts the key to configurations in which the key `other` has the value `value`. For example, `pipeline.stages` has
-    /// `only_when("architecture", "pipelined")`.
-    ///
-    /// `value` must be written without quotes, as [`Value::bare`] returns it: `direct`, `true`, `16`.
+    /// Restricts the key to configurations in which the key `other` has the value `value`: `pipeline.stages` has
+    /// `only_when("architecture", "pipelined")`. `value` must be written without quotes, as [`Value::bare`] returns it.
     pub fn only_when(mut self, other: &'static str, value: &'static str) -> Self {
         self.condition = Some(Condition { key: other, value, is_equal: true });
         self
     }
 
-    /// Restricts the key to configurations in which the key `other` has any other value than `value`, written as for
-    /// [`Key::only_when`].
+    /// Restricts the key to configurations in which the key `other` has any other value, written as for [`Key::only_when`].
     pub fn unless(mut self, other: &'static str, value: &'static str) -> Self {
         self.condition = Some(Condition { key: other, value, is_equal: false });
         self
     }
 
-    /// Marks a key that was added to a device after configurations of that device existed. Digests of these configurations then
-    /// do not change.
+    /// Marks a key that was added after configurations of the device existed, whose digests then do not change.
     pub fn joined_later(self) -> Self {
         Self { joined_later: true, ..self }
     }
 
-    /// Sets the range from which random configurations draw the integer, because larger values take long to test. Both ends are
-    /// included. The default of the key is then never adjusted to other keys.
+    /// Sets the range, both ends included, from which random configurations draw the integer, because larger values take long to
+    /// test. The default of the key is then never adjusted to other keys.
     pub fn drawn(self, min: i64, max: i64) -> Self {
         Self { drawn: Some((min, max)), ..self }
     }
 
-    /// Returns the full name of a field in an entry of this table. For example, `operands.x.fraction`.
+    /// Returns the full name of a field, such as `operands.x.fraction`.
     pub fn field_name(&self, entry: &str, field: &str) -> String {
         format!("{}.{entry}.{field}", self.name)
     }
 
-    /// Returns the table and the last part of the key's name, for example `("cosine", "fraction")`. The table is empty for a
-    /// key outside tables. The last part is empty for a key that is itself a table.
+    /// Returns the table and the last part of the key's name, for example `("cosine", "fraction")`. The table is empty for a key
+    /// outside tables, and the last part for a key that is itself a table.
     pub fn table_and_leaf(&self) -> (&'static str, &'static str) {
         if matches!(self.kind, KeyKind::Table { .. }) {
             return (self.name, "");
@@ -253,7 +235,7 @@ impl Key {
 }
 
 impl KeyKind {
-    /// Returns whether this is a choice in which all options are integers. TOML writes them without quotes.
+    /// TOML writes the options of such a choice without quotes.
     pub fn is_integer_choice(&self) -> bool {
         matches!(self, KeyKind::Choice(options) if options.iter().all(|option| is_integer(option)))
     }

@@ -1,6 +1,6 @@
 //! Declares the configuration keys that every device has, including devices that a user adds, except `device`, `name` and
 //! `strict`. These keys choose the architecture of the hardware, its interface and the generated files, not the function that
-//! the hardware computes. For example, `architecture = "pipelined"` asks for a pipeline.
+//! the hardware computes.
 //!
 //! [`Schema::key`] finds these keys like the keys of a device. [`Config::to_toml`](super::Config::to_toml) does not write a
 //! shared key that has its default, so that the digests in older records stay valid.
@@ -11,7 +11,7 @@ use super::schema::{Key, Schema};
 use super::text_pattern::TextPattern;
 use glint_base::target::TIMING_NAMES;
 
-/// Returns the shared keys in the order in which a written file shows them. A file shows them after the keys of the device.
+/// Returns the shared keys in the order in which a written file shows them, after the keys of the device.
 pub fn shared_keys() -> &'static [Key] {
     &KEYS
 }
@@ -27,7 +27,7 @@ static INTERVALS: [&str; 65] = [
 ];
 
 keys! {
-    /// The values of the shared keys in a configuration.
+    /// The values of the shared keys.
     pub struct Shared {
         architecture: String = Key::choice("architecture", "sequential", &["sequential", "pipelined"],
             "sequential: a microprogram on shared arithmetic, which takes several clocks for each point. \
@@ -153,12 +153,12 @@ keys! {
 }
 
 impl Schema {
-    /// Returns the key with this name, one of the device's own keys or of [`shared_keys`]. Returns `None` for an unknown name.
+    /// Returns the key with this name, the device's own or shared.
     pub fn key(&self, name: &str) -> Option<&Key> {
         self.all_keys().find(|key| key.name == name)
     }
 
-    /// Returns the keys of the device, then the keys that every device shares.
+    /// Returns the keys of the device, then the shared ones.
     pub fn all_keys(&self) -> impl Iterator<Item = &Key> {
         self.keys.iter().chain(shared_keys())
     }

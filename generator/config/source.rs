@@ -5,43 +5,38 @@ use std::ops::Range;
 
 use glint_base::config_error::ConfigError;
 
-/// The text of a configuration file, with the locations of the keys that it sets. An error that is found after reading gets its
-/// line and column from here.
+/// The text of a configuration file. An error that is found after reading gets its line and column from here.
 #[derive(Clone, Debug, Default)]
 pub struct ConfigSource {
-    /// The name of the file as the caller gave it, or an empty text.
+    /// The path as the caller gave it, or an empty text.
     pub file: String,
-    /// The text of the file.
     pub text: String,
-    /// The location of each key in the file, as a range of bytes.
+    /// The places of the keys, as ranges of bytes.
     locations: BTreeMap<String, Range<usize>>,
 }
 
 impl ConfigSource {
-    /// Makes the source of a file in which no key is located yet.
+    /// No key is located yet.
     pub(super) fn new(file: &str, text: &str) -> Self {
         Self { file: file.to_owned(), text: text.to_owned(), locations: BTreeMap::new() }
     }
 
-    /// Records the location of a key in the file.
     pub(super) fn locate(&mut self, key: &str, span: Range<usize>) {
         self.locations.insert(key.to_owned(), span);
     }
 
-    /// Returns whether the configuration file sets the key `key`.
     pub fn gives(&self, key: &str) -> bool {
         self.locations.contains_key(key)
     }
 
-    /// Returns the line and the column at which the file sets `key`, both counted from 1. Columns count characters. Returns
-    /// `None` if the file does not set the key.
+    /// Returns the line and the column at which the file sets `key`, if it does. Both are counted from 1, and columns count
+    /// characters.
     pub fn position(&self, key: &str) -> Option<(usize, usize)> {
         self.line_and_column(self.locations.get(key)?.start)
     }
 
-    /// Returns the range of bytes in the file that an error concerns: a part of the key's text if the error concerns only a part
-    /// and the file contains the text literally, in quotes and without escapes, and otherwise the whole value. Returns `None` if
-    /// the file does not set the key.
+    /// Returns the range of bytes in the file that an error concerns, if the file sets the key. It is a part of the key's text,
+    /// if the file has this text in quotes and without escapes, or the whole value.
     pub(super) fn span_of(&self, error: &ConfigError) -> Option<Range<usize>> {
         let whole = self.locations.get(&error.key)?.clone();
         let within = error.place.clone().and_then(|bytes| {

@@ -1,5 +1,5 @@
 //! Finds the key that a user means by a name that no key has, for the remedy of the message. A name can be misspelt, be in the
-//! wrong table, or be another word for a key. For example, `cosine.fracton` means `cosine.fraction`.
+//! wrong table, or be another word for a key.
 
 use super::nearest::{listed, nearest};
 use super::other_words::{self, MeantSetting};
@@ -7,9 +7,8 @@ use super::schema::{Key, Schema};
 use super::shared::shared_keys;
 use super::write::tables;
 
-/// An unknown name of a key or a table.
 pub(super) struct UnknownName {
-    /// The remedy for the message.
+    /// The remedy that the message tells the user.
     pub(super) remedy: String,
     /// The keys that the user may mean. Their intended values are unknown.
     pub(super) meant: Vec<&'static str>,
@@ -68,14 +67,13 @@ impl UnknownName {
     }
 }
 
-/// Returns the question whether the user means one of these settings.
 pub(super) fn suggestion(settings: &[MeantSetting]) -> String {
     let settings: Vec<String> = settings.iter().map(|setting| setting.words()).collect();
     format!("did you mean {}?", settings.join(" or "))
 }
 
 /// Returns the key in `table` whose last part is most similar to `leaf`, or else means the same. With an empty `table`, returns a
-/// key outside tables, or a table if `is_table` is true.
+/// key outside tables, or a table if `is_table`.
 fn similar(schema: &Schema, table: &str, leaf: &str, is_table: bool) -> Option<&'static str> {
     let in_table = || schema.all_keys().filter(|key| key.table_and_leaf().0 == table);
     if table.is_empty() && is_table {
@@ -96,7 +94,7 @@ pub(super) fn common_names() -> impl Iterator<Item = &'static str> {
     super::COMMON.iter().map(|(name, _)| *name)
 }
 
-/// Returns a list of the keys in a table as a remedy. An empty `table` means the keys outside tables.
+/// Returns a remedy. An empty `table` means the keys outside tables.
 pub(super) fn keys_of(schema: &Schema, table: &str) -> String {
     let mut keys: Vec<&str> = schema
         .all_keys()

@@ -1,5 +1,5 @@
-//! Checks the values of a configuration, and builds a [`Config`] from valid values. The checks concern ranges, the conditions
-//! under which keys apply, and the conditions of the device between keys.
+//! Checks ranges, the conditions under which keys apply, and the conditions of the device between keys, and builds a [`Config`]
+//! from valid values.
 
 use std::collections::BTreeSet;
 
@@ -16,7 +16,7 @@ use super::values::{Config, Value, is_integer};
 use glint_base::config_error::ConfigError;
 
 impl Key {
-    /// Returns the mistakes of a value; an empty list if the key accepts the value.
+    /// Returns the mistakes of a value.
     pub(super) fn violations_of(&self, value: &Value) -> Vec<Violation> {
         let name = self.name;
         match (&self.kind, value) {
@@ -89,7 +89,7 @@ impl Key {
         violations.map(|violation| self.named_within(violation, within)).collect()
     }
 
-    /// Returns a violation in which the full name `within` of a field replaces the short name.
+    /// Replaces the short name of a field by its full name `within`.
     pub(super) fn named_within(&self, mut violation: Violation, within: &str) -> Violation {
         let own = format!("`{}`", self.name);
         let message = violation.error.message.replacen(&own, &format!("`{within}`"), 1);
@@ -98,7 +98,7 @@ impl Key {
         violation
     }
 
-    /// Returns the violation of a value whose type does not fit. `found` describes the value, for example `the integer 7`.
+    /// `found` describes the value, for example `the integer 7`.
     pub(super) fn wrong_type(&self, found: &str) -> Violation {
         let wanted = match self.kind {
             KeyKind::Integer { .. } => "an integer",
@@ -115,7 +115,7 @@ impl Key {
         self.violation(format!("`{}` must be {wanted}, not {found}", self.name))
     }
 
-    /// Returns a violation with this message, and with the accepted values of the key as the remedy.
+    /// The remedy names the values that the key accepts.
     pub(super) fn violation(&self, message: String) -> Violation {
         let remedy = format!("give {} (default {})", self.accepts(), self.default.toml());
         Violation { entry: None, error: ConfigError::new(self.name, message, remedy) }
@@ -143,7 +143,7 @@ impl Key {
         }
     }
 
-    /// Returns a description of the values that the key accepts. For example, `an integer from 4 to 30`.
+    /// Returns a description such as `an integer from 4 to 30`.
     pub fn accepts(&self) -> String {
         match &self.kind {
             KeyKind::Integer { min, max } => format!("an integer from {min} to {max}"),
@@ -211,7 +211,7 @@ impl Key {
 }
 
 impl Value {
-    /// Returns type and value for a message. For example, `the integer 7`.
+    /// Returns type and value for a message, such as `the integer 7`.
     fn described(&self) -> String {
         let kind = match self {
             Value::Integer(_) => "integer",
@@ -225,21 +225,21 @@ impl Value {
     }
 }
 
-/// The state of a configuration while its values are read.
+/// A configuration while its values are read.
 pub(super) struct Draft<'a> {
-    /// The values so far. A key has its default if the user gave no value, or a value that is not accepted.
+    /// A key has its default if the user gave no value, or a value that is not accepted.
     pub config: Config,
-    /// The names of the keys that the user gave.
+    /// The keys that the user gave.
     pub given: BTreeSet<&'a str>,
-    /// The names of the given keys whose intended value is unknown, because the given value is wrong.
+    /// The given keys whose intended value is unknown, because the given value is wrong.
     pub doubtful: BTreeSet<&'a str>,
 }
 
-/// Checks the conditions between keys: the conditions of `only_when` and `unless`, the conditions between shared keys, and the
-/// device's own check. The first are reported only for a key that the user gave with another value than its default.
+/// Checks the conditions of `only_when` and `unless`, the conditions between shared keys, and the device's own check. The first
+/// are reported only for a key that the user gave with another value than its default.
 ///
-/// A value that is not accepted is unknown. A condition is reported only if the condition fails for all trial values of the
-/// unknown keys, so that one mistake raises no messages about other keys.
+/// A value that is not accepted is unknown. A condition is reported only if it fails for all trial values of the unknown keys.
+/// One mistake therefore raises no messages about other keys.
 fn check(schema: &Schema, draft: &Draft, problems: &mut Problems) {
     for key in schema.all_keys() {
         let governors = chain(schema, key);
@@ -323,8 +323,7 @@ fn check(schema: &Schema, draft: &Draft, problems: &mut Problems) {
     problems.extend(found);
 }
 
-/// Returns the message about a key that the user did not give. The message begins with the key's value, and says that this value
-/// is the default.
+/// Begins a message about a key that the user did not give with its value, and says that this is the default.
 pub(super) fn of_default(key: &Key, config: &Config, message: &str) -> String {
     let value = config.value(key.name).toml();
     format!("`{}` is not set and has the default {value}: {message}", key.name)
@@ -345,8 +344,8 @@ fn chain(schema: &Schema, key: &Key) -> Vec<Condition> {
     conditions
 }
 
-/// Returns configurations in which trial values replace each unknown value. Each configuration uses the next trial value of every
-/// such key. Without unknown values, the function returns one configuration, the draft itself.
+/// Returns configurations in which trial values replace each unknown value; each uses the next trial value of every such key.
+/// Without unknown values, the draft itself is the only one.
 fn trials(schema: &Schema, draft: &Draft) -> Vec<Config> {
     let stand_ins: Vec<(&str, Vec<Value>)> = schema
         .all_keys()
@@ -366,7 +365,7 @@ fn trials(schema: &Schema, draft: &Draft) -> Vec<Config> {
 }
 
 impl Config {
-    /// Returns the configuration with the module name `name` in which every key has its default.
+    /// Returns a configuration with the module name `name` in which every key has its default.
     pub fn defaults(schema: &Schema, name: &str) -> Self {
         Config {
             name: name.to_owned(),
@@ -376,11 +375,8 @@ impl Config {
         }
     }
 
-    /// Returns the configuration with the given values, and adjusted defaults for all other keys. The same rules apply as to a
-    /// file.
-    ///
-    /// # Errors
-    /// Fails if a file with these values would have problems. The error lists them without locations.
+    /// Returns the configuration with the given values, and adjusted defaults for all other keys. Fails with the problems,
+    /// without locations, that a file with these values would have.
     pub fn from_values(
         schema: &Schema,
         name: &str,
@@ -408,7 +404,7 @@ impl Config {
         draft.finish(schema, problems)
     }
 
-    /// Sets the keys that do not apply to their defaults. For example, `output.registered` applies only to sequential cores, so a
+    /// Sets the keys that do not apply to their defaults: `output.registered` applies only to sequential cores, so a
     /// configuration that has become a pipeline must not keep the value `true`.
     pub fn reset_keys_without_effect(&mut self, schema: &Schema) {
         for key in schema.all_keys() {
@@ -418,8 +414,8 @@ impl Config {
         }
     }
 
-    /// Returns whether the key `key` has an effect, given the values of the other keys. Returns true for a key without a
-    /// condition, and for a key that the schema does not have.
+    /// Returns whether the key has an effect, given the values of the other keys. Keys without a condition, and keys that the
+    /// schema does not have, do.
     pub fn applies(&self, schema: &Schema, key: &str) -> bool {
         match schema.key(key).and_then(|key| key.condition) {
             None => true,
@@ -431,7 +427,7 @@ impl Config {
 }
 
 impl<'a> Draft<'a> {
-    /// Makes a draft in which all keys have their defaults, and no key counts as given.
+    /// All keys have their defaults, and no key counts as given.
     pub(super) fn new(schema: &Schema, name: &str) -> Self {
         Draft {
             config: Config::defaults(schema, name),
@@ -440,7 +436,7 @@ impl<'a> Draft<'a> {
         }
     }
 
-    /// Records that the user gave a key. `value` must be `None` if the given value is not accepted.
+    /// Records that the user gave a key; `value` is `None` if the given value is not accepted.
     pub(super) fn give(&mut self, key: &'a Key, value: Option<Value>) {
         self.given.insert(key.name);
         match value {
@@ -452,16 +448,12 @@ impl<'a> Draft<'a> {
     }
 
     /// Adjusts the defaults of keys that the user left out, and checks the conditions between keys. If a given value is unknown,
-    /// no default is adjusted. Returns the configuration, or all problems if there is any.
-    ///
-    /// # Errors
-    /// Fails if `problems` has a problem already, or if a condition between keys fails.
+    /// no default is adjusted. Fails with all problems, those in `problems` first.
     pub(super) fn finish(
         mut self,
         schema: &Schema,
         mut problems: Problems,
     ) -> Result<Config, Problems> {
-        // If a given value is unknown, no default is adjusted.
         if self.doubtful.is_empty() {
             self.config = follow(schema, &self.config, &self.given);
         }

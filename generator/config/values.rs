@@ -19,7 +19,7 @@ pub enum Value {
     Integer(i64),
     /// A value of [`super::KeyKind::Number`].
     Number(f64),
-    /// A value of [`super::KeyKind::Choice`] and [`super::KeyKind::Text`].
+    /// A value of [`super::KeyKind::Choice`] or [`super::KeyKind::Text`].
     Text(String),
     /// A value of [`super::KeyKind::Flag`].
     Flag(bool),
@@ -30,7 +30,7 @@ pub enum Value {
 }
 
 impl Value {
-    /// Returns the value as text without quotes. [`super::Key::condition`] compares with this text.
+    /// Returns the value as text without quotes, with which [`super::Key::condition`] compares.
     pub fn bare(&self) -> String {
         match self {
             Value::Integer(value) => value.to_string(),
@@ -46,8 +46,8 @@ impl Value {
         }
     }
 
-    /// Returns the value in TOML syntax: like [`Value::bare`], but with quotes around a text that is no integer. For example,
-    /// the text `truncate` becomes `"truncate"`, and the text `16` stays `16`.
+    /// Returns the value in TOML syntax: like [`Value::bare`], but with quotes around a text that is no integer. `truncate`
+    /// becomes `"truncate"`, and `16` stays `16`.
     pub fn toml(&self) -> String {
         match self {
             Value::Text(text) if !is_integer(text) => format!("\"{text}\""),
@@ -56,31 +56,31 @@ impl Value {
     }
 }
 
-/// One entry of a table: the name that the user chose, and the fields that the user gave.
+/// An entry of a table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TableEntry {
-    /// The name of the entry, which the user chose.
+    /// The name that the user chose.
     pub name: String,
-    /// The fields that the user gave: pairs of name and value.
+    /// The fields that the user gave.
     pub fields: Vec<(&'static str, Value)>,
 }
 
-/// The entries of a table, in the order of the file.
+/// The entries have the order of the file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TableEntries(pub Vec<TableEntry>);
 
 impl TableEntry {
-    /// Makes an entry with these fields. For example, `TableEntry::new("x", &[("fraction", Value::Integer(15))])`.
+    /// For example, `TableEntry::new("x", &[("fraction", Value::Integer(15))])`.
     pub fn new(name: &str, fields: &[(&'static str, Value)]) -> Self {
         Self { name: name.to_owned(), fields: fields.to_vec() }
     }
 
-    /// Returns the value of a field, or `None` if the user did not give it.
+    /// Returns the value of a field, if the user gave it.
     pub fn field(&self, name: &str) -> Option<&Value> {
         self.fields.iter().find(|(own, _)| *own == name).map(|(_, value)| value)
     }
 
-    /// Returns the text in a field. Returns `None` if the user did not give the field, or if it is no text.
+    /// Returns the text in a field, if the user gave one.
     pub fn text(&self, name: &str) -> Option<&str> {
         match self.field(name)? {
             Value::Text(text) => Some(text),
@@ -88,8 +88,7 @@ impl TableEntry {
         }
     }
 
-    /// Returns the number of bits in a field. Returns `None` if the user did not give the field, or if the field is no integer of
-    /// 0 or more.
+    /// Returns the number of bits in a field, if the user gave an integer of 0 or more.
     pub fn bits(&self, name: &str) -> Option<u32> {
         match self.field(name)? {
             Value::Integer(value) => u32::try_from(*value).ok(),
@@ -97,8 +96,7 @@ impl TableEntry {
         }
     }
 
-    /// Returns the number in a field. Returns `None` if the user did not give the field, or if its value is no
-    /// [`Value::Number`]; an integer is none.
+    /// Returns the number in a field, if the user gave a [`Value::Number`]; an integer is none.
     pub fn number(&self, name: &str) -> Option<f64> {
         match self.field(name)? {
             Value::Number(value) => Some(*value),
@@ -111,8 +109,8 @@ impl TableEntry {
         self.field(name) == Some(&Value::Flag(true))
     }
 
-    /// Returns the entry in TOML syntax. If the field `shorthand` is the only field, returns only its value. For example, `{
-    /// from = -1, to = 1 }`.
+    /// Returns the entry in TOML syntax, such as `{ from = -1, to = 1 }`. If the field `shorthand` is the only field, returns
+    /// only its value.
     pub(super) fn toml(&self, shorthand: Option<&str>) -> String {
         if let [(name, value)] = self.fields.as_slice()
             && Some(*name) == shorthand
@@ -128,7 +126,7 @@ impl TableEntry {
 }
 
 impl TableEntries {
-    /// Returns the entries as a TOML table on one line. For example, `{ x = { fraction = 15 } }`.
+    /// Returns the entries as a TOML table on one line, such as `{ x = { fraction = 15 } }`.
     pub(super) fn toml(&self) -> String {
         let mut entries = Vec::new();
         for record in &self.0 {
@@ -160,18 +158,17 @@ impl Serialize for TableEntry {
 
 /// The values of all keys of one device. A configuration that [`super::read()`], [`super::parse()`], [`super::sample()`] or
 /// [`Config::from_values`] returns is valid: every value is in the range of its key, and the device accepts the combination.
-/// [`Config::defaults`] and [`Config::set`] do not check these conditions.
+/// [`Config::defaults`] and [`Config::set`] do not check this.
 ///
 /// In a valid configuration, keys that do not apply (see [`super::Key::condition`]) have their defaults.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Config {
-    /// The name of the Verilog module and of its files, a legal Verilog identifier.
+    /// The Verilog module and its files, a legal Verilog identifier.
     pub name: String,
-    /// The name of the device that the configuration is for.
     pub device: String,
     /// Whether Glint must refuse a configuration that violates the accuracy contract, instead of warning about it.
     pub strict: bool,
-    /// The keys with their values, in the order of the schema.
+    /// The values, in the order of the schema.
     pub(super) values: Vec<(&'static str, Value)>,
 }
 
@@ -190,9 +187,6 @@ impl Config {
         }
     }
 
-    /// Returns the value of a key for numbers.
-    ///
-    /// # Panics
     /// Panics as [`Config::integer`] does.
     pub fn number(&self, key: &str) -> f64 {
         match self.value(key) {
@@ -201,9 +195,6 @@ impl Config {
         }
     }
 
-    /// Returns the word of a choice.
-    ///
-    /// # Panics
     /// Panics as [`Config::integer`] does.
     pub fn choice(&self, key: &str) -> &str {
         match self.value(key) {
@@ -212,10 +203,7 @@ impl Config {
         }
     }
 
-    /// Returns the text of a key for texts, or the word of a choice.
-    ///
-    /// # Panics
-    /// Panics as [`Config::integer`] does.
+    /// Returns the text of a key for texts, or the word of a choice. Panics as [`Config::integer`] does.
     pub fn text(&self, key: &str) -> &str {
         match self.value(key) {
             Value::Text(value) => value,
@@ -223,9 +211,6 @@ impl Config {
         }
     }
 
-    /// Returns the value of a key for `true` or `false`.
-    ///
-    /// # Panics
     /// Panics as [`Config::integer`] does.
     pub fn flag(&self, key: &str) -> bool {
         match self.value(key) {
@@ -234,9 +219,6 @@ impl Config {
         }
     }
 
-    /// Returns the value of a key for a list of integers.
-    ///
-    /// # Panics
     /// Panics as [`Config::integer`] does.
     pub fn integers(&self, key: &str) -> &[i64] {
         match self.value(key) {
@@ -245,10 +227,7 @@ impl Config {
         }
     }
 
-    /// Returns the entries of a key for a table.
-    ///
-    /// # Panics
-    /// Panics as [`Config::integer`] does.
+    /// Returns the entries of a key for a table. Panics as [`Config::integer`] does.
     pub fn records(&self, key: &str) -> &TableEntries {
         match self.value(key) {
             Value::Table(records) => records,
@@ -256,16 +235,12 @@ impl Config {
         }
     }
 
-    /// Returns every key with its value: first the keys of the device in the order of its schema, and then the keys that every
-    /// device shares.
+    /// Returns every key with its value: first the keys of the device in the order of its schema, and then the shared keys.
     pub fn values(&self) -> impl Iterator<Item = (&'static str, &Value)> {
         self.values.iter().map(|(name, value)| (*name, value))
     }
 
-    /// Returns the value of a key of any type.
-    ///
-    /// # Panics
-    /// Panics if the device has no such key. The caller must know the keys.
+    /// Returns the value of a key of any type. Panics if the device has no such key.
     pub fn value(&self, key: &str) -> &Value {
         match self.values.iter().find(|(name, _)| *name == key) {
             Some((_, value)) => value,
@@ -273,8 +248,8 @@ impl Config {
         }
     }
 
-    /// Replaces the value of a key. The caller must make sure that the key accepts the value. The function does nothing if the
-    /// device has no such key.
+    /// Replaces the value of a key. The caller must make sure that the key accepts the value. Does nothing if the device has no
+    /// such key.
     pub fn set(&mut self, key: &str, value: Value) {
         if let Some(slot) = self.values.iter_mut().find(|(name, _)| *name == key) {
             slot.1 = value;
@@ -286,7 +261,7 @@ impl Config {
     }
 }
 
-/// Returns whether a text is a 64-bit integer in its usual form. For example, `7` is such an integer, and `007` and `+7` are not.
+/// Returns whether a text is a 64-bit integer in its usual form: `7` is one, and `007` and `+7` are not.
 pub(super) fn is_integer(word: &str) -> bool {
     word.parse::<i64>().is_ok_and(|value| value.to_string() == word)
 }

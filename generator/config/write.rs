@@ -4,23 +4,23 @@ use super::schema::{Key, KeyKind, Schema};
 use super::shared::shared_keys;
 use super::values::{Config, Value};
 
-/// The largest width of a comment line, unless a single word is longer.
+/// Only a single longer word makes a longer comment line.
 const WIDTH: usize = 90;
 
-/// The width to which a line of [`brief`] is padded, so that the remarks begin in the same column.
+/// The remarks of [`brief`] begin in the same column.
 const REMARK_COLUMN: usize = 38;
 
-/// If the first clause of a description and the options of a choice have this many bytes or more together, the remark has only
-/// the options.
+/// If the first clause of a description and the options of a choice are longer together, in bytes, the remark has only the
+/// options.
 const REMARK_WIDTH: usize = 80;
 
-/// Returns the short file that `glint new` prints: one line for each key of the device, with a remark. A key that is a table has
-/// one line for each entry.
+/// Returns the short file that `glint new` prints: one line with a remark for each key of the device, or for each entry of a
+/// table.
 ///
 /// The keys in `given`, `device`, `name` and `architecture` are set, and `strict` if it is true. All other keys are comments that
 /// show their values, so that a default still adjusts to the keys that a user sets (see [`super::parse()`]). Keys that do not
-/// apply are left out. The other keys that every device shares are left out too, unless they are in `given`. `glint new DEVICE
-/// --all` prints the text of [`commented`].
+/// apply, and the other keys that every device shares, are left out unless they are in `given`. `glint new DEVICE --all` prints
+/// the text of [`commented`].
 pub fn brief(schema: &Schema, config: &Config, given: &[String]) -> String {
     let mut text = String::new();
     for (key, value) in common(config) {
@@ -53,13 +53,13 @@ pub fn brief(schema: &Schema, config: &Config, given: &[String]) -> String {
     text
 }
 
-/// Returns `key = value` with the dotted name of the key. For example, `cosine.fraction = 20`.
+/// Returns `key = value`, such as `cosine.fraction = 20`.
 fn assignment(config: &Config, key: &str) -> String {
     format!("{key} = {}", config.value(key).toml())
 }
 
-/// Returns the lines that set a key under the name `name`: one line for each entry of a table, and one line for any other key.
-/// If `name` is empty, the lines are below the heading of the table. For example, `operands.x = { fraction = 15 }`.
+/// Returns the lines that set a key under the name `name`. A table has one for each entry, such as `operands.x = { fraction = 15
+/// }`, and any other key has one. If `name` is empty, the lines are below the heading of the table.
 fn assignments(key: &Key, config: &Config, name: &str) -> Vec<String> {
     let value = config.value(key.name);
     if let (KeyKind::Table { shorthand, .. }, Value::Table(records)) = (&key.kind, value)
@@ -78,9 +78,8 @@ fn assignments(key: &Key, config: &Config, name: &str) -> Vec<String> {
     vec![format!("{name} = {}", value.toml())]
 }
 
-/// Returns the meaning of a key in a few words: the first clause of its description, and the options of a choice. If both are
-/// too long together, the remark is only the list of options. For example, `cosine.fraction` has the remark "Fraction bits of
-/// the cosine operands".
+/// Returns the first clause of a key's description, and the options of a choice. If both are too long together, the remark is
+/// only the list of options.
 fn remark(key: &Key) -> String {
     let ends = [". ", ": ", "; "].map(|mark| key.doc.find(mark).unwrap_or(key.doc.len()));
     let end = ends.into_iter().min().unwrap_or(key.doc.len());
@@ -93,15 +92,14 @@ fn remark(key: &Key) -> String {
     if is_said { format!("{clause}: {values}") } else { values }
 }
 
-/// Returns a line followed by a remark, which is a comment.
 fn remarked(line: &str, remark: &str) -> String {
     format!("{line:REMARK_COLUMN$} # {remark}\n")
 }
 
 /// Returns the file that `glint new --all` prints: every key with its value, its meaning, and the values that it accepts.
 ///
-/// The keys in `given`, `device`, `name` and `strict` are set. All other keys are comments that show their values, including keys
-/// that do not apply. If `# ` is removed from the lines of these keys, the file is read as the same configuration.
+/// The keys in `given`, `device`, `name` and `strict` are set. All other keys are comments, even keys that do not apply. The
+/// user can remove `# ` from these lines, and the file is still read as the same configuration.
 pub fn commented(schema: &Schema, config: &Config, given: &[String]) -> String {
     let mut text = comment(&format!(
         "Glint configuration of the device \"{}\". It shows all keys. A key in a comment has its default, \
@@ -140,15 +138,14 @@ pub fn commented(schema: &Schema, config: &Config, given: &[String]) -> String {
 }
 
 impl Config {
-    /// Returns the configuration as the text of a TOML file, which is read as the same configuration. The file contains every
-    /// key of the device that applies. A key with [`Key::joined_later`](super::Key::joined_later), or a key that every device
-    /// shares, is written only if it differs from its default.
+    /// Returns a TOML file that is read as the same configuration, with every key of the device that applies. A key with
+    /// [`Key::joined_later`](super::Key::joined_later), or a key that every device shares, is written only if it differs from its
+    /// default.
     pub fn to_toml(&self, schema: &Schema) -> String {
         plain(schema, self)
     }
 }
 
-/// Returns the text of [`Config::to_toml`].
 fn plain(schema: &Schema, config: &Config) -> String {
     let mut text = String::new();
     for (key, value) in common(config) {
@@ -173,7 +170,7 @@ fn is_written(schema: &Schema, config: &Config, key: &Key) -> bool {
     config.applies(schema, key.name) && !(is_quiet && *config.value(key.name) == key.default)
 }
 
-/// Returns the keys that every device has, in the order of [`super::COMMON`], with their values in TOML syntax.
+/// Returns the keys of [`super::COMMON`] with their values in TOML syntax.
 fn common(config: &Config) -> [(&'static str, String); 3] {
     [
         ("device", toml::Value::from(config.device.as_str()).to_string()),
@@ -182,7 +179,7 @@ fn common(config: &Config) -> [(&'static str, String); 3] {
     ]
 }
 
-/// Returns the keys by table. The keys outside tables come first, and the tables have the order of the schema.
+/// Returns the keys by table, in the order of the schema. The keys outside tables come first.
 pub(super) fn tables(schema: &Schema) -> Vec<(&'static str, Vec<&Key>)> {
     let mut tables: Vec<(&str, Vec<&Key>)> = vec![("", Vec::new())];
     for key in schema.all_keys() {
@@ -211,7 +208,7 @@ fn comment(text: &str) -> String {
     lines + &line + "\n"
 }
 
-/// Returns a text with a capital letter at its start and a full stop at its end.
+/// Adds a capital letter at the start and a full stop at the end.
 fn sentence(text: &str) -> String {
     let text = text.trim_end_matches('.');
     let mut letters = text.chars();

@@ -1,14 +1,14 @@
-//! Declares the interval arithmetic in which formulas are evaluated. The arithmetic exists for two kinds of numbers: `f64`,
-//! which is fast, and numbers of any precision.
+//! Declares the interval arithmetic in which formulas are evaluated, for `f64`, which is fast, and for numbers of any
+//! precision.
 
 use std::cmp::Ordering;
 
 use super::{Enclosure, Function, Literal};
 
-/// Arithmetic on intervals. Every interval that an operation returns contains the exact result for all numbers in the
-/// intervals of the operands.
+/// Arithmetic on intervals. Every returned interval contains the exact result for all numbers in the operands' intervals.
 ///
-/// An `Err` has a message for the user about the part of the formula that is being computed.
+/// An `Err` has a message for the user about the part of the formula that is being computed. Sums, products, quotients, powers
+/// and functions of precise arithmetic fail if an exponent has too many bits.
 pub(super) trait Arithmetic {
     /// An interval that contains one exact value.
     type Value: Clone;
@@ -21,8 +21,8 @@ pub(super) trait Arithmetic {
 
     fn integer(&self, value: i64) -> Self::Value;
 
-    /// Converts the limits of a constant part, which were computed earlier in `f64`, to an interval. Returns `None` if the
-    /// limits are not precise enough for this arithmetic; the part is then computed again.
+    /// Converts the limits of a constant part, which were computed earlier in `f64`. Returns `None` if they are not precise
+    /// enough for this arithmetic; the part is then computed again.
     fn folded(&self, constant: Enclosure) -> Option<Self::Value>;
 
     fn add(&self, a: &Self::Value, b: &Self::Value) -> Result<Self::Value, String>;
@@ -31,49 +31,42 @@ pub(super) trait Arithmetic {
 
     fn multiply(&self, a: &Self::Value, b: &Self::Value) -> Result<Self::Value, String>;
 
-    /// Returns the interval of a / b. The caller must make sure that the interval `b` does not contain 0. Only precise
-    /// arithmetic can fail: if an exponent has too many bits.
+    /// The caller must make sure that the interval `b` does not contain 0.
     fn divide(&self, a: &Self::Value, b: &Self::Value) -> Result<Self::Value, String>;
 
-    /// Returns the interval of the product of `exponent` factors `a`. `exponent` must be at least 1. Only precise arithmetic
-    /// can fail: if an exponent has too many bits.
+    /// Returns the product of `exponent` factors `a`, at least 1.
     fn repeated_product(&self, a: &Self::Value, exponent: u32) -> Result<Self::Value, String>;
 
-    /// Returns the interval of a to the power of b. The caller must make sure that no number in the interval `a` is below 0.
-    /// Only precise arithmetic can fail: if an exponent has too many bits.
+    /// Returns a to the power of b. The caller must make sure that no number in the interval `a` is below 0.
     fn power(&self, a: &Self::Value, b: &Self::Value) -> Result<Self::Value, String>;
 
-    /// Returns the interval of the values of `function` for `a`. The caller must make sure that the whole interval `a` is
-    /// within the domain of the function. Only precise arithmetic can fail: if an exponent has too many bits.
+    /// Returns the values of `function` for `a`. The caller must make sure that the whole interval `a` is within the domain of
+    /// the function.
     fn function(&self, function: Function, a: &Self::Value) -> Result<Self::Value, String>;
 
     fn minimum(&self, a: &Self::Value, b: &Self::Value) -> Self::Value;
 
     fn maximum(&self, a: &Self::Value, b: &Self::Value) -> Self::Value;
 
-    /// Returns how the lower and the upper end of the interval compare with 0. For example, `(Less, Greater)` means that the
-    /// interval contains 0.
+    /// Returns how the lower and the upper end of the interval compare with 0: `(Less, Greater)` contains 0.
     fn signs(&self, a: &Self::Value) -> (Ordering, Ordering);
 
-    /// Returns the greatest integer that is not above the value. Returns `None` if it is not the same integer for the whole
-    /// interval.
+    /// Returns the greatest integer that is not above the value, if it is the same integer for the whole interval.
     fn floor(&self, a: &Self::Value) -> Option<Self::Value>;
 
-    /// Returns the integer that equals the value. Returns `None` if the value may be no integer, or if its absolute value is
-    /// above `largest`.
+    /// Returns the integer that equals the value, unless the value may be no integer, or its absolute value is above
+    /// `largest`.
     fn known_integer(&self, a: &Self::Value, largest: u32) -> Option<i64>;
 
-    /// Returns an interval that contains both `a` and `b`, for a value that is one of them if it is unknown which. `what` is a
-    /// message about the unknown decision.
-    ///
-    /// Precise arithmetic must decide, and fails with the message `what` instead.
+    /// Returns an interval that contains both `a` and `b`, for a value that is one of them if it is unknown which. Precise
+    /// arithmetic must decide, and fails with the message `what` instead.
     fn either(&self, a: Self::Value, b: Self::Value, what: &str) -> Result<Self::Value, String>;
 
-    /// Returns the interval with ends in `f64`, rounded outwards.
+    /// Rounds the ends outwards to `f64`.
     fn enclosure(&self, a: &Self::Value) -> Enclosure;
 }
 
-/// Intervals of `f64`, which are fast. If a decision is unknown, the interval contains the results of both cases.
+/// Intervals of `f64`. If a decision is unknown, the interval contains the results of both cases.
 pub(super) struct Double;
 
 impl Arithmetic for Double {

@@ -1,4 +1,4 @@
-//! Defines conditions that consist of comparisons, and rewrites them as choices and as single comparisons.
+//! Defines conditions that join comparisons, and rewrites them as choices and as single comparisons.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -6,26 +6,23 @@ use std::sync::Arc;
 use super::literal::Literal;
 use super::{Comparison, Expression, Function, Kind, Operator, TextSpan};
 
-/// A condition: a comparison, or two conditions: both must hold, or at least one.
+/// A comparison, or two conditions, both or at least one of them true.
 #[derive(Clone)]
 pub(super) enum JoinedCondition {
-    /// The comparison holds.
     Is(Comparison),
-    /// Both conditions hold.
     Both(Box<Self>, Box<Self>),
-    /// At least one of the conditions holds.
     Either(Box<Self>, Box<Self>),
 }
 
 impl Comparison {
-    /// Returns the comparison that holds where this one does not. For example, `x > y` gives `y >= x`.
+    /// Returns the comparison that holds where this one does not: `x > y` gives `y >= x`.
     #[must_use]
     pub fn negated(&self) -> Self {
         let Self { left, right, or_equal } = self.clone();
         Self { left: right, right: left, or_equal: !or_equal }
     }
 
-    /// Returns a comparison that holds where this one and `other` hold. For example, `x > 0` and `y > 0` give `min(x, y) > 0`.
+    /// Returns a comparison that holds where this one and `other` hold: `x > 0` and `y > 0` give `min(x, y) > 0`.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
         JoinedCondition::Both(
@@ -37,7 +34,6 @@ impl Comparison {
 }
 
 impl JoinedCondition {
-    /// Returns the condition that holds where this one does not.
     pub(super) fn negated(self) -> Self {
         match self {
             Self::Is(comparison) => Self::Is(comparison.negated()),
@@ -65,7 +61,7 @@ impl JoinedCondition {
         }
     }
 
-    /// Returns a single comparison that holds where the condition holds. For example, `x > 0 and y > 0` gives `min(x, y) > 0`.
+    /// Returns a single comparison that holds where the condition holds: `x > 0 and y > 0` gives `min(x, y) > 0`.
     pub(super) fn comparison(&self) -> Comparison {
         let (first, second, least) = match self {
             Self::Is(comparison) => return comparison.clone(),
@@ -98,7 +94,7 @@ impl JoinedCondition {
     }
 }
 
-/// Returns the left side of a comparison minus the right side.
+/// Returns the left side minus the right side.
 fn difference(comparison: &Comparison) -> Arc<Expression> {
     let Comparison { left, right, .. } = comparison;
     let is_zero = right.rational().is_some_and(|value| value.is_zero());

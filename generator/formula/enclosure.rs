@@ -11,48 +11,47 @@ const SMALL: f64 = 1e-280;
 /// The largest `f64` that is not above π.
 const HALF_TURN: f64 = std::f64::consts::PI;
 
-/// An interval that contains a real number. For example, π lies between two neighbouring `f64` numbers.
+/// An interval that contains a real number: π lies between two neighbouring `f64` numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Enclosure {
-    /// The lower limit of the interval.
+    /// The lower limit.
     pub low: f64,
-    /// The upper limit of the interval.
+    /// The upper limit.
     pub high: f64,
 }
 
 impl Enclosure {
-    /// Returns the interval that contains only `value`, for a number that is known exactly.
+    /// Contains only `value`, for a number that is known exactly.
     pub const fn exactly(value: f64) -> Self {
         Self { low: value, high: value }
     }
 
-    /// Returns the interval from `low` to `high`, both included. `low` must not be above `high`.
+    /// Contains `low` to `high`, both included. `low` must not be above `high`.
     pub const fn between(low: f64, high: f64) -> Self {
         Self { low, high }
     }
 
-    /// Returns the number in the middle between both limits, which must be finite.
+    /// Returns the middle of both limits, which must be finite.
     pub fn middle(self) -> f64 {
         self.low + (self.high - self.low) / 2.0
     }
 
-    /// Returns whether both limits are finite numbers.
     pub fn is_finite(self) -> bool {
         self.low.is_finite() && self.high.is_finite()
     }
 
-    /// Returns whether the interval contains the number `value`, limits included.
+    /// Returns whether the interval contains `value`, limits included.
     pub fn holds(self, value: f64) -> bool {
         (self.low..=self.high).contains(&value)
     }
 
-    /// Returns the smallest interval that contains both intervals. For example, the hull of 0 to 1 and 3 to 4 is 0 to 4.
+    /// Returns the smallest interval that contains both: the hull of 0 to 1 and 3 to 4 is 0 to 4.
     #[must_use]
     pub fn hull(self, other: Self) -> Self {
         Self { low: self.low.min(other.low), high: self.high.max(other.high) }
     }
 
-    /// Makes the interval of a number between `low` and `high`, which were computed with a relative error of at most
+    /// Returns the interval of a number between `low` and `high`, which were computed with a relative error of at most
     /// [`MARGIN`].
     fn near(low: f64, high: f64) -> Self {
         let margin = |value: f64| value.abs() * MARGIN + f64::MIN_POSITIVE;
@@ -61,8 +60,8 @@ impl Enclosure {
         Self { low: low - margin(low), high: high + margin(high) }
     }
 
-    /// Returns the smallest interval that contains the results of `of` at the four combinations of the intervals' limits. The
-    /// interval contains all results if the function is monotone in each operand.
+    /// Returns the hull of the results of `of` at the four combinations of the intervals' limits. It contains all results if
+    /// the function is monotone in each operand.
     fn corners(self, other: Self, of: impl Fn(f64, f64) -> Self) -> Self {
         let first = of(self.low, other.low);
         if self.low == self.high && other.low == other.high {
@@ -73,50 +72,46 @@ impl Enclosure {
         a.hull(b).hull(c.hull(d))
     }
 
-    /// Returns the interval, limited to the values from `least` to `most` that a function can have.
+    /// Limits the interval to the values that a function can have.
     fn within(self, least: f64, most: f64) -> Self {
         Self { low: self.low.clamp(least, most), high: self.high.clamp(least, most) }
     }
 
-    /// Returns the interval of a function of `libm` that never falls.
+    /// The function of `libm` never falls.
     pub(super) fn rising(self, function: fn(f64) -> f64) -> Self {
         let low = function(self.low);
         Self::near(low, if self.low == self.high { low } else { function(self.high) })
     }
 
-    /// Returns the interval of an exponential function, whose values are never below 0. If a value is beyond the range of
-    /// `f64`, the upper end is infinity, and the lower end is at most the largest `f64`.
+    /// The values of an exponential function are never below 0. If one is beyond the range of `f64`, the upper end is
+    /// infinity, and the lower end is at most the largest `f64`.
     pub(super) fn exponential(self, function: fn(f64) -> f64) -> Self {
         let Self { low, high } = self.rising(function);
         Self { low: low.clamp(0.0, f64::MAX), high }
     }
 
-    /// Returns the interval of a logarithm. Its values are not negative for numbers of 1 or more, and not positive for numbers
-    /// up to 1.
+    /// The values of a logarithm are not negative for numbers of 1 or more, and not positive for numbers up to 1.
     pub(super) fn logarithm(self, function: fn(f64) -> f64) -> Self {
         let least = if self.low >= 1.0 { 0.0 } else { f64::NEG_INFINITY };
         let most = if self.high <= 1.0 { 0.0 } else { f64::INFINITY };
         self.rising(function).within(least, most)
     }
 
-    /// Returns the interval of a function that never falls, that is odd, and whose values are never beyond ±`largest`. The
-    /// values have the sign of the argument.
+    /// The function never falls, is odd, and is never beyond ±`largest`. Its values have the sign of the argument.
     pub(super) fn odd_and_rising(self, function: fn(f64) -> f64, largest: f64) -> Self {
         let least = if self.low >= 0.0 { 0.0 } else { -largest };
         let most = if self.high <= 0.0 { 0.0 } else { largest };
         self.rising(function).within(least, most)
     }
 
-    /// Returns the interval of a sine. If the angle is certainly from 0 to π, or from −π to 0, the values have the sign of the
-    /// angle.
+    /// Returns the interval of a sine. If the angle is certainly from 0 to π, or from −π to 0, the values have its sign.
     pub(super) fn sine(self) -> Self {
         let least = if self.low >= 0.0 && self.high <= HALF_TURN { 0.0 } else { -1.0 };
         let most = if self.high <= 0.0 && self.low >= -HALF_TURN { 0.0 } else { 1.0 };
         self.wave(libm::sin).within(least, most)
     }
 
-    /// Returns the interval of a sine or a cosine, from the value in the middle of the interval. Its slope is never steeper
-    /// than 1.
+    /// Returns the interval of a sine or a cosine, from the value in the middle: the slope is never steeper than 1.
     pub(super) fn wave(self, function: fn(f64) -> f64) -> Self {
         let middle = self.middle();
         let reach = ((self.high - middle).max(middle - self.low)).next_up();
@@ -125,7 +120,7 @@ impl Enclosure {
         Self { low: (low - reach).next_down().max(-1.0), high: (high + reach).next_up().min(1.0) }
     }
 
-    /// Returns the interval of the square root. The numbers must not be negative.
+    /// The numbers must not be negative.
     pub(super) fn sqrt(self) -> Self {
         let root = |value: f64| {
             let root = value.sqrt();
@@ -134,7 +129,6 @@ impl Enclosure {
         Self { low: root(self.low).low, high: root(self.high).high }
     }
 
-    /// Returns the interval of the absolute value.
     pub(super) fn abs(self) -> Self {
         if self.low >= 0.0 {
             self
@@ -226,7 +220,7 @@ impl std::ops::Mul for Enclosure {
 impl std::ops::Div for Enclosure {
     type Output = Self;
 
-    /// Returns the interval of the quotients. The interval of the divisor must not contain 0.
+    /// The interval of the divisor must not contain 0.
     fn div(self, other: Self) -> Self {
         self.corners(other, |a, b| {
             if b.is_infinite() {

@@ -1,5 +1,4 @@
-//! Evaluates a formula to an interval that contains its exact value. An evaluation fails for operands at which the formula has
-//! no value.
+//! Evaluates a formula to an interval that contains its exact value.
 
 use std::cmp::Ordering;
 use std::collections::HashMap;
@@ -15,28 +14,25 @@ use super::{Comparison, Enclosure, Expression, Fault, Function, Kind, Operator};
 /// exponents need logarithms.
 const LARGEST_PRODUCT: u32 = 64;
 
-/// The precisions in bits. The precisions are tried one after the other until every comparison and every jump is decided.
+/// The precisions in bits, tried one after the other until every comparison and every jump is decided.
 const PRECISIONS: [usize; 3] = [128, 320, 1024];
 
 impl Expression {
-    /// Evaluates the formula in `f64`, for operands within the given intervals of values. The returned interval includes all
-    /// rounding errors.
-    ///
-    /// If a comparison or a jump such as `floor` is undecided, the interval contains the values on both sides.
+    /// Evaluates the formula in `f64`, for operands within the given intervals, with all rounding errors. If a comparison or a
+    /// jump such as `floor` is undecided, the interval contains the values on both sides.
     ///
     /// # Errors
-    /// Fails at a part that may have no value: a pole, the root of a number that may be negative, an operand that `operands`
-    /// does not have, or a word of a ROM. The error has the location of the part.
+    /// Fails at a part that may have no value: a pole, the root of a possibly negative number, an operand that `operands`
+    /// lacks, or a word of a ROM.
     pub fn enclose(&self, operands: &[(&str, Enclosure)]) -> Result<Enclosure, Fault> {
         self.evaluate(&Double, operands)
     }
 
-    /// Evaluates the formula for exact operands. The function increases the precision until all comparisons and jumps are
-    /// decided, and until the `f64` limits of the result are at most two steps apart. With 1024 bits, it returns also wider
-    /// limits.
+    /// Evaluates the formula for exact operands. The precision increases until all comparisons and jumps are decided, and the
+    /// `f64` limits of the result are at most two steps apart. With 1024 bits, it returns also wider limits.
     ///
-    /// For example, `floor(x * 0.1)` is 3 for x = 30, although 0.1 is no `f64`. The function is about a thousand times slower
-    /// than [`Expression::enclose`].
+    /// For example, `floor(x * 0.1)` is 3 for x = 30, although 0.1 is no `f64`. This is about a thousand times slower than
+    /// [`Expression::enclose`].
     ///
     /// # Errors
     /// Fails as [`Expression::enclose`] does, or if 1024 bits do not decide a comparison or a jump.
@@ -49,14 +45,12 @@ impl Expression {
         Ok(precise.enclosure(&value))
     }
 
-    /// Returns the smallest integer that is not below the value times 2^`fraction`, and whether both are equal. The formula
-    /// must have no operands.
-    ///
-    /// For example, `0.3` with two fraction bits gives (2, false), and `log2(16)` with none gives (4, true).
+    /// Returns the smallest integer that is not below the value times 2^`fraction`, and whether both are equal. `0.3` with two
+    /// fraction bits gives (2, false), and `log2(16)` with none gives (4, true). The formula must have no operands.
     ///
     /// # Errors
-    /// Fails as [`Expression::evaluate_exactly`] does, or if 1024 bits do not show whether the value is an integer, or if the
-    /// integer has more than 127 bits.
+    /// Fails as [`Expression::evaluate_exactly`] does. Also fails if 1024 bits do not show whether the value is an integer, or
+    /// if the integer has more than 127 bits.
     pub fn ceiling(&self, fraction: u32) -> Result<(i128, bool), Fault> {
         let (precise, value) =
             self.decided(&[], |precise, value| precise.ceiling(value, fraction).is_some())?;
@@ -67,15 +61,15 @@ impl Expression {
         })
     }
 
-    /// Returns the value of a formula without operands, if it is rational and known to be so. Returns `None` otherwise, or if
-    /// the formula has no value. For example, `log2(16)` gives 4, and `sqrt(2)` gives `None`.
+    /// Returns the value of a formula without operands, if it is known to be rational: `log2(16)` gives 4, and `sqrt(2)` gives
+    /// `None`.
     pub fn rational(&self) -> Option<RBig> {
         let (_, value) = self.decided(&[], |_, _| true).ok()?;
         value.rational().cloned()
     }
 
-    /// Evaluates the formula with increasing precision until `enough` returns true for the value. Returns the last result, even
-    /// if it is not enough. Fails at the first part without a value, or if 1024 bits do not decide a comparison or a jump.
+    /// Evaluates the formula with increasing precision until `enough` returns true for the value, or returns the last result.
+    /// Fails at the first part without a value, or if 1024 bits do not decide a comparison or a jump.
     fn decided(
         &self,
         operands: &[(&str, RBig)],
@@ -108,7 +102,6 @@ impl Expression {
 /// A formula with fewer parts is evaluated without a look at the parts that were evaluated before, which is faster.
 pub(super) const FEW_PARTS: u32 = 200;
 
-/// The evaluation of a formula for given operands.
 struct Evaluation<'e, A: Arithmetic> {
     arithmetic: &'e A,
     operands: &'e [(&'e str, A::Value)],
@@ -180,12 +173,8 @@ impl<A: Arithmetic> Evaluation<'_, A> {
 }
 
 impl Comparison {
-    /// Returns whether the comparison holds for all operands within the given intervals. Returns `None` if it holds for some of
-    /// them only, or if the intervals do not decide it. For example, for x from 0 to 1, `x < 2` holds, and `x < 0.5` is
-    /// undecided.
-    ///
-    /// # Errors
-    /// Fails as [`Expression::enclose`] does.
+    /// Returns whether the comparison holds for all operands within the given intervals, or `None` if they do not decide it.
+    /// For x from 0 to 1, `x < 2` holds, and `x < 0.5` is undecided. Fails as [`Expression::enclose`] does.
     pub fn holds(&self, operands: &[(&str, Enclosure)]) -> Result<Option<bool>, Fault> {
         let left = self.left.enclose(operands)?;
         let right = self.right.enclose(operands)?;
@@ -213,8 +202,8 @@ impl Comparison {
     }
 }
 
-/// Returns the interval of the values of a function for a number in the interval `a`. Fails if the number may be outside the
-/// function's domain, for example a root of a negative number.
+/// Returns the values of a function for numbers in the interval `a`. Fails if they may be outside the function's domain, for
+/// example a root of a negative number.
 pub(super) fn unary<A: Arithmetic>(
     arithmetic: &A,
     function: Function,
@@ -246,8 +235,8 @@ pub(super) fn unary<A: Arithmetic>(
     arithmetic.function(function, a)
 }
 
-/// Returns the interval of the values of `operator` for numbers in the intervals `a` and `b`. Fails if the numbers may be
-/// outside the domain, for example a division by an interval that contains 0.
+/// Returns the values of `operator` for numbers in the intervals `a` and `b`. Fails if they may be outside the domain, for
+/// example a division by an interval that contains 0.
 pub(super) fn binary<A: Arithmetic>(
     arithmetic: &A,
     operator: Operator,
@@ -270,8 +259,8 @@ pub(super) fn binary<A: Arithmetic>(
     }
 }
 
-/// Computes the remainder of a division, which is from 0 to below the divisor, or above it for a negative divisor. For example,
-/// the remainder of −1 by 4 is 3. Fails if the divisor may be 0, or if precise arithmetic does not decide the integer quotient.
+/// Computes the remainder of a division, from 0 to below the divisor, or above it for a negative divisor: the remainder of −1
+/// by 4 is 3. Fails if the divisor may be 0, or if precise arithmetic does not decide the integer quotient.
 fn remainder<A: Arithmetic>(
     arithmetic: &A,
     a: &A::Value,
@@ -310,8 +299,7 @@ fn power<A: Arithmetic>(arithmetic: &A, a: &A::Value, b: &A::Value) -> Result<A:
     arithmetic.power(a, b)
 }
 
-/// Computes the direction of the point (x, y), an angle from −π to π. For example, the direction of (0, 1) is π/2. Fails for
-/// the origin.
+/// Computes the direction of the point (x, y), an angle from −π to π: (0, 1) has π/2. Fails for the origin.
 ///
 /// The function uses a formula whose divisor is certainly not 0. Right of the y axis, this is `atan(y / x)`, and left of it the
 /// same plus or minus half a turn. Above or below the x axis, it is plus or minus a quarter turn, minus `atan(x / y)`.
@@ -363,7 +351,7 @@ fn words(a: Enclosure) -> String {
     }
 }
 
-/// Returns a number as text, with a power of ten if it is very large or very small.
+/// Writes a very large or very small number with a power of ten.
 fn digits(value: f64) -> String {
     let is_moderate = value == 0.0 || (1e-6..1e9).contains(&value.abs());
     if is_moderate { format!("{value}") } else { format!("{value:e}") }

@@ -1,8 +1,8 @@
 //! Computes formulas without rounding if their values are rational numbers, multiples of π, or logarithms of rational numbers.
 //!
-//! For example, `0.1 * 10` is 1, `16 ^ (1 / 2)` is 4, and `sin(pi * 0.5)` is 1, which floating-point arithmetic cannot show.
-//! Intervals alone cannot decide on which side of a jump a value counts if it lies exactly on the jump. For example, the floor of
-//! `0.1 * 10` is 1, but an interval around `0.1 * 10` also contains values below 1, whose floor is 0. The exact value decides it.
+//! For example, `0.1 * 10` is 1, `16 ^ (1 / 2)` is 4, and `sin(pi * 0.5)` is 1. Intervals alone cannot decide on which side of a
+//! jump a value counts if it lies exactly on the jump. An interval around `0.1 * 10` also contains values below 1, with the floor
+//! 0. The exact value decides it.
 
 use dashu_base::{Abs, BitTest, Signed, SquareRootRem};
 use dashu_int::{IBig, UBig};
@@ -10,17 +10,14 @@ use dashu_ratio::RBig;
 
 use super::{Function, Operator};
 
-/// The largest number of bits that a numerator and a denominator may have together. A larger value is treated as not exactly
-/// known.
+/// The most bits of numerator and denominator together. A larger value is treated as not exactly known.
 const MOST_BITS: usize = 1 << 14;
 
 /// If a logarithm is divided by another logarithm, only exponents below this number are tried.
 const LARGEST_LOGARITHM: usize = 1100;
 
-/// A value that is known exactly.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Exact {
-    /// A rational number.
     Rational(RBig),
     /// A rational number other than 0, times π.
     TimesPi(RBig),
@@ -31,25 +28,22 @@ pub(super) enum Exact {
 use Exact::{LogarithmOf, Rational, TimesPi};
 
 impl Exact {
-    /// Returns an integer as an exact value.
     pub(super) fn integer(value: i64) -> Self {
         Rational(value.into())
     }
 
-    /// Returns a rational number as an exact value; `None` if it has more than [`MOST_BITS`] bits.
+    /// Returns `None` if the number has more than [`MOST_BITS`] bits.
     fn rational(value: RBig) -> Option<Self> {
         let bits = value.numerator().bit_len() + value.denominator().bit_len();
         (bits <= MOST_BITS).then_some(Rational(value))
     }
 
-    /// Returns `factor` times π as an exact value.
     fn times_pi(factor: RBig) -> Self {
         if factor.is_zero() { Rational(factor) } else { TimesPi(factor) }
     }
 
-    /// Returns the exact value of a function. Returns `None` if the value is not known to be exact.
-    ///
-    /// The sine, cosine and tangent are exact only at rational multiples of π where they are rational (Niven's theorem).
+    /// Returns the exact value of a function, if it is known. The sine, cosine and tangent are exact only at rational multiples
+    /// of π where they are rational (Niven's theorem).
     pub(super) fn function(&self, function: Function) -> Option<Self> {
         match (function, self) {
             (Function::Negate, Rational(a)) => Some(Rational(-a.clone())),
@@ -79,7 +73,7 @@ impl Exact {
         }
     }
 
-    /// Returns the rational factor of π; 0 for the number 0. Returns `None` if the value is no rational multiple of π.
+    /// Returns the rational factor of π, if there is one; 0 for the number 0.
     fn turns(&self) -> Option<RBig> {
         match self {
             TimesPi(a) => Some(a.clone()),
@@ -88,7 +82,7 @@ impl Exact {
         }
     }
 
-    /// Returns the exact value of a function of two numbers. Returns `None` if the value is not known to be exact.
+    /// Returns the exact value of a function of two numbers, if it is known.
     pub(super) fn operator(operator: Operator, a: &Self, b: &Self) -> Option<Self> {
         match operator {
             Operator::Add => a.add(b),
@@ -164,8 +158,8 @@ impl Exact {
     }
 }
 
-/// Returns the root of a number if the root is rational, and `None` otherwise. A negative number has a root only if `degree` is
-/// 1. A degree above [`MOST_BITS`] gives `None` too. For example, the root of degree 3 of 8/27 is 2/3.
+/// Returns the root of a number if it is rational: the root of degree 3 of 8/27 is 2/3. A negative number has a root only if
+/// `degree` is 1. A degree above [`MOST_BITS`] gives `None` too.
 fn root(value: &RBig, degree: usize) -> Option<RBig> {
     if degree == 1 {
         return Some(value.clone());
@@ -186,8 +180,8 @@ fn root(value: &RBig, degree: usize) -> Option<RBig> {
     Some(RBig::from_parts(IBig::from(numerator), denominator))
 }
 
-/// Returns the integer k with baseᵏ = value. Returns `None` if there is no such integer from −1099 to 1099, or if the base is
-/// 1. Both numbers must be above 0. For example, the value 1/8 and the base 2 give −3.
+/// Returns the integer k from −1099 to 1099 with baseᵏ = value, if there is one: −3 for the value 1/8 and the base 2. Both
+/// numbers must be above 0; a base of 1 gives `None`.
 fn logarithm(value: &RBig, base: &RBig) -> Option<isize> {
     if base.is_one() {
         return None;
@@ -208,7 +202,7 @@ fn logarithm(value: &RBig, base: &RBig) -> Option<isize> {
     None
 }
 
-/// Returns the sine of `turns` · π if it is 0, ±1/2 or ±1, and `None` otherwise.
+/// Returns the sine of `turns` · π if it is 0, ±1/2 or ±1.
 fn sine(turns: &RBig) -> Option<Exact> {
     // The angle in sixths of π, modulo a whole turn.
     let sixths = turns * RBig::from(6);
@@ -227,7 +221,7 @@ fn sine(turns: &RBig) -> Option<Exact> {
     Some(Rational(RBig::from(doubled) / RBig::from(2)))
 }
 
-/// Returns the tangent of `turns` · π if it is 0 or ±1, and `None` otherwise.
+/// Returns the tangent of `turns` · π if it is 0 or ±1.
 fn tangent(turns: &RBig) -> Option<Exact> {
     let fourths = turns * RBig::from(4);
     if !fourths.is_int() {

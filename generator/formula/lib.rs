@@ -1,9 +1,9 @@
 //! Parses formulas such as `1 / sqrt(x)` to trees, evaluates the trees with interval arithmetic, and prints them as Python and
 //! C.
 //!
-//! The formulas come from configurations and from accuracy contracts; another example is `max(x, 0) if x > 1 else 2 ** -x`. An
-//! evaluation gives an interval that contains the exact value, or fails if there is no value. Each node of a tree knows its
-//! range of bytes in the text, so that a message can point at a mistake.
+//! The formulas come from configurations and from accuracy contracts, such as `max(x, 0) if x > 1 else 2 ** -x`. An evaluation
+//! gives an interval that contains the exact value, or fails if there is no value. Each node of a tree knows its range of bytes
+//! in the text, so that a message can point at a mistake.
 
 mod arithmetic;
 mod condition;
@@ -30,32 +30,30 @@ pub use literal::Literal;
 pub use parse::{FUNCTIONS, parse, parse_condition};
 pub use print::CArithmetic;
 
-/// A formula, or a part of a formula, as a tree. Two formulas are equal if their kinds are equal, even if they have different
-/// locations.
+/// A formula, or a part of one, as a tree. Two formulas are equal if their kinds are equal, even at different locations.
 ///
-/// Several operations may read the same part. For example, with `p = x + 1`, both factors of `p * p` are one part. Methods visit
-/// such a part only once, so that their cost grows with the number of different parts.
+/// Several operations may read the same part: with `p = x + 1`, both factors of `p * p` are one part. Methods visit such a part
+/// only once, so that their cost grows with the number of different parts.
 #[derive(Clone)]
 pub struct Expression {
-    /// The operation, the operand or the number at the root of the tree. For example, the root of `1 / x` is a division.
+    /// The root of the tree: of `1 / x` a division.
     pub kind: Kind,
     /// The location in the text from which this part was parsed; empty if it comes from no text.
     pub span: TextSpan,
-    /// A number that is equal for equal formulas, and nearly always different for different ones.
+    /// The hash is equal for equal formulas, and nearly always different for different ones.
     hash: u64,
     /// The number of parts, where a part that several operations read counts once for each. At most `u32::MAX`.
     size: u32,
     /// Whether the formula reads an operand.
     varies: bool,
-    /// The value, if the part contains no operand and no word of a ROM, and has a value. The value is computed only once,
-    /// because formulas are evaluated at millions of operands.
+    /// The value, if the part contains no operand and no word of a ROM, and has a value. It is computed only once, because
+    /// formulas are evaluated at millions of operands.
     constant: Option<Enclosure>,
 }
 
-/// A location in the texts of a formula.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct TextSpan {
-    /// The number of the text: 0 for the formula itself. A caller that puts formulas together numbers the other texts.
+    /// The number of the text, 0 for the formula itself. A caller that puts formulas together numbers the other texts.
     pub text: usize,
     /// The range of bytes in this text.
     pub bytes: Range<usize>,
@@ -67,16 +65,15 @@ impl From<Range<usize>> for TextSpan {
     }
 }
 
-/// The kinds of parts of a formula, such as a number, an operand or an operation.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Kind {
-    /// A number, exactly as the text states it.
+    /// A number exactly as the text states it.
     Number(Literal),
-    /// A named constant such as `pi`, with the largest `f64` that is not above its value.
+    /// A constant such as `pi`, with the largest `f64` that is not above its value.
     Constant(&'static str, f64),
-    /// An operand, by its name. Its value is a real number, not a raw integer.
+    /// An operand, whose value is a real number, not a raw integer.
     Operand(String),
-    /// A word of a ROM as a real number. The fields are the name of the ROM, and the formula for the index of the word.
+    /// A word of a ROM as a real number: the name of the ROM, and the index of the word.
     Word(String, Arc<Expression>),
     /// A function of one number.
     Unary(Function, Arc<Expression>),
@@ -86,12 +83,10 @@ pub enum Kind {
     If(Comparison, Arc<Expression>, Arc<Expression>),
 }
 
-/// A comparison: whether the left number is larger than the right number.
+/// Whether the left number is larger than the right one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
-    /// The number on the left of `>`.
     pub left: Arc<Expression>,
-    /// The number on the right of `>`.
     pub right: Arc<Expression>,
     /// Whether the comparison also holds for equal numbers (`>=`).
     pub or_equal: bool,
@@ -124,8 +119,7 @@ pub enum Operator {
     Sub,
     Mul,
     Div,
-    /// The remainder of the first number divided by the second. The remainder lies between 0 and the second number. For
-    /// example, −1 and 4 give 3.
+    /// The remainder, which lies between 0 and the second number: −1 and 4 give 3.
     Mod,
     Power,
     Min,
@@ -134,12 +128,11 @@ pub enum Operator {
     Atan2,
 }
 
-/// A mistake in a formula, with its location in the text.
+/// A mistake in a formula.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fault {
-    /// The location of the part that is wrong.
     pub span: TextSpan,
-    /// The description of the mistake, for the user.
+    /// A message for the user.
     pub message: String,
 }
 
@@ -156,8 +149,7 @@ impl Fault {
         Self { span: span.into(), message: message.into() }
     }
 
-    /// Returns the text on one line, and on the next line carets under the mistake and the message. For example, in `sqrt(y)`
-    /// the operand y has the mistake "there is no `y`: the operand is `x`", and a caret is under the y.
+    /// Returns the text on one line, and on the next line carets under the mistake and the message.
     pub fn under(&self, text: &str) -> String {
         let count = |range: Range<usize>| text.get(range).map_or(0, |it| it.chars().count());
         let bytes = self.span.bytes.clone();
@@ -167,8 +159,7 @@ impl Fault {
     }
 }
 
-/// The text is the formula in Python if it has few parts. A formula of many parts, which may be shared, is not written out; its
-/// hash stands for it.
+/// Writes out a formula of few parts in Python. A formula of many parts, which may be shared, is represented by its hash.
 impl fmt::Debug for Expression {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         const MOST_PARTS: u32 = 1000;
@@ -186,13 +177,12 @@ impl PartialEq for Expression {
 }
 
 impl Expression {
-    /// Makes the formula that consists only of the operand `name`. Its location is empty.
+    /// Makes the formula that consists only of the operand `name`.
     pub fn operand(name: &str) -> Self {
         Self::new(Kind::Operand(name.to_owned()), 0..0)
     }
 
-    /// Makes a formula of this kind, which was parsed from the location `span` of a text. The function also computes the value
-    /// of a constant formula.
+    /// Makes a formula that was parsed from the location `span` of a text, and computes the value of a constant one.
     pub fn new(kind: Kind, span: impl Into<TextSpan>) -> Self {
         let varies = matches!(kind, Kind::Operand(_));
         let mut formula =
@@ -214,19 +204,18 @@ impl Expression {
         formula
     }
 
-    /// Returns the number of parts of the formula as a text would state it: a part that several operations read counts once for
-    /// each. The result is at most `u32::MAX`. For example, `x * x + 1` has five parts.
+    /// Returns the number of parts as a text would state them: a part that several operations read counts once for each. The
+    /// result is at most `u32::MAX`. `x * x + 1` has five parts.
     pub fn size(&self) -> u32 {
         self.size
     }
 
-    /// Returns whether the formula reads an operand. For example, `sqrt(2)` reads none.
+    /// Returns whether the formula reads an operand.
     pub fn varies(&self) -> bool {
         self.varies
     }
 
-    /// Returns the formulas directly below the root of the tree, in the order of the text. A number, a constant or an operand
-    /// has none.
+    /// Returns the formulas directly below the root of the tree, in the order of the text.
     pub fn parts(&self) -> Vec<&Self> {
         match &self.kind {
             Kind::Number(..) | Kind::Constant(..) | Kind::Operand(_) => Vec::new(),
@@ -236,8 +225,7 @@ impl Expression {
         }
     }
 
-    /// Calls `visit` for every part of the formula and then for the formula itself, each part before the operations that use it.
-    /// A part that several operations share is visited once.
+    /// Calls `visit` once for every part and then for the formula itself, each part before the operations that use it.
     pub fn walk<'f>(&'f self, visit: &mut dyn FnMut(&'f Self)) {
         self.walk_unseen(&mut HashSet::new(), visit);
     }
@@ -252,11 +240,8 @@ impl Expression {
         visit(self);
     }
 
-    /// Returns the `f64` from which a decimal of 17 or more significant digits was printed, with its sign. Returns `None` for
-    /// any other formula.
-    ///
-    /// For example, NumPy's `savetxt` prints 1 − 2^−20 as `9.999990463256835938e-01`, which is the nearest decimal of 19
-    /// digits.
+    /// Returns the `f64` from which a decimal of 17 or more significant digits was printed, with its sign, if the formula is one.
+    /// For example, NumPy's `savetxt` prints 1 − 2^−20 as `9.999990463256835938e-01`, the nearest decimal of 19 digits.
     pub fn printed_double(&self) -> Option<f64> {
         match &self.kind {
             Kind::Number(literal) if literal.significant_digits() >= 17 => Some(literal.nearest()),
@@ -265,19 +250,14 @@ impl Expression {
         }
     }
 
-    /// Returns the number of parts for which `is` returns true. The formula itself is also a part. A part that several operations
-    /// share counts once.
+    /// Returns the number of different parts for which `is` returns true, among them the formula itself.
     pub fn count(&self, is: &dyn Fn(&Self) -> bool) -> usize {
         let mut count = 0;
         self.walk(&mut |part| count += usize::from(is(part)));
         count
     }
 
-    /// Returns the formula unchanged if it has no operand except `operand` and no words of ROMs. A formula without operands is
-    /// accepted too.
-    ///
-    /// # Errors
-    /// Fails at the first other operand or word of a ROM. The error has its location.
+    /// Returns the formula unchanged. Fails at the first operand other than `operand`, or word of a ROM.
     pub fn of_operand(self, operand: &str) -> Result<Self, Fault> {
         let mut fault = None;
         self.walk(&mut |part| {
@@ -291,8 +271,7 @@ impl Expression {
         fault.map_or(Ok(self), Err)
     }
 
-    /// Returns the names of the operands that the formula reads, each once, in the order in which they first occur. For
-    /// example, `y / (x + y)` gives y and x.
+    /// Returns the names of the operands, each once, in the order in which they first occur: `y / (x + y)` gives y and x.
     pub fn operands(&self) -> Vec<&str> {
         let mut names: Vec<&str> = Vec::new();
         self.walk(&mut |part| {
@@ -305,13 +284,12 @@ impl Expression {
         names
     }
 
-    /// Returns whether `is` returns true for the kind of some part of the formula. The formula itself is also a part.
+    /// Returns whether `is` returns true for the kind of some part, or of the formula itself.
     pub fn has(&self, is: &dyn Fn(&Kind) -> bool) -> bool {
         self.count(&|part| is(&part.kind)) > 0
     }
 
-    /// Returns the formula with operands replaced by formulas. `replacement` returns the formula for the name of an operand, or
-    /// `None` for an operand that stays. All parts keep their locations.
+    /// Replaces operands by formulas. `replacement` returns `None` for an operand that stays. All parts keep their locations.
     pub fn with_operands(&self, replacement: &dyn Fn(&str) -> Option<Arc<Self>>) -> Self {
         let replaced = |part: &Self| match &part.kind {
             Kind::Operand(name) => replacement(name),
@@ -321,13 +299,13 @@ impl Expression {
         Arc::unwrap_or_clone(Rewriting::new(&replaced, &span).of(self))
     }
 
-    /// Returns the formula in which all parts lie in text number `text`, at the same ranges of bytes.
+    /// Moves all parts to text number `text`, at the same ranges of bytes.
     pub fn in_text(&self, text: usize) -> Self {
         let span = |part: &Self| TextSpan { text, bytes: part.span.bytes.clone() };
         Arc::unwrap_or_clone(Rewriting::new(&|_| None, &span).of(self))
     }
 
-    /// Returns the formula in which every part that equals `old` is replaced by `new`. All other parts get the location `call`.
+    /// Replaces every part that equals `old` by `new`. All other parts get the location `call`.
     pub fn substitute(&self, old: &Self, new: &Self, call: &TextSpan) -> Self {
         let new = Arc::new(new.clone());
         let replaced = |part: &Self| (part == old).then(|| new.clone());
@@ -336,8 +314,7 @@ impl Expression {
     }
 }
 
-/// A rule that replaces parts of a formula, with the parts that were already rewritten. A part that several operations share
-/// stays shared.
+/// Replaces parts of a formula. A part that several operations share stays shared.
 struct Rewriting<'r> {
     /// Returns the formula that replaces a part; `None` if the part stays and only its own parts are rewritten.
     replaced: &'r dyn Fn(&Expression) -> Option<Arc<Expression>>,
@@ -385,7 +362,7 @@ impl Kind {
         }
     }
 
-    /// Returns the kind with its direct parts replaced. `new` returns the replacement of a part.
+    /// Replaces the direct parts by `new`.
     fn with_parts(&self, new: &mut dyn FnMut(&Expression) -> Arc<Expression>) -> Self {
         match self {
             Self::Word(rom, at) => Self::Word(rom.clone(), new(at)),

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::condition::JoinedCondition;
 use super::{Comparison, Expression, Fault, Function, Kind, Literal, Operator, TextSpan};
 
-/// The functions of one number that a formula may call, with their names.
+/// The functions of one number that a formula may call.
 pub const FUNCTIONS: [(&str, Function); 13] = [
     ("abs", Function::Abs),
     ("sqrt", Function::Sqrt),
@@ -24,8 +24,7 @@ pub const FUNCTIONS: [(&str, Function); 13] = [
     ("erf", Function::Erf),
 ];
 
-/// Functions of one number u that are combinations of other functions. For example, `cosh(2 * x)` is parsed as the formula for
-/// `cosh`, with `2 * x` in the place of u.
+/// Functions of one number u that are combinations of other functions: in `cosh(2 * x)`, `2 * x` replaces u.
 const DEFINED: [(&str, &str); 21] = [
     ("reciprocal", "1 / u"),
     ("rsqrt", "1 / sqrt(u)"),
@@ -52,7 +51,7 @@ const DEFINED: [(&str, &str); 21] = [
     ("saturate", "min(max(u, 0), 1)"),
 ];
 
-/// The functions of two numbers that a formula may call, with their names.
+/// The functions of two numbers that a formula may call.
 const FUNCTIONS_OF_TWO: [(&str, Operator); 4] = [
     ("min", Operator::Min),
     ("max", Operator::Max),
@@ -79,7 +78,7 @@ const DEFINED_OF_THREE: [(&str, &str); 4] = [
 /// The functions of two numbers that also take more.
 const FUNCTIONS_OF_MANY: [&str; 3] = ["min", "max", "hypot"];
 
-/// Some functions that a formula cannot call, each with a formula to write instead.
+/// Functions that a formula cannot call, each with a formula to write instead.
 const INSTEAD: [(&str, &str); 18] = [
     ("expm1", "exp(x) - 1"),
     ("log1p", "ln(1 + x)"),
@@ -101,31 +100,28 @@ const INSTEAD: [(&str, &str); 18] = [
     ("radians", "x * pi / 180"),
 ];
 
-/// The named constants, each with the largest `f64` that is not above it.
+/// The constants, each with the largest `f64` that is not above it.
 const CONSTANTS: [(&str, f64); 2] = [("pi", std::f64::consts::PI), ("e", std::f64::consts::E)];
 
-/// The signs of comparisons.
 const SIGNS_OF_COMPARISONS: [&str; 6] = ["<", ">", "<=", ">=", "==", "!="];
 
-/// Another way to write the constant `pi`.
 const PI: &str = "π";
 
-/// The largest depth to which parts may be nested. This depth limits the recursion of the parser.
+/// The most parts inside each other, because the parser recurses for each.
 const DEEPEST: usize = 200;
 
 /// The most comparisons of a formula and signs that join them. Each can be a level of the tree.
 const MOST_CONDITIONS: usize = 400;
 
-/// The largest number of parts of a formula after its functions are replaced by their formulas. For example, `silu(x)` has 6
-/// parts more than x and contains x twice, so each `silu` around another doubles the number of parts.
+/// The largest number of parts of a formula after functions are replaced. For example, `silu(x)` has 6 parts more than x and
+/// contains x twice, so each `silu` around another doubles the number of parts.
 const MOST_PARTS: usize = 4096;
 
-/// Parses a formula. The formula may have sums, products, powers (`^` or `**`), parentheses, numbers, `pi`, `e`, names of
-/// operands, functions, `if(a < b, x, y)`, and the same in the notations of Python and C, `x if a < b else y` and `a < b ? x :
-/// y`.
+/// Parses a formula. It may have sums, products, powers (`^` or `**`), parentheses, numbers, `pi`, `e`, names of operands,
+/// functions, and `if(a < b, x, y)`. A choice may also have the notation of Python or C: `x if a < b else y` or `a < b ? x : y`.
 ///
 /// # Errors
-/// Fails at the first mistake. The error has the location of the mistake.
+/// Fails at the first mistake, with its location.
 pub fn parse(text: &str) -> Result<Expression, Fault> {
     let mut parser = Parser { text, tokens: tokens(text)?, at: 0, depth: 0, conditions: 0 };
     let formula = parser.choice()?;
@@ -140,10 +136,8 @@ pub fn parse(text: &str) -> Result<Expression, Fault> {
     }
 }
 
-/// Parses a condition, such as `x < y`, `0 < x <= 2`, or `x > 0 and y != 0`, and returns a single comparison that is equivalent.
-///
-/// # Errors
-/// Fails at the first mistake. The error has the location of the mistake.
+/// Parses a condition, such as `x < y`, `0 < x <= 2`, or `x > 0 and y != 0`, into a single comparison that is equivalent. Fails
+/// at the first mistake, with its location.
 pub fn parse_condition(text: &str) -> Result<Comparison, Fault> {
     let mut parser = Parser { text, tokens: tokens(text)?, at: 0, depth: 0, conditions: 0 };
     let condition = parser.condition()?;
@@ -153,8 +147,8 @@ pub fn parse_condition(text: &str) -> Result<Comparison, Fault> {
     }
 }
 
-/// Returns the ranges of bytes of all names, numbers and signs. For example, `2*x` gives 0..1, 1..2 and 2..3. Fails at a
-/// character that no formula can have.
+/// Returns the ranges of bytes of all names, numbers and signs: `2*x` gives 0..1, 1..2 and 2..3. Fails at a character that no
+/// formula can have.
 fn tokens(text: &str) -> Result<Vec<Range<usize>>, Fault> {
     let mut tokens = Vec::new();
     let mut at = 0;
@@ -191,7 +185,7 @@ fn tokens(text: &str) -> Result<Vec<Range<usize>>, Fault> {
     Ok(tokens)
 }
 
-/// Returns an advice about the notation that replaces a sign. Returns `None` for a sign without a known replacement.
+/// Returns an advice about the notation that replaces a sign, if it is known.
 fn instead_of_sign(sign: char) -> Option<&'static str> {
     Some(match sign {
         '=' => "compare with `<`, `>`, `<=`, `>=`, `==` or `!=`",
@@ -216,8 +210,8 @@ fn instead_of_sign(sign: char) -> Option<&'static str> {
     })
 }
 
-/// Returns the length in bytes of the number at the beginning of a text: digits with a point, and a power of ten. For example,
-/// `1.5e3*x` gives 5.
+/// Returns the length in bytes of the number at the beginning of a text: digits with a point, and a power of ten. `1.5e3*x` gives
+/// 5.
 fn number(text: &str) -> usize {
     let digits = |from: usize, also: char| {
         let rest = &text[from..];
@@ -275,12 +269,12 @@ impl Parser<'_> {
         if self.taken(&[token]) { Ok(()) } else { self.fault(format!("`{token}` is missing")) }
     }
 
-    /// Makes a part from the tokens from number `from` to the last token that was read.
+    /// Makes a part from the tokens from number `from` to the last one that was read.
     fn made(&self, from: usize, kind: Kind) -> Expression {
         Expression::new(kind, self.span(from))
     }
 
-    /// Returns the range of bytes of the tokens from number `from` to the last token that was read.
+    /// Returns the range of bytes of the tokens from number `from` to the last one that was read.
     fn span(&self, from: usize) -> Range<usize> {
         self.tokens[from].start..self.tokens[self.at - 1].end
     }
@@ -292,14 +286,14 @@ impl Parser<'_> {
         self.depth += 1;
         let from = self.at;
         let mut choice = if self.begins_condition() {
-            // `(a < b) && (c < d) ? x : y`, as in C.
+            // As in C: `(a < b) && (c < d) ? x : y`.
             let condition = self.condition()?;
             self.cases_in_c(from, &condition)?
         } else {
             self.sum()?
         };
         if SIGNS_OF_COMPARISONS.contains(&self.peek()) {
-            // `a < b ? x : y`, as in C.
+            // As in C: `a < b ? x : y`.
             let condition = self.condition_of(choice)?;
             choice = self.cases_in_c(from, &condition)?;
         } else if self.taken(&["if"]) {
@@ -312,7 +306,7 @@ impl Parser<'_> {
         Ok(choice)
     }
 
-    /// Parses `? x : y` after a condition, which begins at token number `from`. Fails at the first mistake.
+    /// Parses `? x : y` after a condition, which begins at token number `from`.
     fn cases_in_c(
         &mut self,
         from: usize,
@@ -325,7 +319,7 @@ impl Parser<'_> {
         Ok(condition.choice(yes, no, self.span(from)))
     }
 
-    /// Parses a condition: comparisons joined by `and`, `or` and `not`. Fails at the first mistake.
+    /// Parses comparisons joined by `and`, `or` and `not`.
     fn condition(&mut self) -> Result<JoinedCondition, Fault> {
         if self.depth == DEEPEST {
             return self.fault(format!("the formula is nested more than {DEEPEST} deep"));
@@ -337,13 +331,13 @@ impl Parser<'_> {
         condition
     }
 
-    /// Parses the rest of a condition whose first number is `first`. Fails at the first mistake.
+    /// Parses the rest of a condition whose first number is `first`.
     fn condition_of(&mut self, first: Expression) -> Result<JoinedCondition, Fault> {
         let comparison = self.comparisons(first)?;
         self.joined(comparison)
     }
 
-    /// Parses the conditions that `and` and `or` join to `first`; `and` binds closer. Fails at the first mistake.
+    /// Parses the conditions that `and` and `or` join to `first`; `and` binds closer.
     fn joined(&mut self, first: JoinedCondition) -> Result<JoinedCondition, Fault> {
         let mut either = self.all_of(first)?;
         while self.taken(&["or", "||"]) {
@@ -354,7 +348,7 @@ impl Parser<'_> {
         Ok(either)
     }
 
-    /// Parses the conditions that `and` joins to `first`. Fails at the first mistake.
+    /// Parses the conditions that `and` joins to `first`.
     fn all_of(&mut self, first: JoinedCondition) -> Result<JoinedCondition, Fault> {
         let mut both = first;
         while self.taken(&["and", "&&"]) {
@@ -364,7 +358,7 @@ impl Parser<'_> {
         Ok(both)
     }
 
-    /// Counts one more comparison or joined condition of the formula. Fails at more than [`MOST_CONDITIONS`].
+    /// Fails at more than [`MOST_CONDITIONS`] comparisons and joined conditions.
     fn count_joined(&mut self) -> Result<(), Fault> {
         self.conditions += 1;
         if self.conditions > MOST_CONDITIONS {
@@ -373,7 +367,7 @@ impl Parser<'_> {
         Ok(())
     }
 
-    /// Parses a condition that neither `and` nor `or` divides. Fails at the first mistake.
+    /// Parses a condition that neither `and` nor `or` divides.
     fn single_condition(&mut self) -> Result<JoinedCondition, Fault> {
         let mut negations = 0;
         while self.taken(&["not", "!"]) {
@@ -383,7 +377,7 @@ impl Parser<'_> {
         Ok(if negations % 2 == 1 { condition.negated() } else { condition })
     }
 
-    /// Parses a condition in parentheses, or comparisons. Fails at the first mistake.
+    /// Parses a condition in parentheses, or comparisons.
     fn condition_without_sign(&mut self) -> Result<JoinedCondition, Fault> {
         if self.begins_condition() {
             self.expect("(")?;
@@ -423,7 +417,7 @@ impl Parser<'_> {
         has_comparison
     }
 
-    /// Parses the comparisons that follow a number, for example `< x <= 2`. Fails at the first mistake.
+    /// Parses the comparisons that follow a number, for example `< x <= 2`.
     fn comparisons(&mut self, first: Expression) -> Result<JoinedCondition, Fault> {
         let mut first = Arc::new(first);
         let mut all: Option<JoinedCondition> = None;
@@ -452,8 +446,7 @@ impl Parser<'_> {
         Comparison { left, right, or_equal: sign.len() == 2 }
     }
 
-    /// Returns the comparison that holds if two numbers are equal, or if they differ: whether the distance of the numbers is 0, or
-    /// is above 0.
+    /// Compares the distance of two numbers with 0, to decide whether they are equal or differ.
     fn equality(
         &self,
         first: Arc<Expression>,
@@ -476,8 +469,7 @@ impl Parser<'_> {
         }
     }
 
-    /// Parses operators of the same precedence, which are applied from left to right. `part` parses an operand. Fails at the
-    /// first mistake.
+    /// Parses operators of the same precedence, which are applied from left to right. `part` parses an operand.
     fn chain(
         &mut self,
         signs: &[(&str, Operator)],
@@ -504,8 +496,7 @@ impl Parser<'_> {
         self.chain(&signs, Self::signed)
     }
 
-    /// Parses a power with a sign before it. The sign is applied after the power. For example, `-x^2` is −(x²). Fails at the
-    /// first mistake.
+    /// Parses a power with a sign before it, which is applied after the power: `-x^2` is −(x²).
     fn signed(&mut self) -> Result<Expression, Fault> {
         let from = self.at;
         let mut negations = 0;
@@ -576,7 +567,7 @@ impl Parser<'_> {
         self.call(from, &token)
     }
 
-    /// Parses the arguments of a call of the function `name`. The opening parenthesis has been read. Fails if there is no such
+    /// Parses the arguments of a call of the function `name`; the opening parenthesis has been read. Fails if there is no such
     /// function, or at the first mistake in an argument.
     fn call(&mut self, from: usize, name: &str) -> Result<Expression, Fault> {
         if name == "if" {
@@ -627,12 +618,11 @@ impl Parser<'_> {
     }
 }
 
-/// Returns the entry of a table with this name, or `None`.
 fn named<T: Copy>(table: &[(&str, T)], name: &str) -> Option<T> {
     table.iter().find(|(own, _)| *own == name).map(|(_, entry)| *entry)
 }
 
-/// Returns the message about a function that formulas do not have: a formula to write instead, or a list of all functions.
+/// Returns a formula to write instead of an unknown function, or a list of all functions.
 fn unknown_function(name: &str) -> String {
     if let Some(text) = named(&INSTEAD, name) {
         return format!("there is no function `{name}`: write {text}");
@@ -647,7 +637,7 @@ fn unknown_function(name: &str) -> String {
     format!("there is no function `{name}`; there are {}", all.join(", "))
 }
 
-/// Returns the length of a vector, the root of the sum of the squares of its coordinates. `span` is the location of the call.
+/// Returns the root of the sum of the squares of a vector's coordinates. `span` is the location of the call.
 fn length_of_many(arguments: &[Expression], span: Range<usize>) -> Result<Expression, Fault> {
     let mut sum = written_out("hypot", "u^2", &arguments[..1], span.clone())?;
     for argument in &arguments[1..] {
@@ -658,8 +648,8 @@ fn length_of_many(arguments: &[Expression], span: Range<usize>) -> Result<Expres
     Ok(Expression::new(Kind::Unary(Function::Sqrt, Arc::new(sum)), span))
 }
 
-/// Returns the formula `body` of the function `name`, in which the arguments of a call replace u, v and w. For example, `hypot(a,
-/// 2)` becomes `sqrt(a^2 + 2^2)`. `span` is the location of the call. Fails if the result has more than [`MOST_PARTS`] parts.
+/// Returns the formula `body` of the function `name`, in which the arguments of a call replace u, v and w: `hypot(a, 2)` becomes
+/// `sqrt(a^2 + 2^2)`. `span` is the location of the call. Fails if the result has more than [`MOST_PARTS`] parts.
 fn written_out(
     name: &str,
     body: &str,

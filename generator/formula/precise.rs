@@ -1,8 +1,8 @@
-//! Interval arithmetic of any precision. The module also stores a value exactly if the value is known exactly.
+//! Interval arithmetic of any precision, which also stores a value exactly if the value is known exactly.
 //!
 //! The arithmetic is slow. Glint uses it for constants, such as the ends of a domain, and for questions that `f64` intervals
-//! leave open. Such questions are the side of a jump on which a value lies, for example of `floor` at 1, and values beyond the
-//! range of `f64`. For example, `exp(1000)` in `1 / (1 + exp(1000))` is beyond this range.
+//! leave open. One is the side of a jump on which a value lies, for example of `floor` at 1. Others are values beyond the range
+//! of `f64`, such as `exp(1000)` in `1 / (1 + exp(1000))`.
 
 use std::cmp::Ordering;
 
@@ -19,7 +19,7 @@ use super::{Enclosure, Function, Literal, Operator};
 /// A number m · 2ᵉ of any size.
 type BigFloat = Repr<2>;
 
-/// The result of an operation of the library: a number that is rounded in the direction of the context `R`, or an error.
+/// A number that the library rounds in the direction of the context `R`, or an error.
 type Rounded<R> =
     Result<dashu_base::Approximation<FBig<R, 2>, dashu_float::round::Rounding>, FpError>;
 
@@ -36,7 +36,7 @@ impl PreciseValue {
         Self { low, high, exact: None }
     }
 
-    /// Returns the value if it is known to be rational, and `None` otherwise.
+    /// Returns the value if it is known to be rational.
     pub(super) fn rational(&self) -> Option<&RBig> {
         match &self.exact {
             Some(Exact::Rational(value)) => Some(value),
@@ -45,7 +45,7 @@ impl PreciseValue {
     }
 }
 
-/// Arithmetic with numbers of a given number of bits. The lower limit of each result is rounded down, and the upper limit up.
+/// Arithmetic with numbers of a given number of bits. It rounds the lower limit of each result down, and the upper limit up.
 pub(super) struct Precise {
     bits: usize,
     down: Context<mode::Down>,
@@ -62,8 +62,8 @@ impl Precise {
         self.exactly(Exact::Rational(value.clone()))
     }
 
-    /// Returns the smallest integer that is not below `value` · 2^`fraction`, and whether both are equal. Returns `None` if the
-    /// interval does not decide it, or if the integer has more than 127 bits.
+    /// Returns the smallest integer that is not below `value` · 2^`fraction`, and whether both are equal. The interval must
+    /// decide it, and the integer have at most 127 bits.
     pub(super) fn ceiling(&self, value: &PreciseValue, fraction: u32) -> Option<(i128, bool)> {
         if let Some(exact) = value.rational() {
             let scaled = exact * RBig::from(IBig::ONE << fraction as usize);
@@ -82,7 +82,6 @@ impl Precise {
         Some((i128::try_from(ceiling).ok()?, false))
     }
 
-    /// Returns the interval of an exact value, with the value.
     fn exactly(&self, exact: Exact) -> PreciseValue {
         let (low, high) = match &exact {
             Exact::Rational(value) => self.quotient(value),
@@ -125,8 +124,8 @@ impl Precise {
         PreciseValue::between(low, high)
     }
 
-    /// Returns the interval between the results of an operation that were rounded down and up. Fails if one of them is an
-    /// error of the library.
+    /// Returns the interval between the results of an operation that were rounded down and up. Fails if one of them is an error
+    /// of the library, for example because an exponent has too many bits.
     fn rounded(down: Rounded<mode::Down>, up: Rounded<mode::Up>) -> Result<PreciseValue, String> {
         let beyond = |error: FpError| match error {
             FpError::Overflow(_) | FpError::Underflow(_) => {
@@ -143,9 +142,8 @@ impl Precise {
         Self::rounded(self.down.mul(a, b), self.up.mul(a, b))
     }
 
-    /// Returns the smallest interval that contains an operation's results at the four combinations of the intervals' limits.
-    /// The interval contains all results if the operation is monotone in each operand. Fails if an operation of the library
-    /// fails, for example because an exponent has too many bits.
+    /// Returns the smallest interval that contains an operation's results at the four combinations of the intervals' limits. It
+    /// contains all results if the operation is monotone in each operand.
     fn corners(
         &self,
         a: &PreciseValue,
@@ -161,8 +159,7 @@ impl Precise {
         Ok(hull)
     }
 
-    /// Returns the interval of a function that never falls. `down` and `up` compute the function with the two directions of
-    /// rounding. Fails if an operation of the library fails, for example because an exponent has too many bits.
+    /// Returns the interval of a function that never falls, which `down` and `up` compute with the two directions of rounding.
     fn rising(
         &self,
         a: &PreciseValue,
@@ -172,9 +169,8 @@ impl Precise {
         Self::rounded(down(&self.down, &a.low), up(&self.up, &a.high))
     }
 
-    /// Returns the interval of a sine or a cosine, whose slope is never steeper than 1. The function adds the length of the
-    /// interval, in both directions, to the value at its lower limit. Fails if an operation of the library fails, for example
-    /// because an exponent has too many bits.
+    /// Returns the interval of a sine or a cosine. The slope is never steeper than 1, so the interval's length is added, in
+    /// both directions, to the value at its lower limit.
     fn wave(
         &self,
         a: &PreciseValue,
@@ -189,8 +185,7 @@ impl Precise {
         )
     }
 
-    /// Returns two values, the lower one first. Returns `None` if it is unknown which one is lower. Equal values may have any
-    /// order.
+    /// Returns two values, the lower one first, if it is known which one is lower. Equal values may have any order.
     fn in_order<'v>(
         &self,
         a: &'v PreciseValue,
@@ -204,15 +199,15 @@ impl Precise {
         }
     }
 
-    /// Returns the interval of the error function of a number that is not below 0.
+    /// Computes the error function of a number that is not below 0.
     ///
     /// The series is erf(x) = 2x / √π · exp(−x²) · (1 + 2x²/3 + (2x²)²/(3·5) + …), whose terms are all positive. The series
-    /// ends as soon as each further term is less than half of the previous one, so that their sum is less than the last term.
+    /// ends as soon as each further term is less than half of the previous one. Their sum is then less than the last term.
     fn error_function(&self, x: &BigFloat) -> Result<PreciseValue, String> {
         let one = self.integer(1);
         let x = PreciseValue::between(x.clone(), x.clone());
         let square = self.multiply(&x, &x)?;
-        // For such numbers, 1 − erf(x) is below 2^−bits, because exp(−x²) is.
+        // Then 1 − erf(x) is below 2^−bits, because exp(−x²) is.
         if square.low > BigFloat::new(IBig::from(self.bits), 0) {
             let unit = BigFloat::new(IBig::ONE, -(self.bits as isize));
             return self.subtract(&one, &PreciseValue::between(BigFloat::zero(), unit));
@@ -238,7 +233,7 @@ impl Precise {
         Ok(self.minimum(&value, &one))
     }
 
-    /// Returns the interval of the error function of any number. The function is odd.
+    /// Computes the error function of any number. The function is odd.
     fn signed_error_function(&self, x: &BigFloat) -> Result<PreciseValue, String> {
         if *x < BigFloat::zero() {
             let value = self.error_function(&-x.clone())?;
@@ -248,7 +243,7 @@ impl Precise {
     }
 }
 
-/// Returns the exact value if it is known, and otherwise the result of `compute`. Fails if `compute` fails.
+/// Returns the exact value if it is known, and otherwise the result of `compute`.
 fn or_computed(
     arithmetic: &Precise,
     exact: Option<Exact>,
@@ -260,7 +255,7 @@ fn or_computed(
     }
 }
 
-/// Returns the exact result of a function of two numbers. Returns `None` if an operand or the result is not known exactly.
+/// Returns the exact result of a function of two numbers, if it is known.
 fn exact_operator(operator: Operator, a: &PreciseValue, b: &PreciseValue) -> Option<Exact> {
     Exact::operator(operator, a.exact.as_ref()?, b.exact.as_ref()?)
 }
@@ -300,7 +295,7 @@ impl Arithmetic for Precise {
         PreciseValue::between(low, high)
     }
 
-    /// Returns `None`, because limits in `f64` are not precise enough.
+    /// Limits in `f64` are not precise enough.
     fn folded(&self, _constant: Enclosure) -> Option<Self::Value> {
         None
     }

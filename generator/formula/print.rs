@@ -10,25 +10,25 @@ const POWER: u8 = 3;
 const ATOM: u8 = 4;
 
 impl Expression {
-    /// Returns the formula as a Python expression, which can be evaluated after `from math import *`. The function `exp2` needs
-    /// Python 3.11. [`super::parse()`] can parse the expression too. For example, `x^2 + 1` becomes `x ** 2.0 + 1.0`.
+    /// Returns a Python expression, which can be evaluated after `from math import *`, and which [`super::parse()`] can parse
+    /// too. `x^2 + 1` becomes `x ** 2.0 + 1.0`. The function `exp2` needs Python 3.11.
     pub fn python(&self) -> String {
         python(self).0
     }
 }
 
-/// The arithmetic of the C functions that evaluate a formula. Each has its own set of functions.
+/// The C functions that evaluate a formula.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CArithmetic {
-    /// Intervals of MPFR numbers, with the functions in `templates/recompute_limits.c`. For example, `add(x, number("1.0"))`.
+    /// Intervals of MPFR numbers, with the functions in `templates/recompute_limits.c`, such as `add(x, number("1.0"))`.
     Limits,
-    /// Doubles with a margin of error, with the functions in `templates/recompute_near.c`. For example, `near_add(x,
+    /// Doubles with a margin of error, with the functions in `templates/recompute_near.c`, such as `near_add(x,
     /// near_exactly(1.0))`.
     Near,
 }
 
 impl CArithmetic {
-    /// Returns the prefix of the names of all functions of this arithmetic.
+    /// Begins the names of all functions of this arithmetic.
     fn prefix(self) -> &'static str {
         match self {
             Self::Limits => "",
@@ -44,7 +44,7 @@ impl CArithmetic {
         }
     }
 
-    /// Returns the C expression of a named constant. `below` is the largest `f64` that is not above its value.
+    /// `below` is the largest `f64` that is not above the constant.
     fn constant(self, name: &str, below: f64) -> String {
         match (self, name) {
             (Self::Limits, "pi") => "constant(mpfr_const_pi)".to_owned(),
@@ -53,8 +53,7 @@ impl CArithmetic {
         }
     }
 
-    /// Returns the name of the library function that computes a function of a formula. For example, the sine is `mpfr_sin` or
-    /// `sin`.
+    /// Returns the library function that computes a function of a formula: the sine is `mpfr_sin` or `sin`.
     fn library_function(self, function: Function) -> String {
         match self {
             Self::Limits => format!("mpfr_{}", function.name()),
@@ -64,7 +63,7 @@ impl CArithmetic {
 }
 
 impl Expression {
-    /// Returns the formula as a C expression, which calls the functions of `arithmetic`. A word of a ROM becomes its name.
+    /// Returns a C expression, which calls the functions of `arithmetic`. A word of a ROM becomes its name.
     pub fn c(&self, arithmetic: CArithmetic) -> String {
         match &self.kind {
             Kind::Number(literal) => arithmetic.number(literal),
@@ -87,22 +86,21 @@ impl Expression {
 }
 
 impl Comparison {
-    /// Returns the comparison as a call of a C function, which returns whether the comparison holds. The last argument is 1 if
-    /// the comparison also holds for equal numbers (`>=`), and 0 if not (`>`). For example, `x >= 0` becomes `exceeds(x,
-    /// number("0.0"), 1)`.
+    /// Returns a call of a C function, which returns whether the comparison holds: `x >= 0` becomes `exceeds(x, number("0.0"),
+    /// 1)`. The last argument is 1 for `>=`, and 0 for `>`.
     pub fn c(&self, arithmetic: CArithmetic) -> String {
         let or_equal = format!(", {}", u8::from(self.or_equal));
         c_call(arithmetic, "exceeds", &[&self.left, &self.right], &or_equal)
     }
 
-    /// Returns the comparison as a Python expression. For example, `x >= 0.0`.
+    /// Returns a Python expression such as `x >= 0.0`.
     pub fn python(&self) -> String {
         let sign = if self.or_equal { ">=" } else { ">" };
         format!("{} {sign} {}", self.left.python(), self.right.python())
     }
 }
 
-/// Returns whether a formula is the number 2. For doubles, a square is printed as a product, which is faster than a power.
+/// For doubles, a square is printed as a product, which is faster than a power.
 fn is_two(formula: &Expression) -> bool {
     matches!(&formula.kind, Kind::Number(literal) if literal.is_exact() && literal.nearest() == 2.0)
 }
@@ -183,7 +181,7 @@ fn python(formula: &Expression) -> (String, u8) {
 }
 
 impl Function {
-    /// Returns the name of the function in formulas; `-` for [`Function::Negate`].
+    /// Returns the name in formulas; `-` for [`Function::Negate`].
     pub fn name(self) -> &'static str {
         super::FUNCTIONS.iter().find(|(_, own)| *own == self).map_or("-", |(name, _)| name)
     }

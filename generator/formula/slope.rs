@@ -1,5 +1,4 @@
-//! Differentiates a formula: computes limits between which the derivative lies, for an operand in an interval. The computation
-//! fails if the formula may jump in the interval.
+//! Differentiates a formula: computes limits between which the derivative lies, for an operand in an interval.
 
 use std::collections::HashMap;
 use std::ptr;
@@ -8,7 +7,7 @@ use super::arithmetic::Double;
 use super::evaluate::{FEW_PARTS, binary, unary};
 use super::{Enclosure, Expression, Fault, Function, Kind, Operator};
 
-/// The limits of a value, and the limits of its derivative.
+/// The limits of a value, and of its derivative.
 #[derive(Clone, Copy)]
 struct ValueAndSlope {
     value: Enclosure,
@@ -28,11 +27,10 @@ impl Expression {
     }
 }
 
-/// The differentiation of a formula for an operand within limits.
 struct Derivation<'d> {
     operand: &'d str,
     limits: Enclosure,
-    /// The values and slopes of parts with at least [`FEW_PARTS`] parts of their own, so that no shared part is computed twice.
+    /// The results of parts with at least [`FEW_PARTS`] parts of their own, so that no shared part is computed twice.
     known: HashMap<*const Expression, ValueAndSlope>,
 }
 
@@ -95,7 +93,6 @@ fn of_unary(function: Function, a: ValueAndSlope, value: Enclosure) -> Enclosure
     let ValueAndSlope { value: at, slope } = a;
     let number = Enclosure::exactly;
     let one = number(1.0);
-    // The nearest `f64` and its neighbours.
     let about = |value: f64| Enclosure::between(value.next_down(), value.next_up());
     let steep = Enclosure::between(f64::NEG_INFINITY, f64::INFINITY);
     match function {
@@ -121,7 +118,7 @@ fn of_unary(function: Function, a: ValueAndSlope, value: Enclosure) -> Enclosure
     }
 }
 
-/// Returns the limits of the derivative of a function of two numbers. Returns `None` if the value may jump.
+/// Returns the limits of the derivative of a function of two numbers, unless the value may jump.
 fn of_binary(
     operator: Operator,
     a: ValueAndSlope,

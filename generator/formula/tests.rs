@@ -9,8 +9,7 @@ fn value(text: &str, x: f64) -> Enclosure {
         .unwrap_or_else(|fault| panic!("{}", fault.under(text)))
 }
 
-/// Values to 20 digits, from tables (Abramowitz and Stegun) and by hand, lie between the limits, and the limits are close to
-/// each other.
+/// Values to 20 digits, from tables (Abramowitz and Stegun) and by hand, lie between the limits, which are close to each other.
 #[test]
 #[expect(
     clippy::excessive_precision,
@@ -63,7 +62,7 @@ fn enclosures_hold_known_values() {
     }
 }
 
-/// An argument of a function of two numbers may have the name of the function's own parameters.
+/// An argument may have the name of the function's own parameters.
 #[test]
 fn arguments_keep_their_names() {
     let formula = parse("hypot(v, u) - 2 * u").unwrap();
@@ -87,7 +86,7 @@ fn directions_near_their_jump_and_at_the_origin() {
     assert!(slope.holds(0.25) && slope.high - slope.low < 1e-12);
 }
 
-/// Values that `f64` represents exactly stay exact, so that a root at the end of its domain has a value.
+/// A root at the end of its domain has a value because values that `f64` represents exactly stay exact.
 #[test]
 fn exact_steps_stay_exact() {
     for (text, x, known) in [
@@ -173,8 +172,7 @@ fn ceiling(text: &str, fraction: u32) -> (i128, bool) {
     formula.ceiling(fraction).unwrap_or_else(|fault| panic!("{}", fault.under(text)))
 }
 
-/// The values of these formulas, computed by hand, are multiples of 2^−fraction, and the evaluation finds this for every
-/// notation.
+/// The values of these formulas are multiples of 2^−fraction, and the evaluation finds this for every notation.
 #[test]
 fn exact_values_are_known_to_be_exact() {
     for (text, fraction, raw) in [
@@ -260,8 +258,7 @@ fn random_decimals_are_read_exactly() {
     }
 }
 
-/// Values at exact operands, computed by hand, for formulas in which `f64` rounds to the wrong side of a jump, is too small, or
-/// overflows.
+/// In these formulas `f64` rounds to the wrong side of a jump, is too small, or overflows.
 #[test]
 fn steps_signs_and_sizes_are_decided_at_exact_operands() {
     for (text, operand, known) in [
@@ -368,7 +365,7 @@ fn c_calls_the_functions_of_an_arithmetic() {
     }
 }
 
-/// Functions of shading languages and of C, with values computed by hand.
+/// Functions of shading languages and of C.
 #[test]
 fn functions_of_other_languages_have_their_values() {
     for (text, x, expected) in [

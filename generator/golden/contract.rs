@@ -1,47 +1,43 @@
-//! Makes parts of the accuracy contracts that several devices need: the operands `cos_gamma` and `exponent`, the error bound of
-//! a device that multiplies colours, and Python expressions.
-//!
-//! An accuracy contract states the operands, the exact formula and the error bound of one device. The bound may be missing, for
-//! example in a contract of a user's device. The module of each device has its formula.
+//! Makes parts of accuracy contracts that several devices need: the operands `cos_gamma` and `exponent`, the error bound of a
+//! device that multiplies colours, and Python expressions.
 
 use super::{Bound, Operand, Term};
 use glint_base::fixed::{Format, Rounding, exp2};
 
-/// The name of the operand cos γ in every device that has it. γ is the angle between the surface normal and the half vector.
+/// The name of the operand cos γ in every device that has it.
 pub const COSINE: &str = "cos_gamma";
 
 /// The name of the operand n, the specular exponent, in every device that has it.
 pub const EXPONENT: &str = "exponent";
 
-/// One contribution to the error of the reflectance `f`: the configuration key that governs it, its description, and its size as
-/// a value. For example, the table of sines of `rough` contributes to the error of its `f`.
+/// A contribution to the error of the reflectance `f`: the configuration key that governs it, its description, and its size as a
+/// value.
 pub type ErrorShare = (&'static str, &'static str, f64);
 
-/// Returns the operand `cos_gamma` with a format and a domain of raw values, for an accuracy contract.
+/// Returns the operand `cos_gamma` with a domain of raw values.
 pub fn cosine_operand(format: Format, domain: (i64, i64)) -> Operand {
     let doc = "cosine of the angle between the normal and the half vector";
     control(COSINE, format, domain, doc)
 }
 
-/// Returns the operand `exponent` with a format and a domain of raw values, for an accuracy contract.
+/// Returns the operand `exponent` with a domain of raw values.
 pub fn exponent_operand(format: Format, domain: (i64, i64)) -> Operand {
     control(EXPONENT, format, domain, "specular exponent n")
 }
 
-/// Returns a control operand, which is an operand that determines the reflectance `f`. Colour operands, which `f` multiplies,
-/// are not control operands.
+/// Returns an operand that determines the reflectance `f`, unlike a colour operand.
 pub fn control(name: &str, format: Format, domain: (i64, i64), doc: &str) -> Operand {
     let doc = doc.to_owned();
     Operand { name: name.to_owned(), format, domain, clamped: false, colour: false, doc }
 }
 
-/// Returns the error bounds of a device that multiplies colours by a reflectance `f` with `frac` fraction bits: the bound of `f`,
-/// and the bound of each output. `shares` are the contributions to the error of `f`.
+/// Returns the error bounds of a device that multiplies colours by a reflectance `f` with `frac` fraction bits. They are the
+/// bound of `f`, and the bound of each output. `shares` are the contributions to the error of `f`.
 ///
-/// An output is `f` times a colour of `colour_bits` bits, rounded by `output_rounding`. The bound of an output is therefore the
-/// error of `f` times the largest colour, plus the error of that rounding. Both `f` and the formula lie in 0 … 1, so shares
-/// whose sum exceeds 1.0 are scaled down to 1.0. The term of the rounding names the key `output.rounding`, so the device must
-/// have this key. If `shares` is empty, the bound is infinite and has no terms: it is not stated.
+/// An output is `f` times a colour of `colour_bits` bits, rounded by `output_rounding`. Its bound is therefore the error of `f`
+/// times the largest colour, plus the error of that rounding. Both `f` and the formula lie in 0 … 1, so shares whose sum exceeds
+/// 1.0 are scaled down to 1.0. The term of the rounding names the key `output.rounding`, which the device must have. If `shares`
+/// is empty, the bound is infinite and has no terms: it is not stated.
 pub fn bound(
     shares: &[ErrorShare],
     frac: u32,
@@ -71,21 +67,18 @@ pub fn bound(
     (f, Bound::of(terms))
 }
 
-/// Returns a Python expression that has the value of `expression`, or 0 if `expression` is negative. For example, `x - 1` becomes
-/// `max(x - 1, 0)`.
+/// Returns a Python expression that is 0 if `expression` is negative: `x - 1` becomes `max(x - 1, 0)`.
 pub fn clamped_at_0(expression: &str) -> String {
     format!("max({expression}, 0)")
 }
 
-/// Returns a Python expression that has the value of `expression`, or 0 if `cos_gamma` is 0 or negative (the surface faces away).
-/// For example, `f` becomes `f if cos_gamma > 0 else 0`.
+/// Returns a Python expression that is 0 if the surface faces away: `f` becomes `f if cos_gamma > 0 else 0`.
 pub fn where_it_faces(expression: &str) -> String {
     format!("{expression} if {COSINE} > 0 else 0")
 }
 
-/// Returns the raw value of `operand` that represents the specular exponent `n` exactly. Returns `None` if the format or the
-/// domain of the operand has no such value. For example, n = 20 gives 20 in `u10.0` (10 integer bits), and n = 20.5 gives
-/// `None`.
+/// Returns the raw value of `operand` for the specular exponent `n`, if the format and the domain have it exactly. In `u10.0` n =
+/// 20 gives 20, and n = 20.5 gives `None`.
 pub fn exponent_at(operand: &Operand, n: f64) -> Option<i64> {
     let raw = operand.format.quantise(n);
     let held = operand.format.to_f64(raw) == n;
@@ -93,12 +86,11 @@ pub fn exponent_at(operand: &Operand, n: f64) -> Option<i64> {
     (held && (low..=high).contains(&raw)).then_some(raw)
 }
 
-/// Returns the raw control operands among `operands`, in their order, for an angle `gamma` (in radians) and an exponent `n`.
-/// `operands` must contain `cos_gamma` and `exponent`. Any other operand takes its raw value in `neutral`, or else the value of
-/// its domain that is nearest to 0.
+/// Returns the raw control operands among `operands`, in their order, for an angle `gamma` (in radians) and an exponent `n`. Any
+/// operand besides `cos_gamma` and `exponent` takes its raw value in `neutral`, or else the value of its domain that is nearest
+/// to 0.
 ///
-/// Returns `None` if `cos_gamma` or `exponent` is missing, if `n` is not in the domain of the exponent, or if the exponent
-/// cannot represent `n`.
+/// Returns `None` if one of these two operands is missing, or if the exponent cannot represent `n` or `n` is not in its domain.
 pub fn operands_at(
     operands: &[Operand],
     gamma: f64,

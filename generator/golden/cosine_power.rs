@@ -1,10 +1,8 @@
-//! The golden model and the accuracy contract of the device `cosine-power`, which computes f = (n/m·(c − 1) + 1)^m.
+//! The golden model and the accuracy contract of the device `cosine-power`, which computes f = (n/m·(c − 1) + 1)^m
+//! ([symbols](crate#symbols)).
 //!
-//! c = cos γ, where γ is the angle between the surface normal and the half vector; n is the specular exponent; the
-//! configuration chooses m = 2, 4, 8 or 16; f is the reflectance, the factor by which the device multiplies colours. f is 0 if
-//! the base is negative, or if c ≤ 0. The source is the paper "A model for reproducing the specular component of colour in
-//! computer graphics" (in Ukrainian; Glint calls it seed 002). The paper calls the function W(n, γ) and proposes it as an
-//! approximation of cⁿ.
+//! The configuration chooses m = 2, 4, 8 or 16. f is 0 if the base is negative, or if c ≤ 0. Seed 002 calls the function W(n,
+//! γ) and proposes it as an approximation of cⁿ.
 
 use std::sync::Arc;
 
@@ -18,12 +16,11 @@ use glint_base::fixed::{Format, Rounding, exp2};
 use glint_config::Config;
 use glint_keys::cosine_power::Keys;
 
-/// The integer arithmetic of the device, with one method for each operation; the methods take and return raw values. The
-/// accumulator register contains f after the last squaring.
+/// The integer arithmetic of the device, on raw values. The accumulator register contains f after the last squaring.
 struct PowerArithmetic {
     keys: Keys,
     squarings: u32,
-    /// The largest value of the accumulator: 1.0 minus one unit in the last place, as a raw value.
+    /// 1.0 minus one ulp, the largest raw value of the accumulator.
     largest: i64,
     scaled: Narrow,
     square: Narrow,
@@ -43,15 +40,14 @@ impl PowerArithmetic {
         }
     }
 
-    /// Returns the raw value of `n/m·(1 − cos γ)`, rounded, and limited to the accumulator's format. `cosine` and `exponent`
-    /// are raw operands.
+    /// Returns `n/m·(1 − cos γ)`, rounded, and limited to the accumulator's format.
     #[inline]
     fn scaled(&self, cosine: i64, exponent: i64) -> i64 {
         self.scaled.apply((self.keys.operands.cosine.one() - cosine) * exponent)
     }
 
-    /// Returns the raw base: the bitwise inverse of the accumulator, `1.0 − ulp − accumulator`. The base is 0 for a surface
-    /// that faces away, which has the cosine 0.
+    /// Returns the base: the bitwise inverse of the accumulator, `1.0 − ulp − accumulator`, or 0 for a surface that faces away,
+    /// which has the cosine 0.
     #[inline]
     fn base(&self, cosine: i64, accumulator: i64) -> i64 {
         if cosine == 0 { 0 } else { self.largest - accumulator }
@@ -63,7 +59,6 @@ impl PowerArithmetic {
     }
 }
 
-/// Returns the golden model of the device `cosine-power` for a configuration.
 pub fn model(config: &Config) -> Box<dyn Model> {
     let it = Arc::new(PowerArithmetic::new(Keys::of(config)));
     let mut frame = Frame::default();
@@ -94,7 +89,7 @@ pub fn model(config: &Config) -> Box<dyn Model> {
     Box::new(products.behind(frame, accumulator, program))
 }
 
-/// Returns the accuracy contract of the device `cosine-power`. Its control operands are `cos_gamma` and `exponent`.
+/// The control operands are `cos_gamma` and `exponent`.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     let it = PowerArithmetic::new(Keys::of(config));
     let operands = highlight::operands(&it.keys.operands, &it.keys.domain);
@@ -127,9 +122,8 @@ impl Reflectance for PowerArithmetic {
         vec![contract::where_it_faces(&format!("{base} ** {power}"))]
     }
 
-    /// Returns the largest n as an upper limit of the slope n·base^(m − 1), since the base is at most 1. At a right angle W is
-    /// (1 − n/m)^m if n is below m, and jumps from this value to 0. The result has this jump for the smallest n. The result is
-    /// never `None`.
+    /// The largest n is an upper limit of the slope n·base^(m − 1), since the base is at most 1. At a right angle W is (1 −
+    /// n/m)^m if n is below m, and jumps from this value to 0, most for the smallest n.
     fn variation(&self) -> Option<Variation> {
         let (least, most) = self.keys.domain.exponents();
         let power = f64::from(self.keys.power);
@@ -137,8 +131,8 @@ impl Reflectance for PowerArithmetic {
         Some(Variation { slope: most as f64, jump: libm::pow(base, power) })
     }
 
-    /// Returns the contributions to the error of f, as values with their keys, and derives them. Every quantity here lies in 0
-    /// … 1, hardware's and formula's alike, so by the mean value theorem an error ε before a power p grows to at most p·ε.
+    /// Derives the contributions to the error of f. Every quantity here lies in 0 … 1, hardware's and formula's alike. By the
+    /// mean value theorem, an error ε before a power p therefore grows to at most p·ε.
     ///
     /// - Base: the hardware uses the inverse, 1.0 − ulp − t, instead of 1.0 − t. If t is truncated, its error is in (−ulp, 0],
     ///   and the base is low by (0, ulp]. If t is rounded to the nearest, its error is ±ulp/2, and the base is low by up to 3/2
@@ -163,8 +157,8 @@ impl Reflectance for PowerArithmetic {
         ]
     }
 
-    /// Returns a remark if a smaller m approximates cosⁿγ better than the configured m, for some n below m. The base of W is
-    /// then above 0 at a right angle, where cosⁿγ is 0.
+    /// Remarks that a smaller m approximates cosⁿγ better than the configured m, for some n below m. The base of W is then
+    /// above 0 at a right angle, where cosⁿγ is 0.
     fn remarks(&self) -> Vec<String> {
         let power = self.keys.power;
         let (first, last) = self.keys.domain.exponents();

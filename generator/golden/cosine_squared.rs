@@ -1,11 +1,10 @@
 //! The golden model and the accuracy contract of the device `cosine-squared`, which computes f = cos²(a·δ) for the points of a
 //! scan line.
 //!
-//! δ is the angle at a point of the line; a = √(n/2) with the specular exponent n; f is the reflectance, the factor by which
-//! the device multiplies an amplitude. The host multiplies its angles by a, so the device only sees the product a·δ. f is 0 if
-//! |a·δ| is a right angle or more. The golden model reads cos² from its own copy of the device's table, ROM 12; the contract
-//! compares the result with the exact formula. The source is a prototype (Abbas, Szirmay-Kalos, Horváth 2000), which the patent
-//! of `quad-cosine` (Glint calls it seed 000) cites.
+//! δ is the angle at a point of the line, and a = √(n/2) with the specular exponent n. The host multiplies its angles by a, so
+//! the device only sees the product a·δ. f is 0 if |a·δ| is a right angle or more. The golden model reads cos² from its own copy
+//! of the device's table, ROM 12; the contract compares the result with the exact formula. The source is a prototype (Abbas,
+//! Szirmay-Kalos, Horváth 2000), which [seed 000](crate#symbols) cites.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -19,10 +18,10 @@ use glint_base::fixed::exp2;
 use glint_config::Config;
 use glint_keys::cosine_squared::Keys;
 
-/// The integer arithmetic of the device, with one method for each operation. The methods take and return raw values.
+/// The integer arithmetic of the device, on raw values.
 struct SquaredArithmetic {
     keys: Keys,
-    /// The table of cos², ROM 12 by the numbers of blocks in seed 000.
+    /// ROM 12 by the numbers of blocks in seed 000.
     table: CosineTable,
 }
 
@@ -31,27 +30,25 @@ impl SquaredArithmetic {
         Self { table: CosineTable::new(2, keys.table_address, keys.fraction), keys }
     }
 
-    /// Returns the address of ROM 12 for a raw angle a·δ. An angle of a right angle or more has the last address.
+    /// Returns the address of ROM 12 for an angle a·δ; a right angle or more has the last address.
     #[inline]
     fn step_of(&self, angle: i64) -> i64 {
         magnitude(angle, self.keys.angle_fraction, self.keys.table_address)
             .unwrap_or(self.table.words.len() as i64 - 1)
     }
 
-    /// Returns the word of ROM 12, which is cos² as a raw value, for a raw angle a·δ.
+    /// Returns the word of ROM 12 for an angle a·δ.
     #[inline]
     fn cosine_of(&self, angle: i64) -> i64 {
         self.table.words[self.step_of(angle) as usize]
     }
 }
 
-/// Returns the product of f, the word of ROM 12, with the operand `amplitude`.
 fn products(keys: &Keys) -> Products {
     Products::amplitude(keys.f_format(), keys.colour_bits, keys.output_rounding)
         .at_edges(keys.stages > 2)
 }
 
-/// Returns the golden model of the device `cosine-squared` for a configuration.
 pub fn model(config: &Config) -> Box<dyn Model> {
     let keys = Keys::of(config);
     let mut frame = Frame::default();
@@ -78,9 +75,8 @@ pub fn model(config: &Config) -> Box<dyn Model> {
     Box::new(frame.model(program))
 }
 
-/// Returns the accuracy contract of the device `cosine-squared`. Its control operands are `delta_zeta` (the angle from a point to
-/// the next), `zeta_start` (the first angle) and `length` (the number of intervals). To state a single point of a line, the
-/// contract sets `zeta_start` to the angle of that point.
+/// The control operands are `delta_zeta` (the angle from a point to the next), `zeta_start` (the first angle) and `length` (the
+/// number of intervals). To state a single point of a line, the contract sets `zeta_start` to the angle of that point.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     let keys = Keys::of(config);
     let mut operands = line::angle_operands(keys.angle_format()).to_vec();
@@ -115,14 +111,13 @@ impl Reflectance for SquaredArithmetic {
         vec![line::interval(angle, last[1], length, first[0]), angle, length]
     }
 
-    /// Returns the operands of a line of one point, at the angle `gamma`·√(n/2). The host multiplies angles by this root before
-    /// it writes them. The result is never `None`.
+    /// Returns the operands of a line of one point, at the angle `gamma`·√(n/2): the host multiplies angles by this root.
     fn at(&self, operands: &[Operand], gamma: f64, n: f64) -> Option<Vec<i64>> {
         let stretched = (n / 2.0).sqrt() * gamma;
         Some(vec![0, line::raw_angle(&operands[1], stretched), 0])
     }
 
-    /// Returns `None`: the operand is an angle times √(n/2), from which the angle alone cannot be computed.
+    /// The operand is an angle times √(n/2), from which the angle alone cannot be computed.
     fn cosine(&self, _: &[Operand], _: &[i64]) -> Option<f64> {
         None
     }
@@ -131,15 +126,15 @@ impl Reflectance for SquaredArithmetic {
         Some("length")
     }
 
-    /// Returns every step of ROM 12, an interval of angles with one word. The steps cover every angle that a line can reach.
-    /// For a right angle and beyond, the word is the table's last, 0, and the formula is 0 too. The result is never `None`.
+    /// Visits every step of ROM 12, an interval of angles with one word. The steps cover every angle that a line can reach: for a
+    /// right angle and beyond, the table's last word and the formula are both 0.
     fn sweep(&self) -> Option<Sweep> {
         let last = (1 << self.keys.table_address) - 1;
         Some(Sweep::ranges([("step of the table", (0, last))]))
     }
 
     /// Returns the largest error over all angles in the step, of either sign. The formula falls from one end of the step to the
-    /// other, so the error is largest at an end. The result is never `None`.
+    /// other, so the error is largest at an end.
     fn sweep_error(&self, place: &[i64]) -> Option<f64> {
         let step = place[0];
         let word = self.table.words[step as usize];
@@ -149,9 +144,8 @@ impl Reflectance for SquaredArithmetic {
         Some((end(step) - f).max(f - end(step + 1)))
     }
 
-    /// Returns two contributions to the error of f. One is the distance of the formula from the middle of its values in a step;
-    /// in the last step, whose word is 0, it is the distance from 0. The other is the rounding of the word of ROM 12. The angle
-    /// and its step are exact.
+    /// The steps contribute the distance of the formula from the middle of its values in a step, or from 0 in the last step. The
+    /// word of ROM 12 is rounded. The angle and its step are exact.
     fn shares(&self) -> Vec<ErrorShare> {
         let table = &self.table;
         vec![

@@ -1,31 +1,30 @@
-//! Builds a table of straight segments that approximates an increasing, concave function, such as the square root.
+//! Builds a table of straight segments that approximates an increasing, concave function, such as the square root. The golden
+//! model of the device `rough` uses it for its sines; the hardware description computes that table with other code.
 //!
-//! The golden model of the device `rough` uses it for its table of sines; the hardware description computes that table with
-//! other code. The operand u is an unsigned integer of C bits. The upper three quarters of the operands are the first range;
-//! the upper three quarters of the remaining quarter are the second range, and so on. The operands below all ranges are called
-//! the tail. The segments of one range have the same length, and so have the segments of the tail. A value of the table is a
-//! raw number in the format u0.S, which has S fraction bits.
+//! The operand u is an unsigned integer of C bits. The upper three quarters of the operands are the first range. The upper
+//! three quarters of the remaining quarter are the second range, and so on. The operands below all ranges are called the tail.
+//! The segments of one range have the same length, and so have the segments of the tail. A value of the table is a raw number
+//! in the format u0.S.
 
 use glint_base::fixed::exp2;
 
-/// The parameters of a [`SegmentedCurve`]: the bit widths of its operand and values, and the number of its segments.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CurveParams {
-    /// The number C of bits of the operand.
+    /// The C of the module documentation.
     pub operand_bits: u32,
     /// The number S of fraction bits of a value.
     pub fraction: u32,
-    /// The number D of fraction bits of a slope. A slope is the rise over a whole segment.
+    /// The number D of fraction bits of a slope, the rise over a whole segment.
     pub slope_fraction: u32,
     /// log₂ of the number of prefixes in each range, the topmost range first; at least 2. A prefix is the leading bits of u
     /// that select a segment; a quarter of the prefixes belongs to the operands below the range. For example, 4 makes 16
     /// prefixes, 12 of them segments of the range.
     pub segments: Vec<u32>,
-    /// log₂ of the number of segments of the tail, the operands below all ranges.
+    /// log₂ of the number of segments of the tail.
     pub tail: u32,
 }
 
-/// A segment: its first operand, log₂ of its number of operands, and the base and slope that the table stores, as raw values.
+/// Base and slope are the raw values that the table stores.
 #[derive(Clone, Copy, Debug)]
 struct CurveSegment {
     start: u64,
@@ -34,20 +33,19 @@ struct CurveSegment {
     slope: i64,
 }
 
-/// One segment of a [`SegmentedCurve`], with the largest difference between its values and the function.
+/// A segment of a [`SegmentedCurve`] with its error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Piece {
-    /// The smallest operand of the segment.
+    /// The smallest operand.
     pub start: u64,
-    /// The largest operand of the segment.
+    /// The largest operand.
     pub last: u64,
-    /// The largest `|value − function|` among the operands of the segment.
+    /// The largest `|value − function|`.
     pub error: f64,
-    /// The error that would remain if words had unlimited width: the largest distance of the straight line from the function.
+    /// The error that words of unlimited width would leave: the largest distance of the straight line from the function.
     pub shape: f64,
 }
 
-/// A table of straight segments that approximates a function, built by [`SegmentedCurve::new`].
 #[derive(Clone, Debug)]
 pub struct SegmentedCurve {
     params: CurveParams,
@@ -60,8 +58,7 @@ pub struct SegmentedCurve {
 }
 
 impl SegmentedCurve {
-    /// Returns the table of `function`. `function` gets the operand u as an integer from 0 to 2^C; it must be concave and
-    /// increase from 0 to 1.
+    /// Makes the table of `function`, which gets the operand u from 0 to 2^C. It must be concave and increase from 0 to 1.
     pub fn new(params: &CurveParams, function: impl Fn(f64) -> f64) -> Self {
         let mut curve = Self {
             params: params.clone(),
@@ -143,12 +140,12 @@ impl SegmentedCurve {
         self.pieces.push(Piece { start, last: start + steps - 1, error, shape });
     }
 
-    /// Returns all segments of the table with their largest errors, the segments of the topmost range first and the tail last.
+    /// Returns all segments: first the segments of the topmost range, and last the tail.
     pub fn pieces(&self) -> &[Piece] {
         &self.pieces
     }
 
-    /// Returns the raw value of the table at the operand u, which must be from 0 to 2^C − 1.
+    /// Returns the value of the table at the operand u, from 0 to 2^C − 1.
     #[inline]
     pub fn at(&self, u: i64) -> i64 {
         let length = 64 - (u as u64).leading_zeros();
@@ -172,13 +169,13 @@ impl SegmentedCurve {
 mod tests {
     use super::*;
 
-    /// Returns three quarters of x·(2 − x) at x = u/16.
+    /// Three quarters of x·(2 − x) at x = u/16.
     fn lobe(u: f64) -> f64 {
         0.75 * (u / 16.0) * (2.0 - u / 16.0)
     }
 
-    /// Makes the curve of `lobe` for operands of 4 bits, with 8 fraction bits in values and slopes. For example,
-    /// `parabola(&[2], 0)` has one range, 4 … 15, in segments of four operands, and a tail of one segment.
+    /// Operands have 4 bits, values and slopes 8 fraction bits. `parabola(&[2], 0)` has one range, 4 … 15, in segments of four
+    /// operands, and a tail of one segment.
     fn parabola(segments: &[u32], tail: u32) -> SegmentedCurve {
         let params = CurveParams {
             operand_bits: 4,

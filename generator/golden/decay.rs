@@ -1,9 +1,8 @@
-//! The golden model and the accuracy contract that the devices `blinn` and `gauss` share: f = 2^(−n·decay(c)).
+//! The golden model and the accuracy contract that the devices `blinn` and `gauss` share: f = 2^(−n·decay(c)), or 0 if c ≤ 0
+//! ([symbols](crate#symbols)).
 //!
-//! c = cos γ, where γ is the angle between the surface normal and the half vector; n is the specular exponent; f is the
-//! reflectance, the factor by which the devices multiply colours. The decay is a function of c alone: −log₂ c in `blinn`, which
-//! makes f = cⁿ, and γ²/(2 ln 2) in `gauss`, which makes f = exp(−n·γ²/2). For example, c = 0.5 and n = 2 give the decay 1 in
-//! `blinn`, and f = 0.25. In both devices f is 0 if c ≤ 0.
+//! The decay is −log₂ c in `blinn`, which makes f = cⁿ, and γ²/(2 ln 2) in `gauss`, which makes f = exp(−n·γ²/2). For example,
+//! c = 0.5 and n = 2 give the decay 1 in `blinn`, and f = 0.25.
 
 #[cfg(test)]
 mod tests;
@@ -23,14 +22,14 @@ use glint_base::fixed::{Format, Rounding, exp2};
 use glint_config::Config;
 use glint_keys::decay::{Decay, Keys};
 
-/// The number of parts into which each octave of the distance is divided. The error is bounded in each part separately.
+/// Each octave of the distance is divided into this number of parts, whose errors are bounded separately.
 const PARTS: i64 = 32;
 
-/// The integer arithmetic of the device, with one method for each operation. These methods take and return raw values.
+/// The integer arithmetic of the device, on raw values.
 struct DecayArithmetic {
     of: Decay,
     keys: Keys,
-    /// Tables of polynomials: `ratio` is the decay divided by the distance 1 − c, and `power` is 2^−x.
+    /// The decay divided by the distance 1 − c, and 2^−x.
     ratio: Arc<Piecewise>,
     power: Arc<Piecewise>,
     to_decay: Narrow,
@@ -41,10 +40,7 @@ struct DecayArithmetic {
 }
 
 impl DecayArithmetic {
-    /// Makes the tables of a configuration, and the roundings between them.
-    ///
-    /// # Panics
-    /// Panics if the check of the schema has not accepted the configuration. The caller must check it first.
+    /// Makes the tables of a configuration. Panics if the check of the schema has not accepted it.
     fn new(of: Decay, keys: Keys) -> Self {
         let ratio = keys.ratio(of).expect("a configuration that is checked");
         let power = keys.power().expect("a configuration that is checked");
@@ -66,13 +62,12 @@ impl DecayArithmetic {
         }
     }
 
-    /// Returns the octave and the raw distance of the raw cosine c. In `blinn`, the octave is the number of times that c must
-    /// be doubled to be at least one half. The distance is 1 minus the doubled c, less an ulp (one unit in the last place). In
-    /// `gauss`, the octave is always 0, and c is not doubled. For example, with 4 fraction bits, c = 5/16 has octave 1 and
-    /// distance 5 in `blinn`.
+    /// Returns the octave and the distance of the cosine c. In `blinn`, the octave is the number of times that c must be
+    /// doubled to be at least one half. The distance is 1 minus the doubled c, less an ulp. In `gauss`, the octave is always 0,
+    /// and c is not doubled. For example, with 4 fraction bits, c = 5/16 has octave 1 and distance 5 in `blinn`.
     ///
     /// If the fraction bits of c are all 0 (c = 0 or 1.0), all bits of the octave in `blinn` are 1, as in the hardware. The
-    /// reflectance of such a c does not depend on the octave and the distance.
+    /// reflectance of such a c depends on neither.
     #[inline]
     fn operand(&self, cosine: i64) -> (i64, i64) {
         let one = self.keys.operands.cosine.one();
@@ -90,9 +85,9 @@ impl DecayArithmetic {
         }
     }
 
-    /// Returns the decay as the raw factor that is multiplied by n, and whether the decay is small. The decay is `octave` plus
-    /// `distance` times `ratio`. A small decay, below ¼, has `decay.fraction` fraction bits; a larger decay is truncated to
-    /// `decay.coarse_fraction` fraction bits.
+    /// Returns the decay as the factor that is multiplied by n, and whether the decay is small. The decay is `octave` plus
+    /// `distance` times `ratio`. A small decay, below ¼, has `decay.fraction` fraction bits; a larger one is truncated to
+    /// `decay.coarse_fraction`.
     #[inline]
     fn factor(&self, octave: i64, distance: i64, ratio: i64) -> (i64, bool) {
         let (fraction, coarse) = (self.keys.decay_fraction, self.keys.coarse_fraction);
@@ -104,21 +99,21 @@ impl DecayArithmetic {
         }
     }
 
-    /// Returns the raw product n·decay with `exponential.argument` fraction bits. f is 2 to the power of minus this product.
+    /// Returns n·decay with `exponential.argument` fraction bits. f is 2 to the power of minus this product.
     #[inline]
     fn halvings(&self, (factor, small): (i64, bool), exponent: i64) -> i64 {
         let narrow = if small { self.from_fine } else { self.from_coarse };
         narrow.apply(factor * exponent)
     }
 
-    /// Returns the operand of the table of 2^−x: the fraction bits of n·decay.
+    /// Returns the operand of the table of 2^−x.
     #[inline]
     fn argument(&self, halvings: i64) -> i64 {
         halvings & ((1 << self.keys.argument) - 1)
     }
 
-    /// Returns the raw f: `power`, the table's value of 2^−x, shifted right by the integer part of n·decay and rounded. f is 0
-    /// if c is 0, and 1.0 less an ulp if c is 1.0.
+    /// Returns f: `power`, the table's value of 2^−x, shifted right by the integer part of n·decay and rounded. f is 0 if c is
+    /// 0, and 1.0 less an ulp if c is 1.0.
     #[inline]
     fn reflectance(&self, cosine: i64, halvings: i64, power: i64) -> i64 {
         if cosine == 0 {
@@ -131,7 +126,7 @@ impl DecayArithmetic {
         }
     }
 
-    /// Returns the exact decay in f64 for a distance 1 − c, which is a value from 0 to 1.0.
+    /// Returns the exact decay for a distance 1 − c, from 0 to 1.0.
     fn exact_decay(&self, distance: f64) -> f64 {
         match self.of {
             Decay::Logarithm => -libm::log2(1.0 - distance),
@@ -165,7 +160,6 @@ impl DecayArithmetic {
         parts.map(|part| part * weight)
     }
 
-    /// Returns the exact f in f64, unrounded.
     #[inline]
     fn formula(&self, cosine: f64, exponent: f64) -> f64 {
         match self.of {
@@ -175,8 +169,7 @@ impl DecayArithmetic {
     }
 }
 
-/// Returns the golden model of `blinn` or `gauss`; `of` says which. Panics if the check of the schema has not accepted the
-/// configuration.
+/// Panics if the check of the schema has not accepted the configuration.
 pub fn model(config: &Config, of: Decay) -> Box<dyn Model> {
     let it = Arc::new(DecayArithmetic::new(of, Keys::of(config)));
     let keys = &it.keys;
@@ -212,8 +205,7 @@ pub fn model(config: &Config, of: Decay) -> Box<dyn Model> {
     Box::new(products.behind(frame, reflectance, program))
 }
 
-/// Returns the accuracy contract of `blinn` or `gauss`; `of` says which. Panics if the check of the schema has not accepted the
-/// configuration. The control operands are `cos_gamma` and `exponent`.
+/// Panics if the check of the schema has not accepted the configuration. The control operands are `cos_gamma` and `exponent`.
 pub fn contract(config: &Config, of: Decay) -> Box<dyn Contract> {
     let it = DecayArithmetic::new(of, Keys::of(config));
     let operands = highlight::operands(&it.keys.operands, &it.keys.domain);
@@ -240,8 +232,7 @@ impl Reflectance for DecayArithmetic {
         Some(self.formula(cosine, exponent as f64))
     }
 
-    /// Returns the largest n as an upper limit of the slope, and the jump of the smallest n at a right angle. The result is
-    /// never `None`.
+    /// The largest n is an upper limit of the slope; the smallest n jumps most at a right angle.
     /// - cosⁿγ has the slope n·c^(n − 1), at most n. With n = 0 it jumps from 1 to 0 at a right angle.
     /// - exp(−n·γ²/2) has the slope n·(γ/sin γ)·exp(−n·γ²/2). It is at most n, since γ/sin γ ≤ exp(γ²/2) up to a right angle:
     ///   the logarithm of γ/sin γ is γ²/6 + γ⁴/180 + …, of positive terms that are together below γ²/2 there. At a right angle
@@ -263,8 +254,8 @@ impl Reflectance for DecayArithmetic {
         })]
     }
 
-    /// Returns the contributions to the error of f, as values with their keys, and derives them. Let y = n·decay be exact and z
-    /// the hardware's product before it is cut to the fraction bits of the table of 2^−x.
+    /// Derives the contributions to the error of f. Let y = n·decay be exact and z the hardware's product before it is cut to
+    /// the fraction bits of the table of 2^−x.
     ///
     /// - The ratio of decay to distance has the error of its table, which is proved over every operand. In addition, several
     ///   distances share one operand of the table. Their difference from the middle distance is multiplied by the steepest

@@ -1,9 +1,9 @@
 //! Makes the golden model and the accuracy contract of a device from one list of its microinstructions.
 //!
 //! The author of a device declares operands and registers in a [`Frame`] and states the operation of each microinstruction. The
-//! golden model executes these operations clock by clock. The contract runs the golden model to get the results of the device,
-//! and compares them with a [`Formula`], which the author adds, with a bound on the error if the author has proved one. For
-//! example, this device squares its operand:
+//! golden model executes these operations clock by clock. The contract runs the golden model to get the results of the device. It
+//! compares them with a [`Formula`], which the author adds, with a bound on the error if the author has proved one. For example,
+//! this device squares its operand:
 //!
 //! ```
 //! use glint_base::fixed::Format;
@@ -45,16 +45,17 @@ use super::{
     ANY_VALUE, Bound, Bounds, ComputedPart, Contract, Model, Operand, Output, Sweep, Term,
 };
 
-/// The largest number of clocks that a computation may take.
+/// A computation may take this number of clocks at most.
 const LONGEST: u32 = 1 << 20;
 
-/// A smaller bound counts as this one, in units, so that errors of outputs with different bounds can be compared.
+/// The smallest bound, in units. A smaller one counts as this one, so that errors of outputs with different bounds can be
+/// compared.
 const LEAST_BOUND: f64 = 1e-6;
 
-/// The raw value that replaces a result that the device never shows.
+/// Replaces a result that the device never shows.
 const NEVER: i64 = i64::MAX >> 1;
 
-/// A device whose golden model is a list of microinstructions. [`Frame::device`] makes it.
+/// A device whose golden model is a list of microinstructions, made by [`Frame::device`].
 pub struct Device {
     model: ClockedModel,
     operands: Vec<Operand>,
@@ -62,11 +63,8 @@ pub struct Device {
 }
 
 impl Frame {
-    /// Returns the device with this program of microinstructions, in the state after power-up. [`Frame::model`] describes the
-    /// program.
-    ///
-    /// # Panics
-    /// Panics if there is no microinstruction. A program must have at least one.
+    /// Returns the device with this program of microinstructions, as [`Frame::model`] describes it. Panics if there is no
+    /// microinstruction.
     pub fn device(self, program: impl IntoIterator<Item = FrameStep>) -> Device {
         let mut operands = Vec::new();
         for (name, format, domain) in self.operands() {
@@ -80,12 +78,9 @@ impl Frame {
         Device { model: self.model(program), operands, outputs }
     }
 
-    /// Returns the device that runs the parts of the frame one after the other, in the order in which [`Frame::part`] added
-    /// them, and has a register behind each output that is combinational logic.
-    ///
-    /// # Panics
-    /// This method never panics. Its program ends unconditionally with the microinstruction that raises `valid`, so that output
-    /// registers can be added.
+    /// Returns the device that runs the parts of the frame one after the other, in the order in which [`Frame::part`] added them.
+    /// Each output that is combinational logic gets a register behind it. Never panics: its program ends unconditionally with the
+    /// microinstruction that raises `valid`, so that output registers can be added.
     pub fn dataflow(mut self) -> Device {
         let device = match std::mem::take(&mut self.parts) {
             parts if parts.is_empty() => self.device([idle(), idle().valid().end()]),
@@ -97,16 +92,12 @@ impl Frame {
 }
 
 impl Device {
-    /// Returns the golden model of the device.
     pub fn model(self) -> Box<dyn Model> {
         Box::new(self.model)
     }
 
-    /// Sets the domain of the operand `operand` in the contract to the raw values `low ..= high`. A device needs this if the
-    /// operand's register can have values for which the contract promises nothing.
-    ///
-    /// # Panics
-    /// Panics if the device has no operand with this name.
+    /// Sets the operand's domain in the contract to the raw values `low ..= high`. Its register may have other values, for which
+    /// the contract promises nothing. Panics if the device has no such operand.
     #[must_use]
     pub fn domain(mut self, operand: &str, low: i64, high: i64) -> Self {
         let found = self.operands.iter_mut().find(|it| it.name == operand);
@@ -114,10 +105,8 @@ impl Device {
         self
     }
 
-    /// Marks the operand `operand` in the contract as limited to its domain before the computation ([`Operand::clamped`]).
-    ///
-    /// # Panics
-    /// Panics if the device has no operand with this name.
+    /// Marks an operand as limited to its domain before the computation ([`Operand::clamped`]). Panics if the device has no such
+    /// operand.
     #[must_use]
     pub fn limits(mut self, operand: &str) -> Self {
         let found = self.operands.iter_mut().find(|it| it.name == operand);
@@ -125,7 +114,7 @@ impl Device {
         self
     }
 
-    /// Returns the accuracy contract of the device: the golden model computes the results, and `formula` states the exact values.
+    /// The golden model computes the contract's results, and `formula` states the exact values.
     pub fn contract(self, formula: impl Formula + 'static) -> Box<dyn Contract> {
         let mut shown = Vec::new();
         for output in &self.outputs {
@@ -139,105 +128,99 @@ impl Device {
 
 /// The exact formula that a device approximates, with the proved bound of the device's error.
 pub trait Formula: Send + Sync {
-    /// Returns the exact outputs in f64, unrounded, for the values (not raw) of the operands, which are in the order of the
-    /// frame.
+    /// Returns the exact outputs in f64, unrounded, for the values (not raw) of the operands in the order of the frame.
     fn exact(&self, operands: &[f64]) -> Vec<f64>;
 
     /// Returns the two values that count as exact for output number `output` if the formula gives `value`. An error is measured
-    /// from the nearer value. Normally both are `value`. The values differ if the output wraps: for example, an output from −1
-    /// to below 1 that wraps may be close to −1 or to 1 if the formula gives 1.
+    /// from the nearer one. They differ if the output wraps: an output from −1 to below 1 may be close to −1 or to 1 if the
+    /// formula gives 1.
     fn right_values(&self, value: f64, output: usize) -> [f64; 2] {
         let _ = output;
         [value; 2]
     }
 
-    /// Returns whether the contract promises anything about output number `output`, for these values of the operands. For
-    /// example, a device may promise nothing for a divisor of 0.
+    /// Returns whether the contract promises anything about output number `output` for these values of the operands, for example
+    /// for a divisor of 0.
     fn is_promised(&self, operands: &[f64], output: usize) -> bool {
         let _ = (operands, output);
         true
     }
 
-    /// Appends the raw outputs for raw operands to `raw` and returns true, if the author can compute them faster than by
-    /// running the microprogram. Otherwise returns false and appends nothing. The outputs must equal the results of the golden
-    /// model.
+    /// Appends the raw outputs and returns true, if the author can compute them faster than the microprogram. They must equal the
+    /// results of the golden model.
     fn results(&self, operands: &[i64], raw: &mut Vec<i64>) -> bool {
         let _ = (operands, raw);
         false
     }
 
-    /// Returns the contributions to the error of output number `output`, each a proven upper limit. Returns an empty list if the
-    /// bound is not known yet.
+    /// Returns the contributions to the error of output number `output`, each a proven upper limit; none if the bound is not
+    /// known yet.
     fn terms(&self, output: usize) -> Vec<Term> {
         let _ = output;
         Vec::new()
     }
 
-    /// Returns the parts of the computation, as [`Contract::parts`] does. The default is an empty list: the parts are not
-    /// known.
+    /// See [`Contract::parts`].
     fn parts(&self) -> Vec<ComputedPart> {
         Vec::new()
     }
 
-    /// Returns the bound that the contract demands for output number `output`, in units, as [`Bound::limit`] states it.
+    /// Returns the bound that the contract demands for output number `output`, in units ([`Bound::limit`]).
     fn limit(&self, output: usize) -> f64 {
         let _ = output;
         1.0
     }
 
-    /// Returns the formula of each output as a Python expression, as [`Contract::expressions`] does; an empty list if nobody
-    /// has written them.
+    /// See [`Contract::expressions`].
     fn expressions(&self) -> Vec<String> {
         Vec::new()
     }
 
-    /// Returns whether an output wraps, as [`Contract::wraps`] does. The default is `false`.
+    /// See [`Contract::wraps`].
     fn wraps(&self) -> bool {
         false
     }
 
-    /// Returns the comparisons under which errors are promised, as [`Contract::conditions`] does, or `None` without such
-    /// comparisons.
+    /// See [`Contract::conditions`].
     fn conditions(&self) -> Option<Vec<Option<Comparison>>> {
         None
     }
 
-    /// Returns raw operands at which an error is likely to show, as [`Contract::hint`] does, or `None` without a suggestion.
+    /// See [`Contract::hint`].
     fn hint(&self, unit: &mut dyn FnMut() -> f64) -> Option<Vec<i64>> {
         let _ = unit;
         None
     }
 
-    /// Returns the cases of an exhaustive check, as [`Contract::sweep`] does, or `None` for all combinations of the operands.
+    /// See [`Contract::sweep`]; `None` visits all combinations of the operands.
     fn sweep(&self) -> Option<Sweep> {
         None
     }
 
-    /// Returns the error in one case of the check, as [`Contract::sweep_error`] does, or `None` if a case is a set of operands.
+    /// See [`Contract::sweep_error`]; `None` if a case is a set of operands.
     fn sweep_error(&self, place: &[i64]) -> Option<f64> {
         let _ = place;
         None
     }
 
-    /// Returns remarks about the formula for a user, as [`Contract::remarks`] does.
+    /// See [`Contract::remarks`].
     fn remarks(&self) -> Vec<String> {
         Vec::new()
     }
 }
 
-/// A contract whose results the golden model computes.
 struct OfModel<F> {
     device: Device,
     /// The positions of the outputs among the signals of the golden model.
     shown: Vec<usize>,
-    /// The factors by which the errors of outputs are multiplied in an exhaustive check ([`Bounds::weights`]).
+    /// See [`Bounds::weights`].
     weights: Vec<f64>,
     formula: F,
 }
 
 impl<F> OfModel<F> {
-    /// Runs the golden model from power-up with `operands`, and returns the raw outputs of result number `index`, counted
-    /// from 0. Returns `None` if the model does not show that result within `LONGEST` clocks.
+    /// Runs the golden model from power-up with `operands`, and returns the raw outputs of result number `index`, if the model
+    /// shows it within `LONGEST` clocks.
     fn shown(&self, operands: &[i64], index: u64) -> Option<Vec<i64>> {
         let mut model = self.device.model.clone();
         model.clock(&self.inputs(operands, 1));
@@ -255,14 +238,12 @@ impl<F> OfModel<F> {
         None
     }
 
-    /// Returns the values of the operands, from their raw values.
     fn operand_values(&self, raw: &[i64]) -> Vec<f64> {
         let pairs = self.device.operands.iter().zip(raw);
         pairs.map(|(it, &raw)| it.format.to_f64(raw.into())).collect()
     }
 
-    /// Returns the bit patterns of all inputs of the model in a clock without reset. `start` and the write strobes have the
-    /// value `strobe`.
+    /// Returns all inputs of the model in a clock without reset. `start` and the write strobes have the value `strobe`.
     fn inputs(&self, operands: &[i64], strobe: u64) -> Vec<u64> {
         let mut inputs = vec![1, strobe];
         for (operand, &raw) in self.device.operands.iter().zip(operands) {
@@ -272,7 +253,7 @@ impl<F> OfModel<F> {
         inputs
     }
 
-    /// Returns the raw outputs that the model shows after its latest clock.
+    /// Returns the raw outputs after the latest clock.
     fn raw_outputs(&self, model: &ClockedModel) -> Vec<i64> {
         let mut outputs = Vec::with_capacity(self.shown.len());
         for (&at, output) in self.shown.iter().zip(&self.device.outputs) {
@@ -291,9 +272,8 @@ impl<F: Formula> Contract for OfModel<F> {
         &self.device.outputs
     }
 
-    /// For result number 0, appends the raw outputs from [`Formula::results`] if that method computes them for these operands.
-    /// Otherwise, and for every later result, it appends the outputs of a run of the golden model. If the model never shows the
-    /// result, each output gets a number that is further off than any bound.
+    /// [`Formula::results`] only knows result number 0. If the model never shows the result, each output gets a number that is
+    /// further off than any bound.
     fn results(&self, operands: &[i64], index: u64, raw: &mut Vec<i64>) {
         if index == 0 && self.formula.results(operands, raw) {
             return;

@@ -1,9 +1,9 @@
 //! The golden model and the accuracy contract of the device `dot-product`, which computes cos γ = max(0, N·H / |N|).
 //!
-//! N is a vector of any length, such as an interpolated normal (operands `nx`, `ny`, `nz`); H is a unit vector, such as the
-//! half vector (`hx`, `hy`, `hz`); γ is the angle between them. With the key `two_sided` the result is |N·H| / |N|. The result
-//! is at most 1, and it is 0 if N = 0. The device multiplies N·H by 1/√(N·N), which it interpolates in a table. For example, N
-//! = (0, 0, 0.5) and H = (0, 0, 1) give 1.
+//! N is a vector of any length, such as an interpolated normal (operands `nx`, `ny`, `nz`). H is a unit vector, such as the half
+//! vector (`hx`, `hy`, `hz`). γ is the angle between them. With the key `two_sided` the result is |N·H| / |N|. It is at most 1,
+//! and 0 if N = 0. The device multiplies N·H by 1/√(N·N), which it interpolates in a table. For example, N = (0, 0, 0.5) and H =
+//! (0, 0, 1) give 1.
 
 use std::sync::Arc;
 
@@ -16,7 +16,6 @@ use glint_base::fixed::{Format, Rounding, exp2};
 use glint_config::Config;
 use glint_keys::dot_product::Keys;
 
-/// Returns the device: its operands, registers and outputs, and the operation of each microinstruction.
 fn device(config: &Config) -> device::Device {
     let it = Arc::new(CosineFormula::new(config));
     let Keys { fraction, other, kept, .. } = it.keys;
@@ -62,26 +61,24 @@ fn device(config: &Config) -> device::Device {
     ["hx", "hy", "hz"].into_iter().fold(device, |device, name| device.domain(name, -one, one))
 }
 
-/// Returns the golden model of the device `dot-product` for a configuration.
 pub fn model(config: &Config) -> Box<dyn Model> {
     device(config).model()
 }
 
-/// Returns the accuracy contract of the device `dot-product`: the exact cosine, and the proven bound of its error.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     device(config).contract(CosineFormula::new(config))
 }
 
-/// Returns the raw components of a vector, rounded to `fraction` fraction bits. For example, 0.5 with 4 fraction bits is 8.
+/// Rounds a vector to `fraction` fraction bits: 0.5 with 4 is 8.
 fn raw_vector(vector: [f64; 3], fraction: u32) -> [i64; 3] {
     vector.map(|component| (component * exp2(fraction as i32)).round() as i64)
 }
 
-/// The formula N·H/|N|, limited to 0 … 1, for a normal N of any length, with the constants of the hardware's arithmetic.
+/// The formula N·H/|N|, limited to 0 … 1, with the constants of the hardware's arithmetic.
 struct CosineFormula {
     keys: Keys,
     root: Root,
-    /// Rounds the shifted product N·H to the register `distance`, which holds half of the product.
+    /// Rounds the shifted product N·H to the register `distance`, which holds half of it.
     distance: Narrow,
     shortened: Narrow,
     rounded: Narrow,
@@ -102,14 +99,14 @@ impl CosineFormula {
         }
     }
 
-    /// Returns the raw value of the register `distance`: half of N·H, shifted so that the length of N is from 1 to 2, and
-    /// rounded. A negative N·H gives 0; with `two_sided` the value is half of |N·H|.
+    /// Returns the register `distance`: half of N·H, shifted so that the length of N is from 1 to 2, and rounded. A negative N·H
+    /// gives 0, or half of |N·H| with `two_sided`.
     fn distance(&self, sum: i64, shift: i64) -> i64 {
         self.distance.apply(if self.keys.two_sided { sum.abs() } else { sum } << shift)
     }
 
-    /// Returns upper limits of three errors of the cosine, as values: by the inverse root, by the rounding of both factors, and
-    /// by the rounding of the cosine.
+    /// Returns upper limits of three errors of the cosine, as values: by the inverse root, the rounding of both factors, and the
+    /// rounding of the cosine.
     ///
     /// Let m be N·N, shifted to 1 ≤ m < 4. Let f = 1/√m, and let t be N·H, shifted by half as many places. The cosine is t·f.
     ///
@@ -145,8 +142,7 @@ impl Formula for CosineFormula {
     }
 
     /// Returns a normal of random length, and a unit vector that is close to the normal's direction or nearly at a right angle
-    /// to it. Highlights are near a cosine of 1, and at a cosine of 0 the result begins to be clamped. The result is never
-    /// `None`.
+    /// to it. Highlights are near a cosine of 1, and at a cosine of 0 the result begins to be clamped.
     fn hint(&self, unit: &mut dyn FnMut() -> f64) -> Option<Vec<i64>> {
         let normal = unit_vector(centred(unit));
         let off = centred(unit);
@@ -169,14 +165,13 @@ impl Formula for CosineFormula {
         Some([normal, half].concat())
     }
 
-    /// Returns every sum of squares N·N from 1 on, as a raw value; the zero vector is left out. The sum determines the inverse
-    /// root. The result is never `None`.
+    /// Visits every sum of squares N·N from 1 on, which determines the inverse root.
     fn sweep(&self) -> Option<Sweep> {
         Some(self.root.sweep())
     }
 
-    /// Returns an upper limit of the error, in units. The limit is the actual error of the inverse root for this sum of
-    /// squares, plus the largest possible errors of the factors and of the rounding. The result is never `None`.
+    /// Returns an upper limit of the error, in units. It is the actual error of the inverse root for this sum of squares, plus
+    /// the largest possible errors of the factors and of the rounding.
     fn sweep_error(&self, place: &[i64]) -> Option<f64> {
         let [_, factors, rounding] = self.errors();
         let error = self.root.relative_error(place[0]) + factors + rounding;

@@ -1,7 +1,7 @@
 //! The golden model and the accuracy contract of the device `expression`, which computes formulas of several operands.
 //!
-//! A configuration states the formulas; for example, `a / b` or `sqrt(x*x + y*y)`. The planner ([`glint_plan`]) translates them
-//! into a plan and proves a bound on its error against the formulas. The module `plan` executes the plan in integers.
+//! A configuration states the formulas, such as `a / b` or `sqrt(x*x + y*y)`. The planner ([`glint_plan`]) translates them into
+//! a plan and proves a bound on its error against the formulas. The module `plan` executes the plan in integers.
 
 use std::sync::Arc;
 
@@ -12,25 +12,22 @@ use glint_base::fixed::{Format, exp2};
 use glint_formula::{Comparison, Enclosure, RBig};
 use glint_plan::{NodeId, Operation, ProvedPlan, StatedOverflow, StatedWidth};
 
-/// Returns the device that executes the plan `planned`, with the operands and results of its statement.
 fn device(planned: &ProvedPlan) -> device::Device {
     let results = planned.statement.results.iter();
     let outputs: Vec<String> = results.map(|result| format!("{}_out", result.name)).collect();
     plan_device(&planned.statement.operands, &planned.plan, &outputs)
 }
 
-/// Returns the golden model of the device `expression` for the plan of its formulas.
 pub fn model(planned: &ProvedPlan) -> Box<dyn Model> {
     device(planned).model()
 }
 
-/// Returns the accuracy contract of the device `expression` for the plan of its formulas.
 pub fn contract(planned: &Arc<ProvedPlan>) -> Box<dyn Contract> {
     device(planned).contract(ProvedFormulas { planned: planned.clone() })
 }
 
-/// Returns the two numbers nearest to a format that differ from `value` by a multiple of the format's range. The first is in
-/// the format. For example, 1.25 gives −0.75 and 1.25 for s0.7, which has the numbers from −1 to below 1 and so the range 2.
+/// Returns the two numbers nearest to a format that differ from `value` by a multiple of the format's range, first the one in
+/// the format. For s0.7, with the range 2 from −1 to below 1, 1.25 gives −0.75 and 1.25.
 fn values_in_format(value: f64, format: Format) -> [f64; 2] {
     let range = exp2(format.width() as i32 - format.frac);
     let least = format.to_f64(format.min_raw());
@@ -39,16 +36,15 @@ fn values_in_format(value: f64, format: Format) -> [f64; 2] {
     [inside, if is_in_upper_half { inside - range } else { inside + range }]
 }
 
-/// The most parts of a formula that is written out as text for benches and programs.
+/// A longer formula is not written out as text for benches and programs.
 const MOST_PARTS: u32 = 20_000;
 
-/// The formulas of the configuration, with the plan and with the bound that was proved for each formula.
+/// The formulas of the configuration, with the plan and the proved bounds.
 struct ProvedFormulas {
     planned: Arc<ProvedPlan>,
 }
 
 impl ProvedFormulas {
-    /// Returns whether no formula and no condition has more than [`MOST_PARTS`] parts.
     fn is_writable(&self) -> bool {
         self.planned.statement.results.iter().all(|result| {
             let promise = result.promise.iter();
@@ -79,7 +75,7 @@ impl ProvedFormulas {
 }
 
 impl Formula for ProvedFormulas {
-    /// Returns the values of the formulas, in the order of the outputs; NaN for a formula without a value, such as 1 / 0.
+    /// A formula without a value, such as 1 / 0, gives NaN.
     fn exact(&self, operands: &[f64]) -> Vec<f64> {
         let enclosed = self.enclosed(operands);
         let mut values = Vec::with_capacity(self.planned.statement.results.len());
@@ -105,8 +101,7 @@ impl Formula for ProvedFormulas {
     }
 
     /// Appends the raw results of the plan and returns true, if the operands are in the domain. An operand that the device
-    /// limits to its domain is limited first. No value leaves its format there, which was proved. Returns false for other
-    /// operands.
+    /// limits to its domain is limited first. It is proved that no value leaves its format there.
     fn results(&self, operands: &[i64], raw: &mut Vec<i64>) -> bool {
         let mut computed = Vec::with_capacity(operands.len());
         for (operand, raw) in self.planned.statement.operands.iter().zip(operands) {
@@ -124,7 +119,7 @@ impl Formula for ProvedFormulas {
         true
     }
 
-    /// Returns the terms of the bound of a result: the rounding of the result, and everything before it.
+    /// Separates the rounding of the result from everything before it.
     fn terms(&self, output: usize) -> Vec<Term> {
         let bound = self.planned.bounds[output];
         let rounding = bound.min(0.5);
@@ -138,7 +133,7 @@ impl Formula for ProvedFormulas {
         ]
     }
 
-    /// Returns the operations of the plan as parts, without operands and exact constants.
+    /// Returns the operations of the plan, without operands and exact constants.
     fn parts(&self) -> Vec<ComputedPart> {
         let plan = &self.planned.plan;
         let mut parts = Vec::new();
@@ -167,8 +162,7 @@ impl Formula for ProvedFormulas {
         self.planned.statement.results[output].error
     }
 
-    /// Returns the formulas as Python, or an empty list if they are too long to be written out. In the text, each use of a
-    /// named part repeats the formula of this part.
+    /// Returns no text for formulas that are too long. Each use of a named part repeats the formula of this part.
     fn expressions(&self) -> Vec<String> {
         if !self.is_writable() {
             return Vec::new();

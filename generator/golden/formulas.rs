@@ -1,27 +1,19 @@
-//! The exact formulas of the devices, computed in f64 without rounding to fixed point.
+//! The exact formulas of the devices, computed in f64 without rounding to fixed point ([symbols](crate#symbols)).
 //!
-//! The formulas come from three documents in Ukrainian, which Glint calls seeds, and from sources that they cite. Seed 000 is a
-//! patent on shading along scan lines, and seed 001 is the patent UA 60139 on rough surfaces. Seed 002 is the paper "A model
-//! for reproducing the specular component of colour in computer graphics", which proposes the function W. In all formulas c =
-//! cos γ, where γ is the angle between the surface normal and the half vector; n is the specular exponent; the result f, in 0 …
-//! 1, is the reflectance by which a device multiplies colours. A surface that faces away (c ≤ 0) has f = 0, except in [`lyon`],
-//! [`cosine_squared`] and [`stretched_cosine`], which do not know γ. Angles are in radians. Transcendental functions come from
-//! `libm`, so that every machine computes the same values.
+//! A surface that faces away (c ≤ 0) has f = 0, except in [`lyon`], [`cosine_squared`] and [`stretched_cosine`], which do not
+//! know γ. Angles are in radians. Transcendental functions come from `libm`, so that every machine computes the same values.
 
 use std::f64::consts::FRAC_PI_2;
 
-/// Returns Blinn's function `cⁿ` (device `blinn`), or 0 if `c ≤ 0`, also for n = 0. It is the function that the formulas of all
-/// other highlight devices approximate.
-///
-/// `c` is the cosine of the angle γ between the surface normal and the half vector, and `n` the specular exponent. For example, c
-/// = 0.5 and n = 2 give 0.25.
+/// Returns Blinn's function `cⁿ` (device `blinn`), or 0 if `c ≤ 0`, also for n = 0. The formulas of all other highlight devices
+/// approximate it. For example, c = 0.5 and n = 2 give 0.25.
 pub fn blinn(c: f64, n: f64) -> f64 {
     if c <= 0.0 { 0.0 } else { libm::pow(c, n) }
 }
 
-/// Returns cos(γ + dγ), or cos(γ − dγ) if `dgamma_negative`. `c` is cos γ and `cd` is cos dγ; both angles must be in 0 … 90°.
-/// The device `rough` tilts γ by dγ, the deviation of the normal on a rough surface. For example, γ = 60° and dγ = 30° give 0,
-/// or cos 30° if `dgamma_negative`.
+/// Returns cos(γ + dγ), or cos(γ − dγ) if `dgamma_negative`. `c` is cos γ and `cd` is cos dγ; both angles must be in 0 … 90°. The
+/// device `rough` tilts γ by dγ, the deviation of the normal on a rough surface. For example, γ = 60° and dγ = 30° give 0, or cos
+/// 30°.
 #[inline]
 pub fn turned_cosine(c: f64, cd: f64, dgamma_negative: bool) -> f64 {
     let sines = ((1.0 - c * c) * (1.0 - cd * cd)).max(0.0).sqrt();
@@ -33,17 +25,14 @@ pub fn turned_cosine(c: f64, cd: f64, dgamma_negative: bool) -> f64 {
     }
 }
 
-/// Returns the base of `rough`, `n/2·(cos(γ ± dγ) − 1) + 1`, before clamp and square.
+/// Returns `n/2·(cos(γ ± dγ) − 1) + 1`, before clamp and square.
 #[inline]
 fn rough_base(c: f64, cd: f64, dgamma_negative: bool, n: f64) -> f64 {
     n / 2.0 * (turned_cosine(c, cd, dgamma_negative) - 1.0) + 1.0
 }
 
-/// Returns the formula of the device `rough` (patent UA 60139, seed 001): `(n/2·(cos(γ ± dγ) − 1) + 1)²`, or 0 if the base is
-/// negative or `c ≤ 0`.
-///
-/// `c` is cos γ and `cd` is cos dγ, where dγ is the deviation of the normal on a rough surface. `dgamma_negative` selects cos(γ −
-/// dγ), as trigger 4 in the patent's figure does; otherwise the formula uses cos(γ + dγ).
+/// Returns the formula of the device `rough` (seed 001): `(n/2·(cos(γ ± dγ) − 1) + 1)²`, or 0 if the base is negative or `c ≤ 0`.
+/// The parameters are those for [`turned_cosine`]; trigger 4 in the patent's figure is `dgamma_negative`.
 #[inline]
 pub fn rough(c: f64, cd: f64, dgamma_negative: bool, n: f64) -> f64 {
     if c <= 0.0 {
@@ -53,9 +42,8 @@ pub fn rough(c: f64, cd: f64, dgamma_negative: bool, n: f64) -> f64 {
     base * base
 }
 
-/// Returns the formula of the device `rough` without its clamp: `(n/2·(cos(γ ± dγ) − 1) + 1)²` also if the base is negative,
-/// where the parabola rises again. The result is limited to 1; it is 0 if `c ≤ 0`. The parameters are the same as for
-/// [`rough`].
+/// Returns the formula of the device `rough` without its clamp: the parabola rises again if the base is negative. The result is
+/// limited to 1; it is 0 if `c ≤ 0`.
 #[inline]
 pub fn rough_unclamped(c: f64, cd: f64, dgamma_negative: bool, n: f64) -> f64 {
     if c <= 0.0 {
@@ -65,15 +53,14 @@ pub fn rough_unclamped(c: f64, cd: f64, dgamma_negative: bool, n: f64) -> f64 {
     (base * base).min(1.0)
 }
 
-/// Returns the parabola `(n/2·(c − 1) + 1)²`, or 0 if the base is negative or `c ≤ 0`. The device `threshold` (UA 30041, cited
-/// in seed 001) compares this value with a level.
+/// Returns the parabola `(n/2·(c − 1) + 1)²`, or 0 if the base is negative or `c ≤ 0`. The device `threshold` (UA 30041, cited in
+/// seed 001) compares this value with a level.
 #[inline]
 pub fn parabola(c: f64, n: f64) -> f64 {
     rough(c, 1.0, false, n)
 }
 
-/// Returns `square` if it is at least `level`, otherwise 0. UA 30041 has such a level of visibility. For example, a level of
-/// 0.5 turns 0.3 into 0 and leaves 0.6 unchanged.
+/// Returns `square` if it is at least `level`, otherwise 0. UA 30041 has such a level of visibility.
 #[inline]
 pub fn threshold(square: f64, level: f64) -> f64 {
     if square < level { 0.0 } else { square }
@@ -105,7 +92,7 @@ pub fn quadratic(c: f64, a: f64) -> f64 {
 /// Returns the formula of the device `cosine-power`, the function W of the paper (seed 002): `(n/m·(c − 1) + 1)^m`, or 0 if the
 /// base is negative or `c ≤ 0`.
 ///
-/// `m` is a power of two; the paper uses 2 to 16. For example, c = 0.5, n = 1 and m = 2 give 0.5625.
+/// `m` is a power of two; the paper uses 2 to 16.
 #[inline]
 pub fn cosine_power(c: f64, n: f64, m: u32) -> f64 {
     if c <= 0.0 {
@@ -115,8 +102,8 @@ pub fn cosine_power(c: f64, n: f64, m: u32) -> f64 {
     (0..m.ilog2()).fold(base, |power, _| power * power)
 }
 
-/// Returns the power k that the device `quad-cosine` (seed 000) uses for the exponent `n`. k is 1 for n = 1, 2 for n = 2, 4 for
-/// n = 3 to 6, and 16 for every other n, including 0.
+/// Returns the power k of the device `quad-cosine` (seed 000) for the exponent `n`: 1 for n = 1, 2 for n = 2, 4 for n = 3 to 6,
+/// and 16 for every other n, including 0.
 #[inline]
 pub fn quad_power(n: i64) -> u32 {
     match n {
@@ -127,8 +114,7 @@ pub fn quad_power(n: i64) -> u32 {
     }
 }
 
-/// Returns `cosᵏ` of `angle` in radians, which may be negative. The result is 0 if the magnitude of the angle is a right angle
-/// or more. k is a power of two.
+/// Returns `cosᵏ` of `angle`, which may be negative, or 0 if its magnitude is a right angle or more. k is a power of two.
 #[inline]
 fn lobe(angle: f64, k: u32) -> f64 {
     let magnitude = angle.abs();
@@ -138,8 +124,8 @@ fn lobe(angle: f64, k: u32) -> f64 {
     (0..k.ilog2()).fold(libm::cos(magnitude), |power, _| power * power)
 }
 
-/// Returns the formula of the device `quad-cosine` (seed 000): `cosᵏ(√(n/k)·δ)`, where [`quad_power`] gives k. `delta` is the
-/// angle δ in radians. The result is 0 if `√(n/k)·δ` or δ is beyond a right angle, since the surface then faces away.
+/// Returns the formula of the device `quad-cosine` (seed 000): `cosᵏ(√(n/k)·δ)`, where [`quad_power`] gives k and `delta` is δ.
+/// The result is 0 if `√(n/k)·δ` or δ is beyond a right angle, since the surface then faces away.
 #[inline]
 pub fn quad_cosine(delta: f64, n: i64) -> f64 {
     if delta.abs() > FRAC_PI_2 {
@@ -149,16 +135,14 @@ pub fn quad_cosine(delta: f64, n: i64) -> f64 {
     lobe((n as f64 / f64::from(k)).sqrt() * delta, k)
 }
 
-/// Returns the formula of the device `cosine-squared`: `cos²(a·δ)`. `stretched` is the product a·δ in radians, with a = √(n/2).
-/// The result is 0 if a·δ is a right angle or more. The source is the prototype cited in seed 000 (Abbas, Szirmay-Kalos and
-/// Horváth).
+/// Returns the formula of the device `cosine-squared`, a prototype cited in seed 000 (Abbas, Szirmay-Kalos and Horváth):
+/// `cos²(a·δ)`, or 0 if a·δ is a right angle or more. `stretched` is the product a·δ, with a = √(n/2).
 #[inline]
 pub fn cosine_squared(stretched: f64) -> f64 {
     lobe(stretched, 2)
 }
 
-/// Returns the formula of the device `gauss` (seed 002): `exp(−n·γ²/2)` with the angle γ = arccos c, or 0 if `c ≤ 0`. For
-/// example, c = 1 gives 1 for every n.
+/// Returns the formula of the device `gauss` (seed 002): `exp(−n·γ²/2)` with the angle γ = arccos c, or 0 if `c ≤ 0`.
 #[inline]
 pub fn gauss(c: f64, n: f64) -> f64 {
     if c <= 0.0 {
@@ -176,8 +160,8 @@ pub fn schlick(c: f64, n: f64) -> f64 {
     if c <= 0.0 { 0.0 } else { c / (n * (1.0 - c) + c) }
 }
 
-/// Returns the approximation of seed 000 for any power k: `cosᵏ(√(n/k)·δ)`, or 0 if `√(n/k)·δ` is a right angle or more. `delta`
-/// is the angle δ in radians. With k = 2 it is `cos²(a·δ)`, the formula of the device `cosine-squared`.
+/// Returns the approximation of seed 000 for any power k: `cosᵏ(√(n/k)·δ)`, or 0 if `√(n/k)·δ` is a right angle or more. With k =
+/// 2 it is the formula of `cosine-squared`.
 #[inline]
 pub fn stretched_cosine(delta: f64, n: f64, k: u32) -> f64 {
     let angle = (n / f64::from(k)).sqrt() * delta.abs();

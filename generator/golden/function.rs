@@ -13,34 +13,31 @@ use glint_base::fixed::exp2;
 use glint_formula::{Enclosure, parse};
 use glint_keys::function::{FunctionPlan, operand};
 
-/// The number of pieces of a domain in which a slope is enclosed. The number is a power of two, so that the ends of the pieces
-/// are exact.
+/// The bound encloses the slope in each of this number of pieces of the domain. It is a power of two, so that the ends of the
+/// pieces are exact.
 const PIECES: u32 = 4096;
 
-/// Returns the device that executes the plan of a function.
 fn device(planned: &FunctionPlan) -> device::Device {
     plan_device(&[operand(&planned.polynomials)], &planned.plan, &["result_out".to_owned()])
 }
 
-/// Returns the golden model of the device `function` for the plan of its function.
 pub fn model(planned: &FunctionPlan) -> Box<dyn Model> {
     device(planned).model()
 }
 
-/// Returns the accuracy contract of the device `function` for the plan of its function.
 pub fn contract(planned: &FunctionPlan) -> Box<dyn Contract> {
     let function = planned.function.clone();
     device(planned).contract(Stated { function, polynomials: planned.polynomials.clone() })
 }
 
-/// Returns the value of a formula of x, in f64. Returns NaN if the formula cannot be parsed or has no value.
+/// Returns NaN if the formula cannot be parsed or has no value.
 pub(super) fn at(formula: &str, x: f64) -> f64 {
     let value = parse(formula).and_then(|it| it.enclose(&[("x", Enclosure::exactly(x))]));
     value.map_or(f64::NAN, Enclosure::middle)
 }
 
-/// Returns a proven limit of the absolute slope of the formula over its domain, from interval derivatives. Returns `None` if
-/// the formula may jump or be infinitely steep, or if the function is given by samples.
+/// Returns a proven limit of the absolute slope of the formula over its domain, from interval derivatives. There is no limit if
+/// the formula may jump or be infinitely steep, or if samples give the function.
 pub(super) fn slope(planned: &FunctionPlan) -> Option<f64> {
     let FunctionPlan { function, polynomials: it, .. } = planned;
     let Curve::Formula(formula) = &function.curve else { return None };
@@ -55,14 +52,14 @@ pub(super) fn slope(planned: &FunctionPlan) -> Option<f64> {
     Some(steepest)
 }
 
-/// The function, and its piecewise polynomial with the bound of the error that was proved.
+/// The function, and its piecewise polynomial with the proved bound.
 struct Stated {
     function: TargetFunction,
     polynomials: Arc<Piecewise>,
 }
 
 impl Formula for Stated {
-    /// Returns the value of the formula or the curve; NaN if it has no value.
+    /// Returns NaN if the formula or the curve has no value.
     fn exact(&self, operands: &[f64]) -> Vec<f64> {
         let x = operand(&self.polynomials).computed(operands[0]);
         let raw = (x * exp2(self.function.operand.frac)) as i64;
@@ -71,8 +68,7 @@ impl Formula for Stated {
     }
 
     /// Appends the raw result and returns true, if the operand is in the domain. An operand that the device limits to its
-    /// domain is limited first. No sum leaves its format there: this was proved at every operand. Returns false for another
-    /// operand.
+    /// domain is limited first. It is proved at every operand that no sum leaves its format there.
     fn results(&self, operands: &[i64], raw: &mut Vec<i64>) -> bool {
         let (first, last) = self.polynomials.domain;
         let x = operand(&self.polynomials).computed_raw(operands[0]);

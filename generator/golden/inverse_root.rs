@@ -1,16 +1,15 @@
-//! Computes the inverse square root 1/√S of a sum of three squares S by a table, with a proven error bound.
+//! Computes the inverse square root 1/√S of a sum of three squares S by a table, with a proven error bound. The golden models of
+//! `normaliser` and `dot-product` scale a vector to length 1 by it.
 //!
-//! The golden models of the devices `normaliser` and `dot-product` use it to scale a vector to length 1. The sum is shifted by
-//! pairs of bits to a mantissa m from 1.0 to 4.0; the table interpolates 1/√m linearly. The module also computes the exact unit
-//! vector of a direction for their accuracy contracts.
+//! The sum is shifted by pairs of bits to a mantissa m from 1.0 to 4.0; the table interpolates 1/√m linearly. The module also
+//! computes the exact unit vector of a direction for the accuracy contracts.
 
 use super::Sweep;
 use glint_base::fixed::{exp2, mask};
 
-/// The largest sum of squares, as a value: each of the three components is at least −2.0, so its square is at most 4.
+/// The largest sum of squares: each of the three components is at least −2.0, so its square is at most 4.
 const FARTHEST: i64 = 12;
 
-/// A table that gives the inverse square root of a sum of three squares.
 pub(super) struct Root {
     /// The number of bits of the sum.
     pub width: u32,
@@ -21,8 +20,8 @@ pub(super) struct Root {
 }
 
 impl Root {
-    /// Returns the table for vectors whose components have `components` fraction bits. The `address` leading bits of the mantissa
-    /// choose a segment; an inverse root has `fraction` fraction bits.
+    /// Makes the table for components with `components` fraction bits. The `address` leading bits of the mantissa choose a
+    /// segment; an inverse root has `fraction` fraction bits.
     pub fn new(components: u32, address: u32, fraction: u32) -> Self {
         let segments = 1i64 << address;
         let scale = exp2(fraction as i32);
@@ -33,8 +32,8 @@ impl Root {
         Self { width: 2 * components + 4, address, fraction, ends }
     }
 
-    /// Returns the number of pairs of leading zeros of a raw sum of `width` bits. For 0 it returns the largest number that the
-    /// shifter's count can represent. For example, the sum 0b0001 of 4 bits has one pair and one more zero, so the number is 1.
+    /// Returns the number of pairs of leading zeros of a sum, or for 0 the largest number of the shifter's count. The sum 0b0001
+    /// of 4 bits has one pair and one more zero, so the number is 1.
     pub fn pairs(&self, sum: i64) -> i64 {
         match sum {
             0 => (1 << self.pair_bits()) - 1,
@@ -42,17 +41,17 @@ impl Root {
         }
     }
 
-    /// Returns the number of bits of the count that [`Self::pairs`] returns.
+    /// Returns the width of the count that [`Self::pairs`] returns.
     pub fn pair_bits(&self) -> u32 {
         (self.width - 1).ilog2()
     }
 
-    /// Returns the raw mantissa of a sum: the sum shifted left by `pairs` pairs of bits. The mantissa of 0 is 0.
+    /// Returns the sum shifted left by `pairs` pairs of bits. The mantissa of 0 is 0.
     pub fn mantissa(&self, sum: i64, pairs: i64) -> i64 {
         if sum == 0 { 0 } else { sum << (2 * pairs) }
     }
 
-    /// Returns the raw 1/√m of a raw mantissa m, interpolated linearly in its segment. The result for 0 is 0.
+    /// Returns 1/√m for a mantissa m, interpolated linearly in its segment, or 0 for 0.
     pub fn inverse(&self, mantissa: i64) -> i64 {
         if mantissa == 0 {
             return 0;
@@ -85,12 +84,12 @@ impl Root {
         [chord, 4.0 * exp2(-(self.fraction as i32))]
     }
 
-    /// Returns the cases of an exhaustive check: every sum of squares from 1 on. The sum alone determines the inverse root.
+    /// Visits every sum of squares from 1 on, which alone determines the inverse root.
     pub fn sweep(&self) -> Sweep {
         Sweep::ranges([("sum of squares", (1, FARTHEST << (self.width - 4)))])
     }
 
-    /// Returns the relative error |√m·r − 1| of the inverse root r that the table gives for a sum with the mantissa m.
+    /// Returns the relative error |√m·r − 1| of the inverse root r for a sum with the mantissa m.
     pub fn relative_error(&self, sum: i64) -> f64 {
         let mantissa = self.mantissa(sum, self.pairs(sum));
         let root = (mantissa as f64 * exp2(2 - self.width as i32)).sqrt();
@@ -98,12 +97,12 @@ impl Root {
     }
 }
 
-/// Returns a vector whose components are random numbers from −1 to 1. `unit` must return random numbers from 0 to 1.
+/// Returns random components from −1 to 1, if `unit` returns random numbers from 0 to 1.
 pub(super) fn centred(unit: &mut dyn FnMut() -> f64) -> [f64; 3] {
     [(); 3].map(|()| 2.0 * unit() - 1.0)
 }
 
-/// Returns the unit vector with the direction of `vector`, or the zero vector if `vector` is zero.
+/// Returns the unit vector with the direction of `vector`, or zero for the zero vector.
 pub(super) fn unit_vector(vector: [f64; 3]) -> [f64; 3] {
     let now = vector.map(|it| it * it).iter().sum::<f64>().sqrt();
     vector.map(|it| if now == 0.0 { 0.0 } else { it / now })

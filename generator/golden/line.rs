@@ -1,8 +1,8 @@
-//! Models two blocks that the devices `quad-cosine` and `cosine-squared` share: the accumulator that computes the angles of the
-//! points along a scan line, and the table of powers of a cosine. The source is the patent that Glint calls seed 000.
+//! Models two blocks of [seed 000](crate#symbols) that the devices `quad-cosine` and `cosine-squared` share. They are the
+//! accumulator that computes the angles of the points along a scan line, and the table of powers of a cosine.
 //!
-//! The accumulator begins with the operand `zeta_start` and adds `delta_zeta` for every further point of the line. Angles are
-//! in right angles: with F fraction bits, the raw value 2^F is 90°.
+//! The accumulator begins with the operand `zeta_start` and adds `delta_zeta` for every further point. Angles are in right
+//! angles: with F fraction bits, the raw value 2^F is 90°.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -11,17 +11,15 @@ use super::contract::control;
 use super::frame::{Frame, FrameStep, Slot, idle, step};
 use glint_base::fixed::{Format, MAX_WIDTH, exp2};
 
-/// Returns the raw value of an angle operand that is nearest to `angle`, in radians, limited to the domain of the operand. For
-/// example, π/4 gives 32768 with 16 fraction bits.
+/// Returns the raw value nearest to `angle`, in radians, in the domain of the operand: π/4 gives 32768 with 16 fraction bits.
 pub fn raw_angle(operand: &Operand, angle: f64) -> i64 {
     let (low, high) = operand.domain;
     let raw = operand.format.quantise(angle / FRAC_PI_2) as i64;
     raw.clamp(low, high)
 }
 
-/// Adds the accumulator, which computes the angles of the points along a scan line, to `frame`. The accumulator consists of
-/// control block 14, counter 5, adder 6, mux 7 and register 8 of seed 000. Its operands are `delta_zeta`, `zeta_start` and
-/// `length`. The angles have the format `format`.
+/// Adds the accumulator to `frame`: control block 14, counter 5, adder 6, mux 7 and register 8 of seed 000. Its operands are
+/// `delta_zeta`, `zeta_start` and `length`. The angles have the format `format`.
 ///
 /// Returns the slot of register 8, which holds the angle of the current point, and the microinstructions. The outputs show a
 /// point `stages` clocks after the pulse on output 37 (`write_angle`) that loads its angle.
@@ -67,37 +65,35 @@ fn length_format(length_bits: u32) -> Format {
     Format::unsigned(length_bits as i32, 0)
 }
 
-/// Returns the raw angle `raw` wrapped to the width of `format`, as the accumulator does. For example, 32 wraps to −32 in
-/// `s1.4`, which has 6 bits.
+/// Wraps an angle to the width of `format`, as the accumulator does: 32 wraps to −32 in `s1.4`, which has 6 bits.
 #[inline]
 fn wrapped(format: Format, raw: i64) -> i64 {
     let above = MAX_WIDTH - format.width();
     raw << above >> above
 }
 
-/// Returns the angle of point number `index` of a line, wrapped to `format` as in the accumulator. `start` is the first angle and
-/// `delta` the step.
+/// Returns the angle of point number `index` of a line, wrapped as in the accumulator. `start` is the first angle and `delta` the
+/// step.
 #[inline]
 pub fn angle_at(format: Format, start: i64, delta: i64, index: u64) -> i64 {
     wrapped(format, start.wrapping_add(delta.wrapping_mul(index as i64)))
 }
 
-/// Returns the step with which a line of `length` intervals goes from the angle `first` to the angle `last`, rounded toward 0.
-/// If `length` is 0, the step is `given`. For example, 3 intervals from 0 to 300 give 100.
+/// Returns the step of a line of `length` intervals from the angle `first` to the angle `last`, rounded toward 0, or `given` if
+/// `length` is 0. 3 intervals from 0 to 300 give 100.
 pub fn interval(first: i64, last: i64, length: i64, given: i64) -> i64 {
     if length == 0 { given } else { (last - first) / length }
 }
 
-/// Returns a Python expression for the angle of point number `index` of a line, in right angles. For example, `s1.16` gives
-/// `((zeta_start + index * delta_zeta + 2) % 4 - 2)`.
+/// Returns a Python expression for the angle of point number `index`, in right angles. For `s1.16` it is `((zeta_start + index *
+/// delta_zeta + 2) % 4 - 2)`.
 pub fn angle_expression(format: Format) -> String {
     let turn = exp2(format.width() as i32 - format.frac);
     let half = turn / 2.0;
     format!("((zeta_start + index * delta_zeta + {half}) % {turn} - {half})")
 }
 
-/// Returns the operands `delta_zeta` and `zeta_start` as an accuracy contract sees them, with every value of `format` in their
-/// domain.
+/// Returns `delta_zeta` and `zeta_start`, with every value of `format` in their domain.
 pub fn angle_operands(format: Format) -> [Operand; 2] {
     let domain = (format.min_raw() as i64, format.max_raw() as i64);
     [
@@ -107,16 +103,16 @@ pub fn angle_operands(format: Format) -> [Operand; 2] {
     .map(|(name, doc)| control(name, format, domain, doc))
 }
 
-/// Returns the operand `length` as an accuracy contract sees it, with every value of `length_bits` bits in its domain.
+/// Returns `length`, with every value of `length_bits` bits in its domain.
 pub fn length_operand(length_bits: u32) -> Operand {
     let format = length_format(length_bits);
     let doc = "intervals of the line: one less than its points";
     control("length", format, (0, format.max_raw() as i64), doc)
 }
 
-/// Returns the leading `kept` fraction bits of the magnitude of a raw angle with `fraction` fraction bits. Returns `None` if
-/// the angle is not in −90° ≤ angle < 90°. The magnitude of a negative angle is its bitwise complement. For example, with
-/// `fraction` 4 and `kept` 4, 5 gives 5, −6 gives 5, and 16 gives `None`.
+/// Returns the leading `kept` fraction bits of the magnitude of a raw angle with `fraction` fraction bits, if −90° ≤ angle < 90°.
+/// The magnitude of a negative angle is its bitwise complement. With `fraction` 4 and `kept` 4, 5 and −6 give 5, and 16 gives
+/// `None`.
 #[inline]
 pub fn magnitude(angle: i64, fraction: u32, kept: u32) -> Option<i64> {
     let right = 1i64 << fraction;
@@ -127,27 +123,25 @@ pub fn magnitude(angle: i64, fraction: u32, kept: u32) -> Option<i64> {
     Some(positive >> (fraction - kept))
 }
 
-/// An upper limit of the errors of f64 in the values of a table; [`CosineTable::total`] includes it.
+/// An upper limit of the errors of f64 in the values of a table.
 const SLACK: f64 = 1.0 / (1u64 << 40) as f64;
 
-/// A table of `cosᵏ` over a right angle, ROM 12 of seed 000. A step is an interval of angles with one word. The word of each
-/// step is the middle of the values of `cosᵏ` at both ends of the step; the last word is 0.
+/// A table of `cosᵏ` over a right angle, ROM 12 of seed 000. The word of each step, an interval of angles, is the middle of
+/// `cosᵏ` at both ends; the last word is 0.
 #[derive(Clone, Debug)]
 pub struct CosineTable {
-    /// The raw words, one for each step. Their number of fraction bits is the parameter `fraction` of [`CosineTable::new`].
+    /// Raw words with `fraction` fraction bits ([`CosineTable::new`]), one for each step.
     pub words: Vec<i64>,
-    /// The largest distance of `cosᵏ` at the ends of a step from the middle of these two values.
+    /// The largest distance of `cosᵏ` at the ends of a step from their middle.
     pub step: f64,
-    /// The largest distance of `cosᵏ` at the ends of a step from the word of the step, which is rounded, plus a margin for the
-    /// errors of f64.
+    /// The largest distance of `cosᵏ` at the ends of a step from the rounded word, plus a margin for the errors of f64.
     pub total: f64,
     /// The largest slope of `cosᵏ`, as a difference per right angle.
     pub slope: f64,
 }
 
 impl CosineTable {
-    /// Returns the table of `cosᵏ` with 2^`address` steps, whose words have `fraction` fraction bits. k is `power`, a power of
-    /// two.
+    /// Makes 2^`address` steps, whose words have `fraction` fraction bits. k is `power`, a power of two.
     pub fn new(power: u32, address: u32, fraction: u32) -> Self {
         let steps = 1u64 << address;
         let one = exp2(fraction as i32);
@@ -172,8 +166,8 @@ impl CosineTable {
     }
 
     /// Returns the index of the word for the angle `scaled`, a raw value with `fraction` fraction bits, in right angles. The
-    /// table has 2^`address` words. Negative angles, and angles of a right angle or more, give the last index. For example,
-    /// half a right angle gives the index 128 in a table of 256 words.
+    /// table has 2^`address` words. Negative angles, and angles of a right angle or more, give the last index. Half a right angle
+    /// gives the index 128 in a table of 256 words.
     #[inline]
     pub fn address(scaled: i64, fraction: u32, address: u32) -> usize {
         let most = (1usize << address) - 1;
@@ -181,8 +175,8 @@ impl CosineTable {
     }
 }
 
-/// Returns the largest slope of `cosᵏ` with k = `power`, as a difference per right angle. The slope is largest at the angle
-/// with `tan² = 1/(k − 1)`.
+/// Returns the largest slope of `cosᵏ` with k = `power`, as a difference per right angle. It is at the angle with `tan² = 1/(k −
+/// 1)`.
 fn slope(power: u32) -> f64 {
     let k = f64::from(power);
     if power == 1 {

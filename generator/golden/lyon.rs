@@ -1,10 +1,9 @@
 //! The golden model and the accuracy contract of the device `lyon`, which computes f = max(0, 1 − β·D²)^m.
 //!
-//! D = N − H is the difference of the unit normal N and the unit half vector H (operands `dx`, `dy`, `dz`); D² is its squared
-//! length; β = n/(2·m) with the specular exponent n; the configuration chooses m, a power of two; f is the reflectance, the
-//! factor by which the device multiplies colours. The device takes n itself as the operand `exponent`, or log₂ n, rounded, as
-//! the operand `shift`. The source is the patent US 5 739 820, which the patent of the device `quad-cosine` (Glint calls it
-//! seed 000) cites.
+//! D² is the squared length of the difference D = N − H between the unit normal N and the unit half vector H (operands `dx`,
+//! `dy`, `dz`). β = n/(2·m) with the specular exponent n. The configuration chooses m, a power of two. The device takes n
+//! itself as the operand `exponent`, or log₂ n, rounded, as the operand `shift`. The source is the patent US 5 739 820, which
+//! [seed 000](crate#symbols) cites.
 
 mod contract;
 #[cfg(test)]
@@ -24,7 +23,6 @@ use glint_base::fixed::Format;
 use glint_config::Config;
 use glint_keys::lyon::{Keys, Scale};
 
-/// Formats and constants that follow from the keys.
 #[ext(Derived)]
 impl Keys {
     fn products(&self) -> Products {
@@ -35,8 +33,7 @@ impl Keys {
         Format::signed(1, self.vector_fraction as i32)
     }
 
-    /// Returns the format of the operand `exponent`, which is n, or of the operand `shift`, which is log₂ n and at most
-    /// `exponent.bits`.
+    /// The operand `shift` is log₂ n and at most `exponent.bits`.
     fn scale_format(&self) -> Format {
         match self.scale {
             Scale::Shift => Format::unsigned(self.exponent_bits.ilog2() as i32 + 1, 0),
@@ -44,8 +41,8 @@ impl Keys {
         }
     }
 
-    /// Returns the operand `shift` or `exponent` for the exponent n: log₂ n rounded to the nearest integer (0 for n = 0), or n
-    /// itself. For example, n = 6 gives the shift 3.
+    /// Returns the operand for the exponent n. It is n itself, or the shift log₂ n rounded to the nearest integer (0 for n =
+    /// 0), such as 3 for n = 6.
     fn scale_operand(&self, n: i64) -> i64 {
         match self.scale {
             Scale::Multiplier => n,
@@ -65,12 +62,11 @@ impl Keys {
         }
     }
 
-    /// Returns the domain of the operand `shift` or `exponent`, as raw values.
     fn scale_domain(&self) -> (i64, i64) {
         (self.scale_operand(self.domain.least), self.scale_operand(self.domain.most))
     }
 
-    /// Returns the exponent that an operand `shift` or `exponent` denotes.
+    /// Returns the exponent that an operand denotes.
     fn exponent(&self, operand: i64) -> i64 {
         match self.scale {
             Scale::Shift => 1 << operand,
@@ -79,11 +75,11 @@ impl Keys {
     }
 }
 
-/// The integer arithmetic of the device, with one method for each operation. The methods take and return raw values.
+/// The integer arithmetic of the device, on raw values.
 struct LyonArithmetic {
     keys: Keys,
     squarings: u32,
-    /// The value 1.0 as a raw value with the fraction bits of f.
+    /// The number 1 with the fraction bits of f.
     one: i64,
     /// The largest value of the shift register, which multiplies D² by a power of two.
     shifted_most: i64,
@@ -116,22 +112,20 @@ impl LyonArithmetic {
         }
     }
 
-    /// Returns the raw D² in the register: the sum of the squared components of `vector`, rounded to the format of the
-    /// register.
+    /// Returns D²: the sum of the squared components, rounded to the format of the register.
     #[inline]
     fn distance(&self, vector: [i64; 3]) -> i64 {
         let [x, y, z] = vector;
         self.distance.apply(x * x + y * y + z * z)
     }
 
-    /// Returns the next value of the shift register: `word`, its present value, shifted left by one bit and limited to its
-    /// largest value.
+    /// Shifts the register `word` left by one bit, limited to its largest value.
     #[inline]
     fn shifted(&self, word: i64) -> i64 {
         (2 * word).min(self.shifted_most)
     }
 
-    /// Returns the raw β·D², rounded, from the raw D² and the operand `shift` or `exponent`.
+    /// Returns β·D², rounded, from D² and the operand `shift` or `exponent`.
     #[inline]
     fn beta_distance(&self, distance: i64, operand: i64) -> i64 {
         self.scaled.apply(match self.keys.scale {
@@ -140,7 +134,7 @@ impl LyonArithmetic {
         })
     }
 
-    /// Returns the raw base `1.0 − ulp − β·D²`, or 0 if β·D² is 1.0 or more. `scaled` is the raw β·D².
+    /// Returns the base `1.0 − ulp − β·D²`, or 0 if β·D² is 1.0 or more. `scaled` is β·D².
     #[inline]
     fn base(&self, scaled: i64) -> i64 {
         (self.one - 1 - scaled).max(0)
@@ -151,7 +145,7 @@ impl LyonArithmetic {
         self.square.apply(x * x)
     }
 
-    /// Returns the raw f for the raw D² in the register and the operand `shift` or `exponent`.
+    /// Returns f for D² in the register and the operand `shift` or `exponent`.
     #[inline]
     fn f_of(&self, distance: i64, operand: i64) -> i64 {
         let base = self.base(self.beta_distance(distance, operand));
@@ -162,7 +156,6 @@ impl LyonArithmetic {
     }
 }
 
-/// Returns the golden model of the device `lyon` for a configuration.
 pub fn model(config: &Config) -> Box<dyn Model> {
     let it = Arc::new(LyonArithmetic::new(Keys::of(config)));
     let (keys, squarings) = (&it.keys, it.squarings);

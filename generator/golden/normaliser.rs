@@ -40,8 +40,8 @@ impl Normaliser {
         Format::signed(1, self.keys.kept as i32)
     }
 
-    /// Returns the raw component of the unit vector for a raw component of v. The component is shifted left by `pairs` places,
-    /// and multiplied by `inverse`, the inverse root of the shifted v·v. The product is rounded.
+    /// Returns a component of the unit vector: a component of v, shifted left by `pairs` places, times `inverse`, the inverse
+    /// root of the shifted v·v, rounded.
     fn scaled(&self, component: i64, pairs: i64, inverse: i64) -> i64 {
         let shifted = if component == 0 { 0 } else { component << pairs };
         self.rounded.apply(shifted * inverse)
@@ -54,7 +54,6 @@ impl Normaliser {
     }
 }
 
-/// Returns the device: its operands, registers and outputs, and the operation of each microinstruction.
 fn device(config: &Config) -> device::Device {
     let it = Arc::new(Normaliser::new(config));
     let mut frame = Frame::default();
@@ -93,12 +92,10 @@ fn device(config: &Config) -> device::Device {
     ])
 }
 
-/// Returns the golden model of the device `normaliser` for a configuration.
 pub fn model(config: &Config) -> Box<dyn Model> {
     device(config).model()
 }
 
-/// Returns the accuracy contract of the device `normaliser`: the exact unit vector, and the proven bound of its error.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     device(config).contract(Normaliser::new(config))
 }
@@ -108,10 +105,10 @@ impl Formula for Normaliser {
         unit_vector([vector[0], vector[1], vector[2]]).into()
     }
 
-    /// Returns the terms of the error bound of a component, in units, and derives them. Let m be the mantissa of v·v, r the
-    /// table's value of 1/√m, and x the shifted component. Since x² ≤ m, an error of r changes the product x·r by at most √m
-    /// times that error; [`Root::error`] bounds it. The product is rounded once. The product does not saturate, because |x|/√m
-    /// ≤ 1 and the other errors are far below 1.
+    /// Derives the terms of the error bound of a component, in units. Let m be the mantissa of v·v, r the table's value of
+    /// 1/√m, and x the shifted component. Since x² ≤ m, an error of r changes the product x·r by at most √m times that error;
+    /// [`Root::error`] bounds it. The product is rounded once. It does not saturate, because |x|/√m ≤ 1 and the other errors
+    /// are far below 1.
     ///
     /// The result for the zero vector is the zero vector, as the formula defines.
     fn terms(&self, _output: usize) -> Vec<Term> {
@@ -126,21 +123,20 @@ impl Formula for Normaliser {
     }
 
     /// Returns a vector in a random direction. Its length is drawn evenly over octaves, because the shift depends on the
-    /// octave. The result is never `None`.
+    /// octave.
     fn hint(&self, unit: &mut dyn FnMut() -> f64) -> Option<Vec<i64>> {
         let most = exp2(1 + self.keys.fraction as i32)
             * libm::exp2(-unit() * f64::from(self.keys.fraction));
         Some((0..3).map(|_| ((2.0 * unit() - 1.0) * most).round() as i64).collect())
     }
 
-    /// Returns every sum of squares from 1 on; the zero vector is left out. The sum determines the inverse root, and so the
-    /// largest error of a component. The result is never `None`.
+    /// Visits every sum of squares from 1 on, which determines the inverse root, and so the largest error of a component.
     fn sweep(&self) -> Option<Sweep> {
         Some(self.root.sweep())
     }
 
-    /// Returns an upper limit of the error, in units, of a component that is as long as the vector. The limit is the error of
-    /// the inverse root for this sum of squares, plus the error of the rounding. The result is never `None`.
+    /// Returns an upper limit of the error, in units, of a component that is as long as the vector. It is the error of the
+    /// inverse root for this sum of squares, plus the error of the rounding.
     fn sweep_error(&self, place: &[i64]) -> Option<f64> {
         let error = self.root.relative_error(place[0]) + self.rounding_error();
         Some(error * exp2(self.keys.kept as i32))

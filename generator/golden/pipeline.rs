@@ -1,59 +1,56 @@
-//! Models which point each stage of a pipeline contains, clock by clock. A point is one set of operands, on its way to its
-//! results.
-//!
-//! The model predicts the handshake of a pipeline, and computes no results.
+//! Models which point (one set of operands on its way to its results) each stage of a pipeline contains, clock by clock. The
+//! model predicts the handshake, and computes no results.
 
 use std::collections::VecDeque;
 
-/// The points in the stages of a pipeline.
+/// The points in the stages.
 ///
 /// At a rising edge either all points move to the next stage or none does. The points stay if the last stage contains a point
-/// whose results nobody takes (`out_ready` is low). A pipeline with an interval of more than 1 accepts a new point only at
-/// every `interval`-th move.
+/// whose results nobody takes (`out_ready` is low). A pipeline with an interval of more than 1 accepts a new point only at every
+/// `interval`-th move.
 #[derive(Clone, Debug)]
 pub struct Occupancy<P> {
-    /// The point of each stage, from stage 1 on, or `None`. The last stage has the results.
+    /// The computations from stage 1 on. The last stage has the results.
     stages: VecDeque<Option<P>>,
     interval: usize,
     slot: usize,
 }
 
 impl<P> Occupancy<P> {
-    /// Returns an empty pipeline of `latency` stages that accepts a point every `interval` clocks. For example, the results of a
-    /// point that `empty(2, 1)` accepts are on the outputs after two rising edges, counting the edge that accepts the point.
+    /// Makes an empty pipeline of `latency` stages that accepts a point every `interval` clocks. The results of a point that
+    /// `empty(2, 1)` accepts are on the outputs after two rising edges, counting the edge that accepts the point.
     pub fn empty(latency: usize, interval: usize) -> Self {
         Self { stages: (0..latency).map(|_| None).collect(), interval, slot: 0 }
     }
 
-    /// Returns whether the pipeline accepts a point that is offered in this clock: the value of `in_ready`.
+    /// Returns whether the pipeline accepts a point in this clock: the value of `in_ready`.
     pub fn takes(&self, out_ready: bool) -> bool {
         self.moves(out_ready) && self.slot == 0
     }
 
-    /// Returns whether all points move to the next stage at the next rising edge.
     fn moves(&self, out_ready: bool) -> bool {
         out_ready || self.last().is_none()
     }
 
-    /// Returns the point whose results are on the outputs, or `None` exactly if `out_valid` is low.
+    /// Returns the point whose results are on the outputs; `None` exactly if `out_valid` is low.
     pub fn last(&self) -> Option<&P> {
         self.stages.back().and_then(Option::as_ref)
     }
 
-    /// Returns the point in a stage, or `None` if the stage is empty or does not exist. Stages are numbered from 1.
+    /// Returns the point in a stage, counted from 1.
     pub fn stage(&self, stage: usize) -> Option<&P> {
         self.stages.get(stage.checked_sub(1)?).and_then(Option::as_ref)
     }
 
-    /// Returns every point in the pipeline with the number of its stage, from 1 on. Empty stages are left out.
+    /// Returns every point with the number of its stage, from 1 on.
     pub fn points(&self) -> impl Iterator<Item = (usize, &P)> {
         let stages = self.stages.iter().enumerate();
         stages.filter_map(|(at, point)| point.as_ref().map(|point| (at + 1, point)))
     }
 
-    /// Performs a rising edge with `offered` as the offered point, if any. The pipeline drops the offered point if it does not
-    /// accept it in this clock ([`Occupancy::takes`]). Returns the point whose results were taken at this edge, or `None`. If
-    /// `rst_n` is low, the pipeline is empty after the edge.
+    /// Performs a rising edge. The pipeline drops the point `offered` if it does not accept it in this clock
+    /// ([`Occupancy::takes`]). Returns the point whose results were taken at this edge. If `rst_n` is low, the pipeline is empty
+    /// after the edge.
     pub fn clock(&mut self, rst_n: bool, offered: Option<P>, out_ready: bool) -> Option<P> {
         let taken = if self.moves(out_ready) {
             self.stages.push_front(offered.filter(|_| self.slot == 0));

@@ -1,8 +1,7 @@
-//! The golden model of a plan, which is a list of fixed-point operations ([`glint_plan`]).
+//! The golden model of a plan, a list of fixed-point operations ([`glint_plan`]), for the devices `function` and `expression`.
 //!
-//! The devices `function` and `expression` use this model. The model executes the operations in integers, with a register for
-//! each value that the schedule of the plan stores. The model takes the plan from the planner, because a proof covers the plan:
-//! the proof compares the plan's results with the formulas.
+//! The model executes the operations in integers, with a register for each value that the schedule of the plan stores. It takes
+//! the plan from the planner, because a proof compares the plan's results with the formulas.
 
 use std::sync::Arc;
 
@@ -12,11 +11,10 @@ use super::polynomial::Polynomial;
 use glint_approximate::Outside;
 use glint_plan::{ExpressionPlan, NodeId, Operation, PlanStep, StatedOperand};
 
-/// A plan with the places of its values in the state of the model.
 struct PlanModel {
     plan: ExpressionPlan,
     operands: Vec<Slot>,
-    /// The slot of the register of each node of the plan, or `None` for a node without a register.
+    /// The slot of the register of each node that has one.
     registers: Vec<Option<Slot>>,
 }
 
@@ -24,12 +22,12 @@ struct PlanModel {
 struct ClockCone {
     /// The nodes in the order of the plan, so that each reads registers or nodes before it.
     nodes: Vec<NodeId>,
-    /// For each node of the plan its place in `nodes`; `None` for the other nodes.
+    /// For each node of the plan, its place in `nodes`.
     places: Vec<Option<usize>>,
 }
 
 impl ClockCone {
-    /// Returns the cone of the nodes `ends`. The cone ends at nodes with a register, unless these are in `ends` themselves.
+    /// The cone ends at nodes with a register, unless these are in `ends` themselves.
     fn new(model: &PlanModel, ends: &[NodeId]) -> Self {
         let count = model.plan.nodes.len();
         let mut needed = vec![false; count];
@@ -55,8 +53,7 @@ impl ClockCone {
         Self { nodes, places }
     }
 
-    /// Returns the raw values that the nodes `ends` of the cone have now. A register of a node takes this value at the next
-    /// edge.
+    /// Returns the raw values that the nodes `ends` of the cone have now, and their registers after the next edge.
     fn values(&self, model: &PlanModel, ends: &[NodeId], state: &State) -> Vec<i64> {
         let operands: Vec<i64> = model.operands.iter().map(|slot| state[*slot]).collect();
         let mut values: Vec<i128> = Vec::with_capacity(self.nodes.len());
@@ -75,8 +72,8 @@ impl ClockCone {
     }
 }
 
-/// Makes the device of a plan: a register for each value that the schedule of the plan stores. Result number k of the plan goes
-/// to the port with name number k of `outputs`. The function panics if the polynomials of a function are not known yet.
+/// Makes the device of a plan. Result number k of the plan goes to the port `outputs[k]`. Panics if the polynomials of a
+/// function are not known yet.
 pub(super) fn plan_device(
     operands: &[StatedOperand],
     plan: &ExpressionPlan,
@@ -138,7 +135,6 @@ pub(super) fn plan_device(
     device
 }
 
-/// Returns the microinstruction that loads the registers of some nodes.
 fn loads(model: &Arc<PlanModel>, nodes: Vec<NodeId>) -> FrameStep {
     let cone = ClockCone::new(model, &nodes);
     step_by(model, move |model, state| {
@@ -150,7 +146,7 @@ fn loads(model: &Arc<PlanModel>, nodes: Vec<NodeId>) -> FrameStep {
     })
 }
 
-/// Returns the microinstruction that adds coefficient number `coefficient` of the polynomial at node `id`, for Horner's rule.
+/// Adds coefficient number `coefficient` of the polynomial at node `id`, by Horner's rule.
 fn sum_step(
     model: &Arc<PlanModel>,
     id: NodeId,

@@ -1,37 +1,35 @@
-//! Evaluates a piecewise polynomial in a golden model by Horner's rule in integers. Each partial sum has a register.
-//!
-//! The golden models of `blinn`, `gauss`, `function` and `expression` use this module. The models read the same table of
-//! coefficients as the hardware, because another check compares this table with the formula.
+//! Evaluates a piecewise polynomial in a golden model by Horner's rule in integers, for `blinn`, `gauss`, `function` and
+//! `expression`. Each partial sum has a register. The models read the same table of coefficients as the hardware, because
+//! another check compares this table with the formula.
 
 use std::sync::Arc;
 
 use super::frame::{Frame, Slot, State};
 use glint_approximate::Piecewise;
 
-/// The registers of the partial sums of a piecewise polynomial in a golden model.
+/// The registers of the partial sums.
 pub struct Polynomial {
     it: Arc<Piecewise>,
-    /// The slots of the partial sums. Sum number k contains the coefficients from number k on, so sum 0 is the whole
-    /// polynomial.
+    /// Sum number k contains the coefficients from number k on, so sum 0 is the whole polynomial.
     sums: Vec<Slot>,
 }
 
 impl Polynomial {
-    /// Adds the registers of the partial sums of `it` to `frame`. `names` starts with the name of the register of the whole
-    /// polynomial; names beyond the degree are not used.
+    /// Adds the registers of the partial sums of `it`. `names` starts with the register of the whole polynomial; names
+    /// beyond the degree are not used.
     pub fn new(frame: &mut Frame, names: &[&str], it: &Arc<Piecewise>) -> Self {
         let registers = names.iter().zip(&it.sums).take(it.degree().max(1));
         let sums = registers.map(|(name, format)| frame.register(name, *format)).collect();
         Self { it: it.clone(), sums }
     }
 
-    /// Returns the slot of the register with the value of the polynomial.
+    /// Returns the slot with the value of the polynomial.
     pub fn q(&self) -> Slot {
         self.sums[0]
     }
 
-    /// Returns the operation of Horner's rule that adds coefficient number `coefficient`, for one of the registers. `raw`
-    /// computes the raw operand of the polynomial from the state.
+    /// Returns the operation of Horner's rule that adds coefficient number `coefficient`. `raw` computes the operand of the
+    /// polynomial from the state.
     pub fn step<R>(&self, coefficient: usize, raw: R) -> impl Fn(&mut State) + use<R>
     where
         R: Fn(&State) -> i64 + Send + Sync + 'static,
@@ -49,8 +47,7 @@ impl Polynomial {
         }
     }
 
-    /// Returns the operations of Horner's rule in their order, one for each register. `raw` computes the raw operand of the
-    /// polynomial from the state.
+    /// Returns the operations of Horner's rule in their order, one for each register.
     pub fn steps<R>(
         &self,
         raw: R,

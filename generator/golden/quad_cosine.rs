@@ -1,10 +1,9 @@
 //! The golden model and the accuracy contract of the device `quad-cosine`, which computes f = cosᵏ(√(n/k)·δ) for the points of a
 //! scan line.
 //!
-//! δ is the angle at a point of the line; n is the specular exponent, which decides whether k is 1, 2, 4 or 16; f is the
-//! reflectance, the factor by which the device multiplies an amplitude. f approximates cosⁿδ: for example, n = 4 gives k = 4
-//! and exactly cos⁴δ. f is 0 if |δ| or |√(n/k)·δ| exceeds a right angle. The source is a patent that claims this device; Glint
-//! calls it seed 000.
+//! δ is the angle at a point of the line. The specular exponent n decides whether k is 1, 2, 4 or 16. f approximates cosⁿδ: for
+//! example, n = 4 gives k = 4 and exactly cos⁴δ. f is 0 if |δ| or |√(n/k)·δ| exceeds a right angle. The source is [seed
+//! 000](crate#symbols).
 
 mod contract;
 #[cfg(test)]
@@ -20,8 +19,7 @@ use glint_base::fixed::Format;
 use glint_config::Config;
 use glint_keys::quad_cosine::Keys;
 
-/// Returns the number of the table that serves the exponent n, by the ranges of n in seed 000. For example, n = 5 gives 2, the
-/// number of the table of cos⁴.
+/// Returns the number of the table for the exponent n, by the ranges of n in seed 000: n = 5 gives 2, the table of cos⁴.
 #[inline]
 fn range_of(n: i64) -> usize {
     match n {
@@ -32,10 +30,10 @@ fn range_of(n: i64) -> usize {
     }
 }
 
-/// The power k of each table, by the number that [`range_of`] returns. For example, table 2 is of cos⁴.
+/// The power k of each table, by the number of [`range_of`].
 const POWERS: [i64; 4] = [1, 2, 4, 16];
 
-/// The integer arithmetic of the device, with one method for each operation. The methods take and return raw values.
+/// The integer arithmetic of the device, on raw values.
 struct QuadCosineArithmetic {
     keys: Keys,
     /// The words of ROM 9, one for each n: the factor √(n/k).
@@ -56,15 +54,15 @@ impl QuadCosineArithmetic {
         }
     }
 
-    /// Returns the operand of multiplier 11: the leading bits of the magnitude of the angle in register 8. Returns `None` if
-    /// the surface faces away.
+    /// Returns the operand of multiplier 11: the leading bits of the magnitude of the angle in register 8, if the surface faces
+    /// the viewer.
     #[inline]
     fn magnitude(&self, angle: i64) -> Option<i64> {
         magnitude(angle, self.keys.angle_fraction, self.keys.angle_multiplied)
     }
 
-    /// Returns the word of ROM 12, which is f as a raw value, for the exponent n. `magnitude` is the operand of multiplier 11,
-    /// or `None` if the surface faces away, and `root` the word of ROM 9.
+    /// Returns the word of ROM 12, which is f, for the exponent n. `magnitude` is the operand of multiplier 11, or `None` if the
+    /// surface faces away, and `root` the word of ROM 9.
     #[inline]
     fn cosine_of(&self, n: i64, magnitude: Option<i64>, root: i64) -> i64 {
         let scaled = magnitude.map_or(i64::MAX, |magnitude| magnitude * root);
@@ -94,13 +92,11 @@ fn root(n: i64, k: i64, fraction: u32) -> i64 {
     floor + i64::from(middle * middle * i128::from(k) <= 4 * i128::from(square))
 }
 
-/// Returns the product of f, the word of ROM 12, with the operand `amplitude`.
 fn products(keys: &Keys) -> Products {
     Products::amplitude(keys.f_format(), keys.colour_bits, keys.output_rounding)
         .at_edges(keys.stages > 2)
 }
 
-/// Returns the golden model of the device `quad-cosine` for a configuration.
 pub fn model(config: &Config) -> Box<dyn Model> {
     let keys = Keys::of(config);
     let mut frame = Frame::default();

@@ -1,8 +1,6 @@
-//! The golden model and the accuracy contract of the device `quadratic`, which computes f = max(0, c + a(n)·(c² − c)).
-//!
-//! c = cos γ, where γ is the angle between the surface normal and the half vector; n is the specular exponent; a(n) is a
-//! coefficient that the device reads from a table, ROM(n); f is the reflectance, the factor by which the device multiplies
-//! colours. f is 0 if c ≤ 0. The source is the patent UA 20998, which the patent UA 60139 (Glint calls it seed 001) cites.
+//! The golden model and the accuracy contract of the device `quadratic`. It computes f = max(0, c + a(n)·(c² − c)), or 0 if c ≤
+//! 0 ([symbols](crate#symbols)). The device reads the coefficient a(n) from a table, ROM(n). The source is the patent UA 20998,
+//! which seed 001 cites.
 
 pub mod coefficient;
 #[cfg(test)]
@@ -20,7 +18,7 @@ use glint_base::fixed::{Format, exp2};
 use glint_config::Config;
 use glint_keys::quadratic::{Keys, Scheme};
 
-/// The integer arithmetic of the device, with one method for each operation. The methods take and return raw values.
+/// The integer arithmetic of the device, on raw values.
 struct QuadraticArithmetic {
     keys: Keys,
     difference: Narrow,
@@ -50,13 +48,13 @@ impl QuadraticArithmetic {
         }
     }
 
-    /// Returns the raw `c² − c`, rounded to the register `difference`.
+    /// Returns `c² − c`, rounded to the register `difference`.
     #[inline]
     fn difference(&self, cosine: i64) -> i64 {
         self.difference.apply(cosine * cosine - (cosine << self.keys.operands.cosine.fraction))
     }
 
-    /// Returns the raw f: `c + a(n)·(c² − c)`, rounded and limited to 0 … 1.0 − ulp.
+    /// Returns f: `c + a(n)·(c² − c)`, rounded and limited to 0 … 1.0 − ulp.
     #[inline]
     fn intensity(&self, cosine: i64, exponent: i64, difference: i64) -> i64 {
         let product = difference * self.words[exponent as usize];
@@ -68,7 +66,6 @@ fn difference_format(fraction: u32) -> Format {
     Format::signed(-2, fraction as i32)
 }
 
-/// Returns the golden model of the device `quadratic` for a configuration.
 pub fn model(config: &Config) -> Box<dyn Model> {
     let it = Arc::new(QuadraticArithmetic::new(Keys::of(config)));
     let mut frame = Frame::default();
@@ -86,7 +83,7 @@ pub fn model(config: &Config) -> Box<dyn Model> {
     Box::new(products.behind(frame, intensity, program))
 }
 
-/// Returns the accuracy contract of the device `quadratic`. Its control operands are `cos_gamma` and `exponent`.
+/// The control operands are `cos_gamma` and `exponent`.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     let it = QuadraticArithmetic::new(Keys::of(config));
     let operands = highlight::operands(&it.keys.operands, &it.keys.domain);
@@ -101,7 +98,7 @@ impl Reflectance for QuadraticArithmetic {
         self.intensity(cosine, control[1], self.difference(cosine))
     }
 
-    /// Returns the formula with a(n) as it was before ROM(n) rounded it.
+    /// Uses a(n) as it was before ROM(n) rounded it.
     #[inline]
     fn reference(&self, control: &[i64]) -> f64 {
         let cosine = self.keys.operands.cosine.value(control[0]);
@@ -112,16 +109,16 @@ impl Reflectance for QuadraticArithmetic {
         Some(formulas::quadratic(cosine, self.exact[exponent as usize]))
     }
 
-    /// Returns the slope 1 + |a| for the largest |a| of the domain, as an upper limit, and no jump. The result is never `None`.
-    /// If the formula is not clamped, its slope is 1 − a + 2·a·c. At a right angle the formula is 0, so it has no jump.
+    /// The slope is at most 1 + |a| for the largest |a| of the domain. If the formula is not clamped, the slope is 1 − a +
+    /// 2·a·c. At a right angle the formula is 0, so it has no jump.
     fn variation(&self) -> Option<Variation> {
         let (least, most) = self.keys.domain.exponents();
         let exact = self.exact[least as usize..=most as usize].iter();
         Some(Variation { slope: 1.0 + exact.fold(0.0, |a: f64, it| a.max(it.abs())), jump: 0.0 })
     }
 
-    /// Returns the formula as a Python expression. With the scheme `minimax` it reads a(n) from the list `coefficient`, because
-    /// the minimax coefficient has no closed form.
+    /// With the scheme `minimax` the expression reads a(n) from the list `coefficient`, because the minimax coefficient has no
+    /// closed form.
     fn expressions(&self) -> Vec<String> {
         let coefficient = match self.keys.scheme {
             Scheme::Taylor => "(max(exponent, 1) - 1)",
@@ -131,9 +128,9 @@ impl Reflectance for QuadraticArithmetic {
         vec![contract::where_it_faces(&contract::clamped_at_0(&f))]
     }
 
-    /// Returns the contributions to the error of f = `c − a·g`, with g = c − c² in 0 … 1/4, as values with their keys, and
-    /// derives them. If formula and hardware are both clamped, the error is 0. Otherwise `a·g ≤ c`, which means `1 − c ≤ 1/a`,
-    /// holds for the exact a or for its word, and g is at most 1/a.
+    /// Derives the contributions to the error of f = `c − a·g`, with g = c − c² in 0 … 1/4. If formula and hardware are both
+    /// clamped, the error is 0. Otherwise `a·g ≤ c`, which means `1 − c ≤ 1/a`, holds for the exact a or for its word, and g is
+    /// at most 1/a.
     ///
     /// - An error of the word a(n) is multiplied by g.
     /// - The rounding of g is multiplied by the word a(n).
@@ -159,8 +156,7 @@ impl Reflectance for QuadraticArithmetic {
         ]
     }
 
-    /// Returns a remark if the scheme is `taylor` and `minimax` would approximate cⁿ better at the largest n of the domain. The
-    /// remark states both errors.
+    /// Remarks that `minimax` would approximate cⁿ better than `taylor` at the largest n of the domain.
     fn remarks(&self) -> Vec<String> {
         if self.keys.scheme != Scheme::Taylor {
             return Vec::new();
@@ -179,8 +175,8 @@ impl Reflectance for QuadraticArithmetic {
     }
 }
 
-/// Returns the largest difference between the parabola with the coefficient `a` and cⁿ. The grid of cosines covers the
-/// highlight: 1 − c goes from 0 to 8/n, but at most to 1. The zero of the parabola is one more point.
+/// Returns the largest difference between the parabola with the coefficient `a` and cⁿ, at its zero and on a grid of cosines
+/// that covers the highlight: 1 − c goes from 0 to 8/n, but at most to 1.
 fn formula_error(n: i64, a: f64) -> f64 {
     const GRID: u32 = 2048;
     let n = n as f64;

@@ -1,10 +1,9 @@
-//! The golden model and the accuracy contract of the device `rough`, which computes f = (n/2·(cos(γ ± dγ) − 1) + 1)².
+//! The golden model and the accuracy contract of the device `rough`, which computes f = (n/2·(cos(γ ± dγ) − 1) + 1)²
+//! ([symbols](crate#symbols)).
 //!
-//! γ is the angle between the surface normal and the half vector; dγ is the deviation of the normal on a rough surface; n is
-//! the specular exponent; f is the reflectance, the factor by which the device multiplies colours. The operands are cos γ and
-//! cos dγ, and a table gives the sines. A negative base of the square counts as 0, except with `clamp = false`, and f is 0 if
-//! cos γ ≤ 0. The source is the patent UA 60139 (Glint calls it seed 001); the golden model follows the steps that the patent
-//! describes.
+//! dγ is the deviation of the normal on a rough surface. The operands are cos γ and cos dγ, and a table gives the sines. A
+//! negative base of the square counts as 0, except with `clamp = false`, and f is 0 if cos γ ≤ 0. The golden model follows the
+//! steps that seed 001, the patent UA 60139, describes.
 
 mod analysis;
 mod bound;
@@ -28,7 +27,7 @@ use glint_base::fixed::{Format, exp2};
 use glint_config::Config;
 use glint_keys::rough::{ArithmeticMode as Kind, Keys, RomLayout};
 
-/// Returns the keys of a configuration. In the patent's arithmetic f has the fraction bits of the cosine, which has no sign.
+/// In the patent's arithmetic f has the fraction bits of the cosine, which has no sign.
 fn keys_of(config: &Config) -> Keys {
     let mut keys = Keys::of(config);
     if keys.patent() {
@@ -38,15 +37,14 @@ fn keys_of(config: &Config) -> Keys {
     keys
 }
 
-/// Formats, words and domains that follow from the keys.
 #[ext(Derived)]
 impl Keys {
     fn ulp(&self) -> f64 {
         exp2(-(self.operands.cosine.fraction as i32))
     }
 
-    /// Returns the domain of cos dγ, as raw values: from the smallest cosine whose angle is at most the largest deviation (the
-    /// key `domain.deviation`) to the largest cosine.
+    /// Returns the domain of cos dγ, as raw values: from the smallest cosine whose angle is at most the key `domain.deviation`
+    /// to the largest cosine.
     fn cos_dgamma_domain(&self) -> (i64, i64) {
         let largest = self.largest_cosine();
         let cosine = libm::cos(self.deviation.to_radians());
@@ -94,7 +92,6 @@ impl Keys {
         }
     }
 
-    /// Returns the format of cos γ, which may have a sign.
     fn cos_gamma_format(&self) -> Format {
         Format { signed: self.operands.cosine.signed, ..self.cos_dgamma_format() }
     }
@@ -104,12 +101,12 @@ impl Keys {
         Format::unsigned(int, self.operands.cosine.fraction as i32)
     }
 
-    /// Returns the largest raw cosine that a register contains: 1.0, or in the patent's arithmetic an ulp less.
+    /// Returns the largest raw cosine in a register: 1.0, or in the patent's arithmetic an ulp less.
     fn largest_cosine(&self) -> i64 {
         (1 << self.operands.cosine.fraction) - i64::from(self.patent())
     }
 
-    /// Returns the format of register 13, which contains first n/2·(cos(γ ± dγ) − 1) and then the square.
+    /// Register 13 contains first n/2·(cos(γ ± dγ) − 1) and then the square.
     fn result_format(&self) -> Format {
         let frac = self.f.fraction as i32;
         match (self.arithmetic, self.clamp) {
@@ -120,7 +117,7 @@ impl Keys {
     }
 }
 
-/// The combinational blocks between the registers, with one method for each block. All arguments and results are raw values.
+/// The combinational blocks between the registers, on raw values.
 struct RoughArithmetic {
     keys: Keys,
     sine: Sine,
@@ -129,8 +126,7 @@ struct RoughArithmetic {
 
 enum RoughBlocks {
     Exact {
-        /// The raw value 1.0 with the fraction bits of registers 11 and 12 (the products), and of register 13 (the base and its
-        /// square).
+        /// 1.0 with the fraction bits of registers 11 and 12 (the products), and of register 13 (the base and its square).
         product_one: i64,
         result_one: i64,
         clamp: bool,
@@ -172,7 +168,7 @@ impl RoughArithmetic {
         Self { sine: Sine::new(&keys.sine()), kind, keys }
     }
 
-    /// Returns the next raw value of register 11: cos γ·cos dγ.
+    /// Returns the next value of register 11: cos γ·cos dγ.
     #[inline]
     fn cos_cos(&self, cos_gamma: i64, cos_dgamma: i64) -> i64 {
         match &self.kind {
@@ -181,7 +177,7 @@ impl RoughArithmetic {
         }
     }
 
-    /// Returns the next raw value of register 12: sin γ·sin dγ.
+    /// Returns the next value of register 12: sin γ·sin dγ.
     #[inline]
     fn sin_sin(&self, sin_gamma: i64, sin_dgamma: i64) -> i64 {
         match &self.kind {
@@ -190,7 +186,7 @@ impl RoughArithmetic {
         }
     }
 
-    /// Returns the raw output of adder 15: cos(γ ± dγ) − 1.0 from registers 11 and 12.
+    /// Returns the output of adder 15: cos(γ ± dγ) − 1.0 from registers 11 and 12.
     ///
     /// The patent's numbers have no integer bit, so dropping this bit subtracts the 1.0. If `dgamma_negative` is 0, mux 14
     /// offers the inverse of register 12; without a carry this subtracts an ulp too much. Otherwise (trigger 4) mux 14 offers
@@ -210,8 +206,8 @@ impl RoughArithmetic {
         }
     }
 
-    /// Returns the first raw value of register 13: n/2·(cos(γ ± dγ) − 1), or, in the exact arithmetic, −1.0 for a surface that
-    /// faces away, which has cos γ = 0.
+    /// Returns the first value of register 13: n/2·(cos(γ ± dγ) − 1). In the exact arithmetic, a surface that faces away, which
+    /// has cos γ = 0, gets −1.0.
     #[inline]
     fn scaled(&self, adder_15: i64, exponent: i64, cos_gamma: i64) -> i64 {
         match &self.kind {
@@ -223,8 +219,8 @@ impl RoughArithmetic {
         }
     }
 
-    /// Returns the second raw value of register 13: the square of the output of adder 16, which is register 13 + 1.0. In the
-    /// exact arithmetic, a surface that faces away (cos γ = 0) has −1.0 instead.
+    /// Returns the second value of register 13: the square of the output of adder 16, which is register 13 + 1.0. In the exact
+    /// arithmetic, a surface that faces away gets −1.0.
     #[inline]
     fn squared(&self, result: i64, cos_gamma: i64) -> i64 {
         match &self.kind {
@@ -241,7 +237,7 @@ impl RoughArithmetic {
         }
     }
 
-    /// Returns the raw f that the colour multipliers read from register 13.
+    /// Returns the f that the colour multipliers read from register 13.
     ///
     /// With the clamp, f is the low bits of register 13, because the square is below 1.0. Without the clamp, register 13 has an
     /// integer bit, and f is the register limited to 0 … 1.0 − ulp. In the patent's arithmetic, f is register 13 itself.

@@ -1,9 +1,6 @@
-//! The golden model and the accuracy contract of the device `schlick`, which computes f = c / (n − n·c + c).
-//!
-//! c = cos γ, where γ is the angle between the surface normal and the half vector; n is the specular exponent; f is the
-//! reflectance, the factor by which the device multiplies colours. This is Schlick's approximation of cⁿ; the source is the
-//! paper "A model for reproducing the specular component of colour in computer graphics" (in Ukrainian; Glint calls it seed
-//! 002). f is 0 if c ≤ 0. For example, c = 0.5 and n = 1 give 0.5.
+//! The golden model and the accuracy contract of the device `schlick`. It computes f = c / (n − n·c + c), or 0 if c ≤ 0
+//! ([symbols](crate#symbols)). This is Schlick's approximation of cⁿ; the source is seed 002. For example, c = 0.5 and n = 1
+//! give 0.5.
 
 use super::contract::{self, ErrorShare};
 use super::frame::{Frame, idle, step};
@@ -14,12 +11,12 @@ use glint_base::fixed::{Format, exp2, mask};
 use glint_config::Config;
 use glint_keys::schlick::Keys;
 
-/// The integer arithmetic of the device. Cosines, divisors and remainders are raw values with the fraction bits of the cosine;
-/// the quotient is the raw f.
+/// The integer arithmetic of the device. Cosines, divisors and remainders have the fraction bits of the cosine; the quotient is
+/// f.
 struct SchlickArithmetic(Keys);
 
 impl SchlickArithmetic {
-    /// Returns the raw divisor `n − n·cos γ + cos γ`, plus an ulp if cos γ is 0, so that the divisor is never 0.
+    /// Returns the divisor `n − n·cos γ + cos γ`, plus an ulp if cos γ is 0, so that it is never 0.
     #[inline]
     fn divisor(&self, cosine: i64, exponent: i64) -> i64 {
         exponent * self.0.operands.cosine.one() - exponent * cosine
@@ -29,7 +26,7 @@ impl SchlickArithmetic {
 }
 
 /// Returns the first `bits` fraction bits of the quotient, and the remainder that they leave. A quotient of 1.0 gives all ones.
-/// For example, 4 bits of 1/3 are 5 (1/3 is about 5/16), and the remainder is 16 − 5·3 = 1.
+/// 4 bits of 1/3 are 5 (1/3 is about 5/16), and the remainder is 16 − 5·3 = 1.
 #[inline]
 fn divide(dividend: i64, divisor: i64, bits: u32) -> (i64, i64) {
     let quotient = ((dividend << bits) / divisor).min((1 << bits) - 1);
@@ -42,11 +39,9 @@ fn products(keys: &Keys) -> Products {
         .in_turn(colours.in_turn())
 }
 
-/// Returns the golden model of the device `schlick` for a configuration.
-///
 /// The hardware divides one bit a clock; the model divides once and derives the divider's registers from that division. After k
-/// clocks the low bits of the quotient register are the first k bits of the quotient, and the remainder register holds the
-/// remainder after these bits.
+/// clocks, the low bits of the quotient register are the first k bits of the quotient. The remainder register has the remainder
+/// after these bits.
 pub fn model(config: &Config) -> Box<dyn Model> {
     let it = SchlickArithmetic(Keys::of(config));
     let (bits, cosine_fraction) = (it.0.fraction, it.0.operands.cosine.fraction);
@@ -82,7 +77,7 @@ pub fn model(config: &Config) -> Box<dyn Model> {
     Box::new(products.behind(frame, quotient, program))
 }
 
-/// Returns the accuracy contract of the device `schlick`. Its control operands are `cos_gamma` and `exponent`.
+/// The control operands are `cos_gamma` and `exponent`.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     let keys = Keys::of(config);
     let operands = highlight::operands(&keys.operands, &keys.domain);
@@ -110,16 +105,16 @@ impl Reflectance for SchlickArithmetic {
         Some(formulas::schlick(cosine, exponent as f64))
     }
 
-    /// Returns the largest n as an upper limit of the slope n/(n − n·c + c)², which is largest at an end: n at c = 1, and 1/n
-    /// at c = 0. At c = 0 the formula is 0, as it is beyond a right angle. With n = 0 the formula is 1 for every c above 0, and
-    /// jumps to 0 at a right angle. The result is never `None`.
+    /// The largest n is an upper limit of the slope n/(n − n·c + c)². The slope is largest at an end: n at c = 1, and 1/n at c
+    /// = 0. At c = 0 the formula is 0, as it is beyond a right angle. With n = 0 the formula is 1 for every c above 0, and
+    /// jumps to 0 at a right angle.
     fn variation(&self) -> Option<Variation> {
         let (least, most) = self.0.domain.exponents();
         Some(Variation { slope: most as f64, jump: if least > 0 { 0.0 } else { 1.0 } })
     }
 
-    /// Returns the only contribution: the truncation of the quotient. Dividend and divisor are exact. The truncated quotient is
-    /// at most an ulp below the formula, and so is the largest fraction, which replaces a quotient of 1.0.
+    /// Only the quotient is truncated: dividend and divisor are exact. It is at most an ulp below the formula, and so is the
+    /// largest fraction, which replaces a quotient of 1.0.
     fn shares(&self) -> Vec<ErrorShare> {
         let ulp = exp2(-(self.0.fraction as i32));
         vec![("intensity.fraction", "truncation of the quotient", ulp)]

@@ -1,12 +1,11 @@
-//! The golden model and the accuracy contract of the device `shading`, which computes a colour as
-//! ambient + Σ (diffuse·cos α + specular·f(cos γ)).
+//! The golden model and the accuracy contract of the device `shading`, which computes a colour as ambient + Σ (diffuse·cos α +
+//! specular·f(cos γ)).
 //!
-//! The sum runs over the lights. α is the angle between the surface normal and the direction of a light, γ the angle between
-//! the normal and the half vector of the light; f is the highlight's formula, for example cⁿ with c = cos γ. A negative cosine
-//! counts as 0, or as positive with the key `two_sided`, and a colour saturates. `shading` consists of other devices, called
-//! its parts. For each light two `dot-product` devices compute the cosines from a normal of any length, and a highlight device
-//! such as `blinn` or `function` computes f. The golden model runs the golden models of the parts and adds their light, and the
-//! contract combines the proved error bounds of the parts.
+//! The sum runs over the lights. α is the angle between the surface normal and the direction of a light, and f the highlight's
+//! formula, for example cⁿ ([symbols](crate#symbols)). A negative cosine counts as 0, or as positive with the key `two_sided`,
+//! and a colour saturates. `shading` consists of other devices, called its parts. For each light, two `dot-product` devices
+//! compute the cosines from a normal of any length. A highlight device such as `blinn` or `function` computes f. The contract
+//! combines the proved error bounds of the parts.
 
 use std::sync::Arc;
 
@@ -25,7 +24,6 @@ use glint_config::Config;
 use glint_formula::{Expression, Kind, TextSpan, parse};
 use glint_keys::shading::{HighlightDevice, HighlightPart, Keys, LightParts};
 
-/// Returns the device: the parts of each light, one after the other, followed by the sum of ambient, diffuse and specular light.
 fn device(keys: &Keys, parts: &LightParts) -> device::Device {
     let mut frame = Frame::default();
     let normal = vector(&mut frame, "n", "", keys.normal_format());
@@ -92,13 +90,11 @@ fn device(keys: &Keys, parts: &LightParts) -> device::Device {
     device
 }
 
-/// Adds the three operands of a vector, and returns their slots.
 fn vector(frame: &mut Frame, name: &str, suffix: &str, format: Format) -> [Slot; 3] {
     ["x", "y", "z"].map(|axis| frame.operand(&format!("{name}{axis}{suffix}"), format))
 }
 
-/// Returns the operand `name` of a part, with the function that computes its value: the value of `slot`, shifted left by
-/// `places` bits.
+/// Returns the operand `name` of a part, with the function that computes its value: `slot`, shifted left by `places` bits.
 fn left(
     name: &'static str,
     slot: Slot,
@@ -107,7 +103,7 @@ fn left(
     (name, move |s: &State| s[slot] << places)
 }
 
-/// Adds a part that computes the cosine between the normal and another vector, and returns the slot of the cosine.
+/// Adds a part that computes the cosine between the normal and another vector.
 fn cosine(
     frame: &mut Frame,
     name: &str,
@@ -120,7 +116,6 @@ fn cosine(
     frame.part(name, &*dot_product::model(config), operands).out("cosine_out")
 }
 
-/// Returns the golden model of the part that computes the highlight.
 fn highlight_model(keys: &Keys, part: &HighlightPart) -> Box<dyn Model> {
     let config = match part {
         HighlightPart::OfExponent(config) => config,
@@ -137,7 +132,6 @@ fn highlight_model(keys: &Keys, part: &HighlightPart) -> Box<dyn Model> {
     }
 }
 
-/// Returns the accuracy contract of the part that computes the highlight.
 fn highlight_contract(keys: &Keys, part: &HighlightPart) -> Box<dyn Contract> {
     let config = match part {
         HighlightPart::OfExponent(config) => config,
@@ -154,12 +148,10 @@ fn highlight_contract(keys: &Keys, part: &HighlightPart) -> Box<dyn Contract> {
     }
 }
 
-/// Returns the golden model of the device `shading` for a configuration and its parts.
 pub fn model(config: &Config, parts: &LightParts) -> Box<dyn Model> {
     device(&Keys::of(config), parts).model()
 }
 
-/// Returns the accuracy contract of the device `shading` for a configuration and its parts.
 pub fn contract(config: &Config, parts: &LightParts) -> Box<dyn Contract> {
     let keys = Keys::of(config);
     let device = device(&keys, parts);
@@ -187,29 +179,26 @@ fn error(contract: &dyn Contract) -> f64 {
     contract.bounds().governing().units * exp2(-contract.outputs()[0].format.frac)
 }
 
-/// The proved error bounds of the parts.
 struct PartErrors {
-    /// The error bound of the cosine between normal and light.
+    /// The error of the cosine between normal and light.
     facing: f64,
-    /// The error bound of the cosine between normal and half vector.
+    /// The error of the cosine between normal and half vector.
     cosine: f64,
-    /// The error bound of the highlight of a colour, in units of a result.
+    /// The error of the highlight of a colour, in units of a result.
     highlight: f64,
-    /// The limits on how much the formula of the highlight changes with the cosine; `None` if they are not known.
+    /// How much the formula of the highlight changes with the cosine, if this is known.
     variation: Option<Variation>,
 }
 
-/// The formula of `shading`, with the error bounds of its parts.
 struct Shading {
     keys: Keys,
-    /// The accuracy contract of the highlight device, which is a part of `shading`.
+    /// The accuracy contract of the highlight device.
     highlight: Box<dyn Contract>,
     errors: PartErrors,
 }
 
 impl Shading {
-    /// Returns the exact f of the highlight at a cosine that is not quantised. Returns NaN if the highlight cannot compute f
-    /// from the cosine.
+    /// Returns the exact f at a cosine that is not quantised, or NaN if the highlight cannot compute it.
     fn f(&self, cosine: f64, exponent: i64) -> f64 {
         match self.highlight.highlight() {
             Some(highlight) => highlight.at_cosine(cosine, exponent).unwrap_or(f64::NAN),
@@ -259,9 +248,9 @@ impl Formula for Shading {
         colours
     }
 
-    /// Returns the terms of the error bound of a colour, in units, and derives them. An error of an operand of a part is
-    /// multiplied by the slope of the part, and the part adds its own error. The errors of all lights add up. If nobody has
-    /// stated how f changes with the cosine, there are no terms and the bound is not stated.
+    /// Derives the terms of the error bound of a colour, in units. An error of an operand of a part is multiplied by the slope
+    /// of the part, and the part adds its own error. The errors of all lights add up. If nobody has stated how f changes with
+    /// the cosine, the bound is not stated.
     ///
     /// - A colour is diffuse·cosine + specular·f(cosine), saturated. Its slope by the cosine of the light is at most the
     ///   largest colour. Its slope by the cosine of the highlight is at most the largest colour times the slope of f.
@@ -296,8 +285,7 @@ impl Formula for Shading {
         terms
     }
 
-    /// Returns the formula of each colour as a Python expression. Returns an empty list if the highlight's formula reads a
-    /// table, or if nobody has written it as an expression.
+    /// Returns an empty list if the highlight's formula reads a table, or if nobody has written it as an expression.
     fn expressions(&self) -> Vec<String> {
         let (operand, f) = match self.highlight.highlight() {
             Some(highlight) => (COSINE, highlight.expressions()),
@@ -326,14 +314,13 @@ impl Formula for Shading {
         colours.into()
     }
 
-    /// Returns the bound that the contract demands: one unit for each light, plus half a unit for the rounding of the result.
-    /// For example, two lights may cause an error of up to 2.5 units.
+    /// The contract demands one unit for each light, plus half a unit for the rounding of the result.
     fn limit(&self, _output: usize) -> f64 {
         f64::from(self.keys.lights) + 0.5
     }
 
-    /// Returns random raw operands. The lights are in any direction, and the half vectors are near the normal, the nearer the
-    /// larger the exponent is. The colours are so dark that their sum does not saturate. The result is never `None`.
+    /// The lights are in any direction, and the half vectors are near the normal, the nearer the larger the exponent is. The
+    /// colours are so dark that their sum does not saturate.
     fn hint(&self, unit: &mut dyn FnMut() -> f64) -> Option<Vec<i64>> {
         let Keys { normal, light, colour_bits, most, lights, .. } = self.keys;
         let direction = unit_vector(centred(unit));
@@ -362,8 +349,7 @@ impl Formula for Shading {
         Some(operands)
     }
 
-    /// Returns normals in one plane, under lights and half vectors along the z axis, with fixed colours and four exponents. The
-    /// result is never `None`.
+    /// Visits normals in one plane, under lights and half vectors along the z axis, with fixed colours and four exponents.
     fn sweep(&self) -> Option<Sweep> {
         let Keys { normal, light, colour_bits, most, .. } = self.keys;
         let (one, to_light, white) = (1 << normal, 1 << light, (1 << colour_bits) - 1);
@@ -397,12 +383,11 @@ impl Formula for Shading {
     }
 }
 
-/// Returns the raw number with `fraction` fraction bits that is nearest to `value`. For example, 0.3 with 4 fraction bits is 5.
+/// Rounds to `fraction` fraction bits: 0.3 with 4 is 5.
 fn raw(value: f64, fraction: u32) -> i64 {
     (value * exp2(fraction as i32)).round() as i64
 }
 
-/// Returns the axis of a sweep with one value.
 fn fixed_axis(name: String, value: i64) -> Axis {
     Axis { name, values: Values::List(vec![value]) }
 }
@@ -414,8 +399,8 @@ mod tests {
     use glint_config::Value;
     use glint_keys::shading::schema;
 
-    /// The bound of the whole includes the bounds of the parts. With a cosine of 12 fraction bits, the largest error is above
-    /// the bound that falsely small bounds of the parts would give, and below the true bound.
+    /// With a cosine of 12 fraction bits, the largest error is below the true bound. It is above the bound that falsely small
+    /// bounds of the parts would give.
     #[test]
     fn the_bound_of_the_whole_falls_with_that_of_a_part() {
         let keys = [("cosine.fraction", 12), ("domain.exponent_max", 1000)];

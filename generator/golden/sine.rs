@@ -1,14 +1,11 @@
-//! Makes the table of sines of the device `rough`, ROM 18, for its golden model. The hardware description computes its own
-//! table.
+//! Makes the table of sines of the device `rough`, ROM 18, for its golden model; the hardware description computes its own.
 //!
-//! The table maps a cosine x to the sine √(1 − x²). The table has one entry for each bucket (an interval of x), or straight
-//! segments that become shorter toward x = 1. x is a raw value with C fraction bits from 0 to 2^C; a sine has the format u0.S,
-//! with S fraction bits.
+//! The table maps a cosine x to the sine √(1 − x²). It has one entry for each bucket (an interval of x), or straight segments
+//! that become shorter toward x = 1. x is a raw value with C fraction bits from 0 to 2^C. A sine has the format u0.S.
 
 use super::curve::{self, SegmentedCurve};
 use glint_base::fixed::exp2;
 
-/// The organisation of the table of sines.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum TableScheme {
     /// One entry for each value of the `address` leading fraction bits of x. For example, 12 bits make 4096 entries.
@@ -16,42 +13,38 @@ pub enum TableScheme {
         /// The number A of address bits.
         address: u32,
     },
-    /// Straight segments over u = 1.0 − x, interpolated linearly. The upper three quarters of the values of u are the first
-    /// range. The upper three quarters of the remaining quarter are the second range, and so on. Each range is divided into
-    /// segments of equal length; the values of u below all ranges have an entry each.
+    /// Straight segments over u = 1.0 − x, interpolated linearly. The ranges are as in [`SegmentedCurve`]; the values of u below
+    /// all ranges have an entry each.
     Segmented {
         /// log₂ of the number of prefixes (leading bits of u) in each range; a quarter of the prefixes belongs to the values
         /// below the range.
         segments: Vec<u32>,
-        /// The number D of fraction bits of a slope. A slope is the rise over a whole segment.
+        /// The number D of fraction bits of a slope, the rise over a whole segment.
         slope_fraction: u32,
     },
 }
 
-/// The parameters of the sine table.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SineParams {
     /// The number C of fraction bits of the operand x.
     pub operand_fraction: u32,
     /// The number S of fraction bits of the sine.
     pub fraction: u32,
-    /// The organisation of the sine table.
     pub scheme: TableScheme,
 }
 
-/// A set of adjacent operands of the table, with the table's largest error among them.
+/// A set of adjacent operands, with the table's largest error among them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ErrorRange {
-    /// The smallest and the largest operand of the set, as cosines.
+    /// The smallest and the largest operand, as cosines.
     pub cosines: (f64, f64),
-    /// The largest `|table − √(1 − x²)|` among the operands of the set.
+    /// The largest `|table − √(1 − x²)|`.
     pub error: f64,
-    /// The error that would remain if words had unlimited width: the distance of √(1 − x²) from the constant of the bucket, or
-    /// from the straight line of the segment.
+    /// The error that words of unlimited width would leave: the distance of √(1 − x²) from the bucket's constant, or from the
+    /// segment's line.
     pub shape: f64,
 }
 
-/// The table of sines, as the golden model of `rough` reads it.
 #[derive(Clone, Debug)]
 pub struct Sine {
     operand_fraction: u32,
@@ -65,8 +58,7 @@ enum SineTable {
         address: u32,
         entries: Vec<i64>,
     },
-    /// A table of straight segments over u = 1.0 − x. `rest` is the number of values of u below all ranges, each with its own
-    /// entry.
+    /// `rest` is the number of values of u below all ranges, each with its own entry.
     Segmented {
         curve: SegmentedCurve,
         rest: i64,
@@ -74,7 +66,6 @@ enum SineTable {
 }
 
 impl Sine {
-    /// Returns the table with these parameters.
     pub fn new(params: &SineParams) -> Self {
         let (operand, fraction) = (params.operand_fraction, params.fraction);
         let table = match &params.scheme {
@@ -98,7 +89,7 @@ impl Sine {
         Self { operand_fraction: operand, fraction, table }
     }
 
-    /// Returns the raw sine of the raw operand `x`, 0 … 2^C.
+    /// Returns the sine of the raw operand `x`, 0 … 2^C.
     #[inline]
     pub fn at(&self, x: i64) -> i64 {
         let one = 1i64 << self.operand_fraction;
@@ -113,8 +104,8 @@ impl Sine {
         }
     }
 
-    /// Calls `visit` with sets of adjacent operands that together contain every operand from 0 to 2^C, and with the error of each
-    /// set. The sine is monotonic in a bucket, so the error of a bucket is largest at one of its ends.
+    /// Calls `visit` with sets of adjacent operands that together contain every operand from 0 to 2^C. The sine is monotonic in a
+    /// bucket, so its error is largest at one of the ends.
     pub fn for_each_piece(&self, mut visit: impl FnMut(ErrorRange)) {
         let operand = self.operand_fraction;
         let (one, ulp) = (1i64 << operand, exp2(-(self.fraction as i32)));
@@ -153,21 +144,21 @@ impl Sine {
     }
 }
 
-/// Returns the sine `√(1 − x²)` as a value. `u` is the raw value of 1.0 − x, from 0 to 2^C, where C is `operand`. The radicand
-/// is exact for C ≤ 26.
+/// Returns the sine `√(1 − x²)`. `u` is the raw value of 1.0 − x, from 0 to 2^C, where C is `operand`. The radicand is exact for
+/// C ≤ 26.
 fn sine_of(operand: u32, u: i64) -> f64 {
     let one = 1i64 << operand;
     let x = one - u;
     ((one * one - x * x) as f64).sqrt() * exp2(-(operand as i32))
 }
 
-/// Returns the raw value with `fraction` fraction bits that is nearest to `sine`, at most 1.0 less an ulp.
+/// Rounds to `fraction` fraction bits, at most 1.0 less an ulp.
 fn to_raw(sine: f64, fraction: u32) -> i64 {
     let raw = (sine * exp2(fraction as i32) + 0.5).floor() as i64;
     raw.clamp(0, (1 << fraction) - 1)
 }
 
-/// Returns the entry of bucket `a` in a direct table with `address` address bits: the raw sine at the middle of the bucket.
+/// Returns the sine at the middle of bucket `a`, in a table with `address` address bits.
 fn direct_entry(a: i64, address: u32, fraction: u32) -> i64 {
     let x = (a as f64 + 0.5) * exp2(-(address as i32));
     to_raw((1.0 - x * x).sqrt(), fraction)
@@ -213,7 +204,7 @@ mod tests {
         assert_eq!(sines[16], 63);
     }
 
-    /// The error of every operand is at most the error of the piece that contains it, and every operand is in a piece.
+    /// Every operand is in a piece, and its error is at most the error of the piece.
     #[test]
     fn pieces_bound_every_operand() {
         let tables = [

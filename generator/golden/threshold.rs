@@ -1,10 +1,8 @@
-//! The golden model and the accuracy contract of the device `threshold`, which computes f = (n/2·(c − 1) + 1)², or 0 if the
-//! square is below a level.
+//! The golden model and the accuracy contract of the device `threshold`. It computes f = (n/2·(c − 1) + 1)², or 0 if the square
+//! is below a level ([symbols](crate#symbols)).
 //!
-//! c = cos γ, where γ is the angle between the surface normal and the half vector; n is the specular exponent; f is the
-//! reflectance, the factor by which the device multiplies colours. f is 0 if the square is below the level of n, a word of the
-//! table ROM(n), since such a dark highlight is invisible. f is also 0 if the base of the square is negative, or if c ≤ 0. The
-//! source is the patent UA 30041, which the patent UA 60139 (Glint calls it seed 001) cites.
+//! The level of n is a word of the table ROM(n): a darker highlight is invisible. f is also 0 if the base of the square is
+//! negative, or if c ≤ 0. The source is the patent UA 30041, which seed 001 cites.
 
 #[cfg(test)]
 mod tests;
@@ -21,10 +19,10 @@ use glint_base::fixed::{Format, exp2};
 use glint_config::Config;
 use glint_keys::threshold::Keys;
 
-/// The integer arithmetic of the device, with one method for each operation. These methods take and return raw values.
+/// The integer arithmetic of the device, on raw values.
 struct ThresholdArithmetic {
     keys: Keys,
-    /// The value 1.0 in the fraction bits of the base.
+    /// The number 1 with the fraction bits of the base.
     base_one: i64,
     scaled: Narrow,
     square: Narrow,
@@ -52,9 +50,8 @@ impl ThresholdArithmetic {
         it
     }
 
-    /// Returns the words of ROM(n), one for each octave of n. A word is the smallest raw f at which the largest colour reaches
-    /// `level / 100` units, and at most 1.0 − ulp. For example, the level 100 gives 258 for colours of 8 bits and an f of 16
-    /// fraction bits.
+    /// Returns the words of ROM(n), one for each octave of n. A word is the smallest f at which the largest colour reaches
+    /// `level / 100` units, and at most 1.0 − ulp. The level 100 gives 258 for colours of 8 bits and an f of 16 fraction bits.
     fn thresholds(keys: &Keys) -> Vec<i64> {
         // The smallest word with 100 · largest · word ≥ level · 2^F. The right side is less than 2^30 · 2^24, so that an `i64`
         // holds it.
@@ -69,22 +66,22 @@ impl ThresholdArithmetic {
         words
     }
 
-    /// Returns the raw value of `n/2·(cos γ − 1)`, rounded, or −1.0 if the product is less.
+    /// Returns `n/2·(cos γ − 1)`, rounded, or −1.0 if the product is less.
     #[inline]
     fn scaled(&self, cosine: i64, exponent: i64) -> i64 {
         self.scaled.apply((cosine - self.keys.operands.cosine.one()) * exponent)
     }
 
-    /// Returns the word of ROM(n), a raw f, for the octave of `exponent`: the exponents from 2^k to below 2^(k + 1). The
-    /// exponent 0 counts as 1. The last word serves all octaves beyond it.
+    /// Returns the word of ROM(n) for the octave of `exponent`: the exponents from 2^k to below 2^(k + 1). The exponent 0
+    /// counts as 1. The last word serves all octaves beyond it.
     #[inline]
     fn threshold(&self, exponent: i64) -> i64 {
         let octave = exponent.max(1).ilog2() as usize;
         self.thresholds[octave.min(self.thresholds.len() - 1)]
     }
 
-    /// Returns the raw f: the square of the base, or 0 if the square is below the word of ROM(n), or if cos γ is 0. `scaled` is
-    /// the base less 1.0.
+    /// Returns f: the square of the base, or 0 if the square is below the word of ROM(n), or if cos γ is 0. `scaled` is the
+    /// base less 1.0.
     #[inline]
     fn gated(&self, cosine: i64, exponent: i64, scaled: i64) -> i64 {
         let base = scaled + self.base_one;
@@ -92,7 +89,7 @@ impl ThresholdArithmetic {
         if cosine == 0 || square < self.threshold(exponent) { 0 } else { square }
     }
 
-    /// Returns the exact square of the base, before the comparison with the level, and the level in ROM(n), both as values.
+    /// Returns the exact square of the base, before the comparison, and the level in ROM(n), as values.
     #[inline]
     fn square_and_level(&self, control: &[i64]) -> (f64, f64) {
         let ulp = exp2(-(self.keys.f.fraction as i32));
@@ -101,7 +98,6 @@ impl ThresholdArithmetic {
     }
 }
 
-/// Returns the golden model of the device `threshold` for a configuration.
 pub fn model(config: &Config) -> Box<dyn Model> {
     let it = Arc::new(ThresholdArithmetic::new(Keys::of(config)));
     let mut frame = Frame::default();
@@ -118,7 +114,7 @@ pub fn model(config: &Config) -> Box<dyn Model> {
     Box::new(products.behind(frame, intensity, program))
 }
 
-/// Returns the accuracy contract of the device `threshold`. Its control operands are `cos_gamma` and `exponent`.
+/// The control operands are `cos_gamma` and `exponent`.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     Box::new(highlight(ThresholdArithmetic::new(Keys::of(config))))
 }
@@ -147,10 +143,9 @@ impl Reflectance for ThresholdArithmetic {
         Some(formulas::threshold(formulas::parabola(cosine, exponent as f64), level))
     }
 
-    /// Returns the largest n as an upper limit of the slope n·base, since the base is at most 1, and the largest jump. The
-    /// result is never `None`. The formula jumps to 0 once, since the base falls with the cosine. It jumps from the level in
-    /// ROM(n), where either side is right within the margin. If (1 − n/2)² is above that level, the formula jumps from this
-    /// value at a right angle instead.
+    /// The largest n is an upper limit of the slope n·base, since the base is at most 1. The formula jumps to 0 once, since the
+    /// base falls with the cosine. It jumps from the level in ROM(n), where either side is right within the margin. If (1 −
+    /// n/2)² is above that level, the formula jumps from this value at a right angle instead.
     fn variation(&self) -> Option<Variation> {
         let (least, most) = self.keys.domain.exponents();
         let mut jump: f64 = 0.0;
@@ -162,8 +157,7 @@ impl Reflectance for ThresholdArithmetic {
         Some(Variation { slope: most as f64, jump })
     }
 
-    /// Returns the exact square and 0 if the square differs from the level in ROM(n) by at most `margin`: both results are
-    /// right then. Otherwise returns the formula twice.
+    /// The exact square and 0 are both right if the square differs from the level in ROM(n) by at most `margin`.
     #[inline]
     fn references(&self, control: &[i64]) -> [f64; 2] {
         let (square, level) = self.square_and_level(control);
@@ -174,8 +168,8 @@ impl Reflectance for ThresholdArithmetic {
         }
     }
 
-    /// Returns two Python expressions, one for each side of the jump. The first compares the square with the level less the
-    /// margin, the second with the level plus the margin. The level is the word of ROM(n).
+    /// Returns an expression for each side of the jump. The first compares the square with the level less the margin, the
+    /// second with the level plus the margin.
     fn expressions(&self) -> Vec<String> {
         let square =
             format!("{} ** 2", contract::clamped_at_0("exponent / 2 * (cos_gamma - 1) + 1"));
@@ -188,8 +182,8 @@ impl Reflectance for ThresholdArithmetic {
             .to_vec()
     }
 
-    /// Returns the contributions to the error of f, as values with their keys, and derives them. Base, square and formula lie
-    /// in 0 … 1, so that an error ε of the base is at most 2·ε in the square.
+    /// Derives the contributions to the error of f. Base, square and formula lie in 0 … 1, so that an error ε of the base is at
+    /// most 2·ε in the square.
     ///
     /// The product is rounded into the base, and limited to −1.0 where the formula is clamped. The square is rounded; the
     /// square of 1.0 is an ulp low. The comparison with ROM(n) adds no error: if the square differs from ROM(n) by at most the
@@ -207,8 +201,8 @@ impl Reflectance for ThresholdArithmetic {
         ]
     }
 
-    /// Returns a remark if a level hides outputs above 0, for one n of each octave. Such a level is visible as an edge around
-    /// the highlight.
+    /// Remarks that a level hides outputs above 0, for one n of each octave. Such a level is visible as an edge around the
+    /// highlight.
     fn remarks(&self) -> Vec<String> {
         let (f, colour_bits) = (&self.keys.f, self.keys.operands.colours.bits);
         let largest = (1 << colour_bits) - 1;

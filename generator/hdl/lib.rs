@@ -1,8 +1,8 @@
 //! A hardware description language in Rust, for devices with a datapath and a microprogrammed control unit.
 //!
-//! A description in the language ([`dsl`]) becomes a [`netlist`]. A built-in simulator runs the netlist ([`sim`]), a scheduler
-//! turns it into a [`pipeline`] that accepts a point every clock or every few clocks, and an emitter writes the netlist as
-//! [`verilog`]. For example:
+//! A description in the language ([`dsl`]) becomes a [`netlist`]. A built-in simulator runs the netlist ([`sim`]), and an
+//! emitter writes it as [`verilog`]. A scheduler can turn it into a [`pipeline`] first, which accepts a point every clock or
+//! every few clocks. For example:
 //!
 //! ```
 //! use glint_base::fixed::{Format, Overflow, Rounding};

@@ -1,12 +1,10 @@
-//! Declares and checks configuration keys that several devices share, so that a key means the same in all these devices. For
-//! example, `blinn` and `rough` both have the key `exponent.bits`, the width of the specular exponent n.
+//! Declares and checks configuration keys that several devices share, so that a key means the same in all of them.
 
 use glint_base::fixed::{Format, Rounding, exp2};
 use glint_config::{Key, Problems};
 
 glint_config::keys! {
-    /// The keys of the operand `cos_gamma`, the cosine of the angle γ between the surface normal and the half vector. For
-    /// example, `cosine.fraction` sets the number of fraction bits.
+    /// The keys of the operand `cos_gamma`, the cosine of the angle γ between the surface normal and the half vector.
     pub struct Cosine {
         fraction: u32 = Key::integer("cosine.fraction", 20, 6..=24,
             "Number of fraction bits of the cosine operands, which can be 1.0."),
@@ -16,30 +14,28 @@ glint_config::keys! {
 }
 
 impl Cosine {
-    /// Returns the format of the operand `cos_gamma`. For example, `cosine.fraction = 20` gives `u1.20`, or `s1.20` with
-    /// `cosine.signed`.
+    /// Returns `u1.20` for `cosine.fraction = 20`, or `s1.20` with `cosine.signed`.
     pub fn format(&self) -> Format {
         Format { signed: self.signed, int: 1, frac: self.fraction as i32 }
     }
 
-    /// Returns the raw value of the cosine 1.0. For example, it is 1048576 for 20 fraction bits.
+    /// Returns the raw value of the cosine 1.0, such as 1048576 for 20 fraction bits.
     pub fn one(&self) -> i64 {
         1 << self.fraction
     }
 
-    /// Returns the value of the last bit of a cosine (an ulp). For example, it is 2^−20 for `cosine.fraction = 20`.
+    /// Returns the value of the last bit of a cosine (an ulp), such as 2^−20.
     pub fn ulp(&self) -> f64 {
         exp2(-(self.fraction as i32))
     }
 
-    /// Returns the raw cosine that the device computes with if its input is the raw cosine `raw`: `raw` limited to the range
-    /// from 0 to the raw value of 1.0. For example, a negative cosine becomes 0.
+    /// Returns the raw cosine with which the device computes: `raw` limited to 0 … 1.0.
     #[inline]
     pub fn clamped(&self, raw: i64) -> i64 {
         raw.clamp(0, self.one())
     }
 
-    /// Returns the real value of a raw cosine, after the raw cosine is limited to the range from 0 to the raw value of 1.0.
+    /// Returns the real value of a raw cosine, limited to 0 … 1.0.
     #[inline]
     pub fn value(&self, raw: i64) -> f64 {
         self.clamped(raw) as f64 * self.ulp()
@@ -59,13 +55,13 @@ glint_config::keys! {
 }
 
 impl ColourKeys {
-    /// Returns whether one multiplier computes the products of f and all colours one after the other. If not, each colour has its
-    /// own multiplier, as in every pipeline.
+    /// Returns whether one multiplier computes the products of all colours one after the other. In every pipeline, each colour
+    /// has its own.
     pub fn in_turn(&self) -> bool {
         self.multipliers == 1
     }
 
-    /// Makes keys for colours of four bits, for tests with numbers that can be followed by hand.
+    /// Returns small keys for tests whose numbers a reader can follow by hand: colours of four bits.
     #[doc(hidden)]
     pub fn small() -> Self {
         Self { bits: 4, multipliers: 3 }
@@ -73,7 +69,7 @@ impl ColourKeys {
 }
 
 glint_config::keys! {
-    /// The keys of the operands that most highlight devices have: cos γ, the specular exponent n, and the colours.
+    /// The keys of the operands that most highlight devices have.
     pub struct Operands {
         cosine: Cosine = Cosine::keys(),
         exponent_bits: u32 = exponent_bits(),
@@ -82,12 +78,12 @@ glint_config::keys! {
 }
 
 impl Operands {
-    /// Returns the format of the operand `exponent`. For example, `exponent.bits = 10` gives `u10.0`.
+    /// Returns `u10.0` for `exponent.bits = 10`.
     pub fn exponent_format(&self) -> Format {
         Format::unsigned(self.exponent_bits as i32, 0)
     }
 
-    /// Makes keys for operands of four bits, for tests with numbers that can be followed by hand.
+    /// Returns small keys for tests whose numbers a reader can follow by hand: operands of four bits.
     #[doc(hidden)]
     pub fn small() -> Self {
         Self {
@@ -99,8 +95,7 @@ impl Operands {
 }
 
 glint_config::keys! {
-    /// The keys of the reflectance f, the factor by which a highlight device multiplies colours. These keys set the fraction bits
-    /// of f, the rounding of f, and the rounding of the products.
+    /// The keys of the reflectance f, the factor by which a highlight device multiplies colours, and of the products.
     pub struct Intensity {
         fraction: u32 = intensity_fraction(16),
         rounding: Rounding = Key::rounding("intensity.rounding", "truncate",
@@ -110,12 +105,12 @@ glint_config::keys! {
 }
 
 impl Intensity {
-    /// Returns the format of the reflectance f. For example, `intensity.fraction = 16` gives `u0.16`.
+    /// Returns `u0.16` for `intensity.fraction = 16`.
     pub fn format(&self) -> Format {
         Format::unsigned(0, self.fraction as i32)
     }
 
-    /// Makes keys for a reflectance of four bits, for tests with numbers that can be followed by hand.
+    /// Returns small keys for tests whose numbers a reader can follow by hand: f has four bits.
     #[doc(hidden)]
     pub fn small() -> Self {
         let (rounding, output_rounding) = (Rounding::Truncate, Rounding::Nearest);
@@ -124,7 +119,7 @@ impl Intensity {
 }
 
 glint_config::keys! {
-    /// The keys of the range of specular exponents n for which a device's accuracy contract is stated.
+    /// The specular exponents n for which a device's accuracy contract is stated.
     pub struct Domain {
         least: i64 = Key::integer("domain.exponent_min", 1, 0..=4095,
             "The smallest n of the accuracy contract."),
@@ -134,24 +129,24 @@ glint_config::keys! {
 }
 
 impl Domain {
-    /// Returns the smallest and the largest exponent of the range, both included.
+    /// Returns the smallest and the largest exponent, both included.
     pub fn exponents(&self) -> (i64, i64) {
         (self.least, self.most)
     }
 
-    /// Makes the range of all exponents with four bits except 0, for tests with numbers that can be followed by hand.
+    /// Returns small keys for tests whose numbers a reader can follow by hand: all exponents with four bits except 0.
     #[doc(hidden)]
     pub fn small() -> Self {
         Self { least: 1, most: 15 }
     }
 }
 
-/// Makes the key `exponent.bits`, the width of the specular exponent n in bits.
+/// Makes the key `exponent.bits`, the width of the specular exponent n.
 pub fn exponent_bits() -> Key {
     Key::integer("exponent.bits", 10, 1..=12, "Width of the specular exponent n.")
 }
 
-/// Makes the key `power`, the power m in the formulas of the devices `cosine-power` and `lyon`: 2, 4, 8 or 16.
+/// Makes the key `power`, the power m in the formulas of `cosine-power` and `lyon`.
 pub fn power() -> Key {
     Key::choice(
         "power",
@@ -161,12 +156,12 @@ pub fn power() -> Key {
     )
 }
 
-/// Makes the key `colour.bits`, the width of a colour operand and of an output in bits.
+/// Makes the key `colour.bits`, the width of a colour operand and of an output.
 pub fn colour_bits() -> Key {
     Key::integer("colour.bits", 8, 1..=12, "Width of the colour operands and of the outputs.")
 }
 
-/// Makes the key `intensity.fraction`, the number of fraction bits of the reflectance f, with the default `default`.
+/// Makes the key `intensity.fraction`, the number of fraction bits of the reflectance f.
 pub fn intensity_fraction(default: i64) -> Key {
     Key::integer(
         "intensity.fraction",
@@ -185,8 +180,7 @@ pub fn output_rounding() -> Key {
     )
 }
 
-/// Makes the key `angle.fraction`, the number of fraction bits of an angle along a scan line, with the default `default`.
-/// Angles are in right angles.
+/// Makes the key `angle.fraction`, the number of fraction bits of an angle along a scan line, in right angles.
 pub fn angle_fraction(default: i64) -> Key {
     Key::integer(
         "angle.fraction",
@@ -197,8 +191,7 @@ pub fn angle_fraction(default: i64) -> Key {
     )
 }
 
-/// Makes the key `table.address`, the number of address bits of a table over a right angle, with the default `default`. The
-/// table has powers of the cosine.
+/// Makes the key `table.address`, the number of address bits of a table of cosine powers over a right angle.
 pub fn table_address(default: i64) -> Key {
     Key::integer(
         "table.address",
@@ -208,7 +201,7 @@ pub fn table_address(default: i64) -> Key {
     )
 }
 
-/// Makes the key `length.bits`, the width in bits of the operand that is the length of a scan line.
+/// Makes the key `length.bits`, the width of the operand that is the length of a scan line.
 pub fn length_bits() -> Key {
     Key::integer(
         "length.bits",
@@ -231,9 +224,8 @@ pub fn line_stages(choices: &'static [&'static str]) -> Key {
     .joined_later()
 }
 
-/// Checks the range of the exponent n, and adds the problems to `problems`. The smallest exponent must not exceed the largest
-/// exponent, and an operand of `bits` bits must be able to represent the largest exponent. For example, 8 bits cannot represent n
-/// = 1000.
+/// Checks that the smallest exponent n does not exceed the largest, and that an operand of `bits` bits can represent it: 8 bits
+/// cannot represent n = 1000.
 pub fn check_exponents(domain: &Domain, bits: u32, problems: &mut Problems) {
     let (min, max) = domain.exponents();
     if min > max {
@@ -255,12 +247,11 @@ pub fn check_exponents(domain: &Domain, bits: u32, problems: &mut Problems) {
     }
 }
 
-/// The largest number of bits of a ROM, 2^20.
 const ROM_LIMIT: i64 = 1 << 20;
 
-/// Checks that a ROM has at most 2^20 bits. `address` is the number of its address bits, and `width` the width of an entry. For
-/// example, a ROM with 15 address bits may have entries of up to 32 bits. A larger ROM is a problem of the configuration key
-/// `key`, which governs the size. `rom` names the ROM, and `remedy` says how to make it smaller.
+/// Checks that a ROM has at most 2^20 bits. `address` is the number of its address bits, and `width` the width of an entry: 15
+/// address bits allow entries of up to 32 bits. `key` governs the size, `rom` names the ROM, and `remedy` says how to make it
+/// smaller.
 pub fn check_rom_size(
     key: &str,
     rom: &str,
@@ -276,11 +267,10 @@ pub fn check_rom_size(
     }
 }
 
-/// Checks the segments of a table over the distance 1 − cos γ, an operand of `bits` bits. The table has ranges, each a quarter as
-/// long as the preceding range, so range j has `bits` − 2·j operand bits. `segments` has the number of leading bits that select a
-/// segment in each range. This number must not exceed the operand bits of the range; otherwise the function adds a problem of the
-/// key `key`, and checks no further range. Returns the largest number of bits that remain in a segment, up to the first range
-/// with a problem. For example, 20 bits and segments of 6 and 5 bits give 14.
+/// Checks the segments of a table over the distance 1 − cos γ, an operand of `bits` bits. Each range of the table is a quarter as
+/// long as the preceding one, so range j has `bits` − 2·j operand bits. `segments` has the number of leading bits that select a
+/// segment in each range, which must not exceed its operand bits. The check stops at the first problem, an error of `key`.
+/// Returns the largest number of bits that remain in a segment up to there: 20 bits and segments of 6 and 5 bits give 14.
 pub fn check_segments(segments: &[u32], key: &str, bits: u32, problems: &mut Problems) -> u32 {
     let mut most = 0;
     for (range, &prefix) in (0u32..).zip(segments) {

@@ -1,12 +1,10 @@
-//! Declares the configuration keys of the device `cosine-power`, and checks that their values are valid together.
-//!
-//! `cosine-power` computes f = (n/m·(cos γ − 1) + 1)^m, an approximation of cosⁿγ. For example, the key `power` sets m.
+//! Declares the configuration keys of the device `cosine-power`, which computes f = (n/m·(cos γ − 1) + 1)^m, an
+//! approximation of cosⁿγ. The key `power` sets m.
 
 use super::common::{self, Domain, Intensity, Operands};
 use glint_config::{Config, Problems, Schema};
 
 glint_config::keys! {
-    /// The values of a configuration of the device `cosine-power`, one field for each of its keys.
     pub struct Keys {
         power: u32 = common::power(),
         operands: Operands = Operands::keys(),
@@ -15,7 +13,6 @@ glint_config::keys! {
     }
 }
 
-/// Returns the schema of the device `cosine-power`: its configuration keys, and the check of their combinations.
 pub fn schema() -> Schema {
     Schema { device: "cosine-power", keys: Keys::keys(), check }
 }

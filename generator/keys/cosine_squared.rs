@@ -1,14 +1,11 @@
-//! Declares the configuration keys of the device `cosine-squared`, and checks that their values are valid together.
-//!
-//! `cosine-squared` computes f = cos²(a·δ) for the points of a scan line. δ is an angle that changes from point to point, and a
-//! is a factor that stretches it. For example, the key `angle.fraction` sets the number of fraction bits of an angle.
+//! Declares the configuration keys of the device `cosine-squared`, which computes f = cos²(a·δ) for the points of a scan line.
+//! δ is an angle that changes from point to point, and a is a factor that stretches it.
 
 use super::common;
 use glint_base::fixed::{Format, Rounding};
 use glint_config::{Config, Key, Problems, Schema};
 
 glint_config::keys! {
-    /// The values of a configuration of the device `cosine-squared`, one field for each of its keys.
     pub struct Keys {
         angle_integer: u32 = Key::integer("angle.integer", 7, 1..=8,
             "Number of integer bits of the stretched angles, which are signed and in right angles."),
@@ -23,18 +20,17 @@ glint_config::keys! {
 }
 
 impl Keys {
-    /// Returns the format of a stretched angle along the scan line, in right angles. For example, the defaults give `s7.22`.
+    /// The angle is stretched and in right angles. The defaults give `s7.22`.
     pub fn angle_format(&self) -> Format {
         Format::signed(self.angle_integer as i32, self.angle_fraction as i32)
     }
 
-    /// Returns the format of the reflectance f. For example, the default gives `u0.10`.
+    /// The default gives `u0.10`.
     pub fn f_format(&self) -> Format {
         Format::unsigned(0, self.fraction as i32)
     }
 }
 
-/// Returns the schema of the device `cosine-squared`: its configuration keys, and the check of their combinations.
 pub fn schema() -> Schema {
     Schema { device: "cosine-squared", keys: Keys::keys(), check }
 }

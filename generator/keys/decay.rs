@@ -1,9 +1,8 @@
 //! Declares the configuration keys of the devices `blinn` and `gauss`, and computes their tables of polynomials.
 //!
 //! Both devices compute f = 2^(−n·decay(c)), where c = cos γ and n is the specular exponent. The decay is −log₂ c in `blinn` and
-//! γ²/(2 ln 2) in `gauss`. Both devices have two tables of polynomials. One table gives the ratio of the decay to the distance 1
-//! − c, and the other table gives 2^−x. In `blinn`, the first table gives the ratio for the mantissa m of the cosine, from 1/2 to
-//! 1, instead of c.
+//! γ²/(2 ln 2) in `gauss`. One table gives the ratio of the decay to the distance 1 − c. In `blinn`, the mantissa m of the
+//! cosine, from 1/2 to 1, takes the place of c. The other table gives 2^−x.
 
 use std::sync::Arc;
 
@@ -15,7 +14,6 @@ use glint_config::{Config, Key, Problems, Schema, Value};
 use glint_formula::parse;
 
 glint_config::keys! {
-    /// The values of a configuration of the device `blinn` or `gauss`, one field for each of its keys.
     pub struct Keys {
         operands: Operands = Operands::keys(),
         ratio_fraction: u32 = Key::integer("ratio.fraction", 16, 5..=20,
@@ -35,13 +33,13 @@ glint_config::keys! {
     }
 }
 
-/// The names of the keys for the fraction bits and the degree of the table of the ratio.
+/// The keys for the fraction bits and the degree of the table of the ratio.
 const RATIO: [&str; 2] = ["ratio.fraction", "ratio.degree"];
 
-/// The names of the keys for the fraction bits and the degree of the table of 2^−x.
+/// The keys for the fraction bits and the degree of the table of 2^−x.
 const EXPONENTIAL: [&str; 2] = ["exponential.fraction", "exponential.degree"];
 
-/// Makes the key `name`, the degree of the polynomials of a table. Its default `auto` chooses the cheapest degree.
+/// Makes the key for the degree of a table's polynomials. Its default `auto` chooses the cheapest degree.
 fn degree(name: &'static str) -> Key {
     Key::choice(
         name,
@@ -51,19 +49,18 @@ fn degree(name: &'static str) -> Key {
     )
 }
 
-/// The decay of a device as a function of c = cos γ. The device computes f = 2^(−n·decay).
+/// The decay as a function of c = cos γ, with which the device computes f = 2^(−n·decay).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Decay {
-    /// The decay −log₂ c of the device `blinn`. The table covers c from 1/2 to 1. A smaller c is doubled until it lies in this
-    /// range; each doubling adds 1 to the decay.
+    /// −log₂ c, in `blinn`. The table covers c from 1/2 to 1. A smaller c is doubled until it lies in this range; each doubling
+    /// adds 1 to the decay.
     Logarithm,
-    /// The decay γ²/(2 ln 2) of the device `gauss`.
+    /// γ²/(2 ln 2), in `gauss`.
     Angle,
 }
 
 impl Decay {
-    /// Returns the formula of the decay divided by the distance 1 − c. The text `v` is the formula of the distance. For
-    /// example, the distance `x` gives `-log2(1 - x) / x` in `blinn`.
+    /// Returns the formula of the decay divided by the distance `v`: for `x`, `-log2(1 - x) / x` in `blinn`.
     fn over_distance(self, v: &str) -> String {
         match self {
             Self::Logarithm => format!("-log2(1 - {v}) / {v}"),
@@ -72,8 +69,8 @@ impl Decay {
     }
 
     /// Returns the largest slope of the ratio decay/(1 − c) as a function of the distance v = 1 − c, rounded up to three
-    /// decimals. The ratio is convex, so the slope is largest at the largest distance. In `blinn` the slope is 1/(ln 2·(1 −
-    /// v)·v) + log₂(1 − v)/v² at v = ½. In `gauss` it is (π − π²/4)/(2 ln 2) at v = 1.
+    /// decimals. The ratio is convex, so the slope is largest at the largest distance: 1/(ln 2·(1 − v)·v) + log₂(1 − v)/v² at v =
+    /// ½ in `blinn`, and (π − π²/4)/(2 ln 2) at v = 1 in `gauss`.
     pub fn steepest(self) -> f64 {
         match self {
             Self::Logarithm => 1.771,
@@ -81,59 +78,54 @@ impl Decay {
         }
     }
 
-    /// Returns the number of leading bits of the distance that are always 0: 1 for `blinn`, whose distance is at most 1/2, and
-    /// 0 for `gauss`.
+    /// Returns the number of leading bits of the distance that are always 0: the distance of `blinn` is at most 1/2.
     fn known(self) -> u32 {
         u32::from(self == Self::Logarithm)
     }
 }
 
 impl Keys {
-    /// Returns the number of bits of u. In `gauss`, u is the distance 1 − c minus one unit in the last place of the cosine c; in
-    /// `blinn`, the mantissa of c, from 1/2 to 1, replaces c. The leading bits of u are the operand of the ratio's table. For
-    /// example, for a cosine with 20 fraction bits u has 19 bits in `blinn` and 20 bits in `gauss`.
+    /// Returns the number of bits of u, whose leading bits are the operand of the ratio's table. In `gauss`, u is the distance 1
+    /// − c minus one unit in the last place of the cosine c. In `blinn`, the mantissa replaces c. For a cosine with 20 fraction
+    /// bits u has 19 bits in `blinn` and 20 bits in `gauss`.
     pub fn distance(&self, decay: Decay) -> u32 {
         self.operands.cosine.fraction - decay.known()
     }
 
-    /// Returns the format of the decay, whose values are below 2.0. For example, the default `decay.fraction = 26` gives
-    /// `u1.26`. In `blinn`, this is the decay of the mantissa of the cosine, a value from 1/2 to 1, without the powers of two.
+    /// Returns the format of the decay, whose values are below 2.0: `u1.26` for `decay.fraction = 26`. In `blinn`, this is the
+    /// decay of the mantissa, without the powers of two.
     pub fn decay_format(&self) -> Format {
         Format::unsigned(1, self.decay_fraction as i32)
     }
 
     /// Returns the number of integer bits of the complete decay. In `blinn` the integer also counts the doublings of the cosine:
-    /// for 20 fraction bits of the cosine, the integer has 6 bits. In `gauss` the integer has 1 bit.
+    /// 6 bits for 20 fraction bits of the cosine. In `gauss` it has 1 bit.
     fn whole_bits(&self, decay: Decay) -> u32 {
         let octave = (self.operands.cosine.fraction - 1).ilog2() + 1;
         1 + octave * decay.known()
     }
 
-    /// Returns the width in bits with which the decay enters the multiplier for n·decay. A decay below ¼ is multiplied with all
-    /// its fraction bits. A larger decay is multiplied with its integer bits and `decay.coarse_fraction` fraction bits.
+    /// Returns the width with which the decay enters the multiplier for n·decay. A decay below ¼ is multiplied with all its
+    /// fraction bits, and a larger one with its integer bits and `decay.coarse_fraction` fraction bits.
     pub fn factor_bits(&self, decay: Decay) -> u32 {
         (self.decay_fraction - 2).max(self.whole_bits(decay) + self.coarse_fraction)
     }
 
-    /// Returns the format of the product n·decay. For example, the defaults of `gauss` give `u11.18`. The integer part of the
-    /// product says how often the result is halved.
+    /// Returns the format of the product n·decay, such as `u11.18` for the defaults of `gauss`. Its integer part says how often
+    /// the result is halved.
     pub fn halvings(&self, decay: Decay) -> Format {
         let whole = self.operands.exponent_bits + self.whole_bits(decay);
         Format::unsigned(whole as i32, self.argument as i32)
     }
 
     /// Returns the number of low bits of u that do not address the table of the ratio. The table reads one fraction bit of 1 − c
-    /// more than the ratio has. For example, the defaults of 20 cosine bits and 16 ratio bits leave 3 bits. The number is 0 if
-    /// the cosine has at most one fraction bit more than the ratio.
+    /// more than the ratio has. 20 cosine bits and 16 ratio bits leave 3.
     pub fn unseen(&self) -> u32 {
         self.operands.cosine.fraction.saturating_sub(self.ratio_fraction + 1)
     }
 
-    /// Returns the table of the ratio, the decay divided by the distance 1 − c. The table's operand is u without the low bits
-    /// that the table does not read. Its value is the ratio at the middle of all distances with the same operand.
-    ///
-    /// # Errors
-    /// Fails if no approximation can be found. The error has the key `ratio.fraction` and says why.
+    /// Returns the table of the ratio. Its operand is u without the low bits that it does not read. Its value is the ratio at the
+    /// middle of all distances with the same operand. Fails with the key `ratio.fraction` if no approximation can be found.
     pub fn ratio(&self, decay: Decay) -> Result<Arc<Piecewise>, ConfigError> {
         let unseen = self.unseen();
         let fraction = self.operands.cosine.fraction - unseen;
@@ -145,11 +137,8 @@ impl Keys {
         table(&formula, (last, of), self.ratio_fraction, &self.ratio_degree, RATIO)
     }
 
-    /// Returns the table of 2^−x, where x is the fraction of n·decay. The table's value is the power at the middle of the
-    /// fractions that are truncated to the same x.
-    ///
-    /// # Errors
-    /// Fails if no approximation can be found. The error has the key `exponential.fraction` and says why.
+    /// Returns the table of 2^−x, where x is the fraction of n·decay. Its value is the power at the middle of the fractions that
+    /// are truncated to the same x. Fails with the key `exponential.fraction` if no approximation can be found.
     pub fn power(&self) -> Result<Arc<Piecewise>, ConfigError> {
         let formula = format!("exp2(-x - 1/2^{})", self.argument + 1);
         let (last, of) = ((1 << self.argument) - 1, (0, self.argument as i32));
@@ -157,13 +146,10 @@ impl Keys {
     }
 }
 
-/// Returns the approximation of the formula `formula` for the raw operands from 0 to `last`. The operand has `int` integer bits
-/// and `frac` fraction bits, and the result has `fraction` fraction bits. Every error is below one unit of the result's last
-/// bit. `degree` is the value of the key for the degree. The last parameter has the names of the keys for the fraction bits and
-/// for the degree.
-///
-/// # Errors
-/// Fails if no approximation can be found. The error has the key for the fraction bits, and its remedy names both keys.
+/// Returns the approximation of `formula` for the raw operands from 0 to `last`, with an error below one unit of the result's
+/// last bit. The operand has `int` integer bits and `frac` fraction bits, and the result has `fraction` fraction bits. `degree`
+/// is the value of `degree_key`. Fails if no approximation can be found, with `key`, the key for the fraction bits; the remedy
+/// names both keys.
 fn table(
     formula: &str,
     (last, (int, frac)): (i64, (i32, i32)),
@@ -186,8 +172,7 @@ fn table(
     })
 }
 
-/// Returns the schema of `blinn` or `gauss`: the configuration keys, and the check `check` of their combinations. The default
-/// of `intensity.rounding` is `nearest`.
+/// The default of `intensity.rounding` is `nearest`.
 pub(super) fn schema(device: &'static str, check: fn(&Config, &mut Problems)) -> Schema {
     let mut keys = Keys::keys();
     for key in &mut keys {
@@ -198,8 +183,8 @@ pub(super) fn schema(device: &'static str, check: fn(&Config, &mut Problems)) ->
     Schema { device, keys, check }
 }
 
-/// Checks that the values of the keys are valid together and that both tables can be found, and adds the problems to `problems`.
-/// The tables, which can take long to find, are searched only if the file has no other mistake.
+/// Checks the keys, and whether both tables can be found. Only if the file has no other mistake, searches the tables, which can
+/// take long.
 pub(super) fn check(config: &Config, decay: Decay, problems: &mut Problems) {
     let keys = Keys::of(config);
     common::check_exponents(&keys.domain, keys.operands.exponent_bits, problems);

@@ -1,14 +1,11 @@
-//! Declares the configuration keys of the device `dot-product`, and checks that their values are valid together.
-//!
-//! `dot-product` computes the cosine of the angle γ between a vector N of any length and a unit vector H; a negative cosine
-//! becomes 0. With the key `two_sided` it computes |cos γ|.
+//! Declares the configuration keys of the device `dot-product`, which computes the cosine of the angle γ between a vector N of
+//! any length and a unit vector H. A negative cosine becomes 0. With the key `two_sided` it computes |cos γ|.
 
 use super::normaliser;
 use glint_base::fixed::{Format, Rounding};
 use glint_config::{Config, Key, Problems, Schema};
 
 glint_config::keys! {
-    /// The values of a configuration of the device `dot-product`, one field for each of its keys.
     pub struct Keys {
         fraction: u32 = Key::integer("vector.fraction", 14, 2..=14,
             "Number of fraction bits F of the components of the normal, whose format is s1.F. The normal may \
@@ -29,33 +26,30 @@ glint_config::keys! {
     }
 }
 
-/// Makes the key `two_sided`, with which a device takes the absolute value of a cosine and so lights both sides of a surface.
+/// Makes the key `two_sided`, which lights both sides of a surface by the absolute value of a cosine.
 pub(super) fn two_sided() -> Key {
     let doc = "Lights both sides of a surface: the device uses the absolute value of cosines.";
     Key::flag("two_sided", false, doc).joined_later()
 }
 
 impl Keys {
-    /// Returns the number of fraction bits of the product of two vector components, such as the x components of N and H.
+    /// Returns the number of fraction bits of the product of two vector components.
     pub fn products(&self) -> u32 {
         self.fraction + self.other
     }
 
-    /// Returns the format of the scalar product N·H, where N is shifted so that its length lies between 1 and 2. For example,
-    /// `factor.bits = 18` gives `u1.17`. The format has no sign, because a negative product becomes 0, or loses its sign with
-    /// `two_sided`.
+    /// Returns the format of N·H, where N is shifted so that its length lies between 1 and 2: `u1.17` for `factor.bits = 18`.
+    /// It has no sign, because a negative product becomes 0, or loses its sign with `two_sided`.
     pub fn distance(&self) -> Format {
         Format::unsigned(1, self.factor as i32 - 1)
     }
 
-    /// Returns the format of the inverse length 1/|N|, where N is shifted so that its length lies between 1 and 2. For example,
-    /// `factor.bits = 18` gives `u0.18`.
+    /// Returns the format of 1/|N|, where N is shifted in the same way: `u0.18` for `factor.bits = 18`.
     pub fn shortened(&self) -> Format {
         Format::unsigned(0, self.factor as i32)
     }
 }
 
-/// Returns the schema of the device `dot-product`: its configuration keys, and the check of their combinations.
 pub fn schema() -> Schema {
     Schema { device: "dot-product", keys: Keys::keys(), check }
 }

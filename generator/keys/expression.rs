@@ -1,8 +1,8 @@
 //! Declares the configuration keys of the device `expression`, and finds the plan of its formulas.
 //!
-//! The table `operands` of a configuration states the operands, the table `let` named parts of formulas, and the table `results`
-//! the results with their formulas. For example, the result `r` may have the formula `sqrt(x^2 + y^2)`. A plan is a list of
-//! fixed-point operations that computes the formulas ([`glint_plan`]).
+//! The table `operands` of a configuration states the operands, and the table `let` named parts of formulas. The table `results`
+//! states the results with their formulas, such as `sqrt(x^2 + y^2)`. A plan is a list of fixed-point operations that computes
+//! the formulas ([`glint_plan`]).
 
 use std::sync::Arc;
 
@@ -21,16 +21,15 @@ use glint_plan::{
 use super::function::End;
 use super::port_names::{self, NameFault, NamedTable};
 
-/// The smallest and the largest error that a configuration may allow, in units of a result's last bit.
+/// The errors that a configuration may allow, in units of a result's last bit.
 const LEAST_ERROR: f64 = 0.5;
 const LARGEST_ERROR: f64 = 1024.0;
 
-/// The remedy, as text for the user, for a relative error that is not a number between 0 and 1.
+/// The remedy for a relative error that is not a number between 0 and 1.
 const RELATIVE_ERROR: &str =
     "give a number between 0 and 1, or a formula of numbers, for example \"2^-12\"";
 
 glint_config::keys! {
-    /// The values of a configuration of the device `expression`, one field for each of its keys.
     pub struct Keys {
         operands: TableEntries = Key::records("operands", &example_operands(), operand_fields(), None, 1..=8,
             "The operands, in the order of the ports. The field bits gives an operand a whole format; the \
@@ -115,7 +114,7 @@ fn result_fields() -> Vec<Key> {
     ]
 }
 
-/// Returns the operands of the example configuration: the coordinates `x` and `y` of a point.
+/// The coordinates `x` and `y` of a point.
 fn example_operands() -> Vec<TableEntry> {
     let fields = [
         ("bits", Value::Integer(12)),
@@ -125,7 +124,7 @@ fn example_operands() -> Vec<TableEntry> {
     vec![TableEntry::new("x", &fields), TableEntry::new("y", &fields)]
 }
 
-/// Returns the result of the example configuration: the distance `r` of the point from the origin.
+/// The distance `r` of the point from the origin.
 fn example_results() -> Vec<TableEntry> {
     let fields = [
         ("formula", Value::Text("sqrt(x^2 + y^2)".to_owned())),
@@ -135,7 +134,6 @@ fn example_results() -> Vec<TableEntry> {
     vec![TableEntry::new("r", &fields)]
 }
 
-/// Returns the schema of the device `expression`: its configuration keys, and the check of their combinations.
 pub fn schema() -> Schema {
     Schema { device: "expression", keys: Keys::keys(), check }
 }
@@ -146,7 +144,6 @@ fn check(config: &Config, problems: &mut Problems) {
     }
 }
 
-/// Returns the error of a formula that cannot be read.
 fn misread(key: String, fault: Fault) -> ConfigError {
     let remedy = "write a formula of numbers, pi, e, operands, + - * / ^, parentheses and functions, for \
                   example `sqrt(x^2 + y^2)`";
@@ -156,8 +153,8 @@ fn misread(key: String, fault: Fault) -> ConfigError {
 /// Plans the formulas of a configuration, and proves an error bound for each result. This can take some seconds.
 ///
 /// # Errors
-/// Fails if a name, an operand, a formula or an allowed error is wrong, if no result depends on some operand, or if no plan can
-/// be found. The error says why.
+/// Fails if a name, an operand, a formula or an allowed error is wrong, no result depends on some operand, or no plan can be
+/// found.
 pub fn plan(config: &Config) -> Result<ProvedPlan, ConfigError> {
     let keys = Keys::of(config);
     let statement = statement(&keys)?;
@@ -166,8 +163,8 @@ pub fn plan(config: &Config) -> Result<ProvedPlan, ConfigError> {
     Ok(plan)
 }
 
-/// Checks that a result changes with each operand. Fails for an operand that the plan does not read, because every choice or remainder
-/// that reads it was decided. For example, `if(x < 100, y, x)` with x below 2 is y.
+/// Fails for an operand that the plan does not read, because every choice or remainder that reads it was decided: `if(x < 100, y,
+/// x)` with x below 2 is y.
 fn check_operands_have_readers(found: &ProvedPlan) -> Result<(), ConfigError> {
     let plan = &found.plan;
     let is_read = |node: usize| {
@@ -190,8 +187,7 @@ fn check_operands_have_readers(found: &ProvedPlan) -> Result<(), ConfigError> {
     Ok(())
 }
 
-/// Returns the refusal of a plan as an error in the formula that the refusal concerns, which may be the formula of a named part,
-/// or in the table `results` if it concerns no single formula.
+/// Turns the refusal of a plan into an error in the formula that it concerns, also of a named part, or in the table `results`.
 fn refused(keys: &Keys, statement: &ExpressionStatement, refusal: PlanRefusal) -> ConfigError {
     let of_part = |place: &TextSpan| Some(&keys.parts.0.get(place.text.checked_sub(1)?)?.name);
     let key = match (refusal.place.as_ref().and_then(of_part), refusal.result) {
@@ -207,17 +203,15 @@ fn refused(keys: &Keys, statement: &ExpressionStatement, refusal: PlanRefusal) -
 /// ([`TextSpan::text`]).
 type Parts = Vec<(String, Arc<Expression>)>;
 
-/// Returns the key of the formula of the part `name`.
 fn part_key(name: &str) -> String {
     format!("let.{name}.formula")
 }
 
-/// Returns the operands and results that a configuration states. The returned formulas contain operands alone: the function
-/// replaces named parts by their formulas.
+/// Returns the operands and results that a configuration states, with the formulas of named parts in place of their names.
 ///
 /// # Errors
-/// Fails if an entry is wrong, if two entries have the same name, if there is an operand on which no result depends, or if
-/// [`error_of_relative`] fails.
+/// Fails if an entry is wrong, if two entries have the same name, if no result depends on an operand, or if [`error_of_relative`]
+/// fails.
 fn statement(keys: &Keys) -> Result<ExpressionStatement, ConfigError> {
     check_names(keys)?;
     let mut operands = Vec::new();
@@ -256,9 +250,9 @@ fn statement(keys: &Keys) -> Result<ExpressionStatement, ConfigError> {
     Ok(statement)
 }
 
-/// Returns the allowed error of the result with the index `number`, in units of its last bit. The text `text` states the error
-/// as a part of the result's value, and the smallest absolute value decides. For example, 2^-12 of values from 0.5 to 1 is
-/// 2^-13, just below 4 units with 15 fraction bits. The error is at most [`LARGEST_ERROR`].
+/// Returns the allowed error of the result with the index `number`, in units of its last bit, at most [`LARGEST_ERROR`]. `text`
+/// states it as a part of the result's value, and the smallest absolute value decides. For example, 2^-12 of values from 0.5 to 1
+/// is 2^-13, just below 4 units with 15 fraction bits.
 ///
 /// # Errors
 /// Fails if `text` is not a number between 0 and 1, or if the result may be 0 or near 0. Fails if the smallest absolute value of
@@ -302,10 +296,7 @@ fn error_of_relative(
     Ok(units.min(LARGEST_ERROR))
 }
 
-/// Checks the names of operands, parts and results.
-///
-/// # Errors
-/// Fails at the first name that cannot be used. The error names the entry.
+/// Checks the names of operands, parts and results, and fails at the first one that cannot be used.
 fn check_names(keys: &Keys) -> Result<(), ConfigError> {
     let tables = [
         (NamedTable::Operands, &keys.operands),
@@ -468,16 +459,14 @@ fn result(record: &TableEntry, keys: &Keys, parts: &Parts) -> Result<StatedResul
     Ok(StatedResult { name, formula, fraction, error, promise, width })
 }
 
-/// Returns the format of a result with `bits` bits, `fraction` of them fraction bits. The field `signed` of the entry says
-/// whether one bit is a sign.
+/// Returns the format of a result, with a sign if the field `signed` of the entry says so.
 fn stated_format(record: &TableEntry, bits: u32, fraction: u32) -> Format {
     let signed = record.flag("signed");
     let frac = fraction as i32;
     Format { signed, int: bits as i32 - i32::from(signed) - frac, frac }
 }
 
-/// Returns the formula with its value limited to the range of a format. For example, `x + y` in s0.7 becomes `min(max(x + y,
-/// -1), 127/128)`.
+/// Limits the formula to the range of a format: `x + y` in s0.7 becomes `min(max(x + y, -1), 127/128)`.
 fn limited(formula: &Expression, format: Format) -> Expression {
     let span = formula.span.clone();
     let (least, most) = format.range();
@@ -490,11 +479,8 @@ fn limited(formula: &Expression, format: Format) -> Expression {
     Expression::new(Kind::Binary(Operator::Min, not_below, limit(most)), span.clone())
 }
 
-/// Parses a formula, and replaces named parts by their formulas. `key` is the configuration key for errors. A missing text
-/// counts as an empty one.
-///
-/// # Errors
-/// Fails if the text is not a formula, or if it has a name that is neither an operand nor one of `parts`.
+/// Parses a formula, and replaces named parts by their formulas. `key` is the configuration key for errors. A missing text counts
+/// as an empty one. Fails if the text is not a formula, or as [`resolved`] does.
 fn formula(
     text: Option<&str>,
     key: &str,
@@ -509,10 +495,8 @@ fn formula(
 /// The name of 2 π in formulas, unless an operand or a part has this name, such as a time constant.
 const TAU: &str = "tau";
 
-/// Returns a formula in which the names of parts are replaced by the formulas in `parts`, and [`TAU`] by its value.
-///
-/// # Errors
-/// Fails if the formula has a name that is neither an operand nor one of `parts`.
+/// Replaces the names of parts by their formulas, and [`TAU`] by its value. Fails if the formula has a name that is neither an
+/// operand nor one of `parts`.
 fn resolved(
     formula: &Expression,
     key: &str,
@@ -545,11 +529,8 @@ fn resolved(
     Ok(formula.with_operands(&of_part))
 }
 
-/// Parses a condition, for example `x < y` or `0 < x < y`, and replaces named parts by their formulas. Returns an equivalent
-/// comparison.
-///
-/// # Errors
-/// Fails if the text is not a condition, or if it has an unknown name.
+/// Parses a condition, for example `x < y` or `0 < x < y`, into an equivalent comparison, and replaces named parts. Fails if the
+/// text is not a condition, or as [`resolved`] does.
 fn promise(text: &str, key: &str, keys: &Keys, parts: &Parts) -> Result<Comparison, ConfigError> {
     let comparison = parse_condition(text).map_err(|fault| {
         let remedy = "give a condition, for example `x < y` or `s > 0 and x != 0`";

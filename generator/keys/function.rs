@@ -1,7 +1,7 @@
 //! Declares the configuration keys of the device `function`, and finds the piecewise polynomial for its function.
 //!
-//! The keys state a function of one operand x, as a formula such as `1 / sqrt(x)` or as samples (measured points). The keys also
-//! state the domain and the allowed error.
+//! The keys state a function of one operand x, its domain and the allowed error. The function is a formula such as `1 / sqrt(x)`,
+//! or samples (measured points).
 
 use std::sync::Arc;
 
@@ -18,7 +18,6 @@ use glint_plan::{ExpressionPlan, StatedOperand};
 use super::samples;
 
 glint_config::keys! {
-    /// The values of a configuration of the device `function`, one field for each of its keys.
     pub struct Keys {
         formula: String = Key::text("function.formula", "1 / sqrt(x)", TextPattern::Formula,
             "The function of the operand x."),
@@ -59,7 +58,6 @@ glint_config::keys! {
     }
 }
 
-/// Returns the schema of the device `function`: its configuration keys, and the check of their combinations.
 pub fn schema() -> Schema {
     Schema { device: "function", keys: Keys::keys(), check }
 }
@@ -80,21 +78,20 @@ fn check(config: &Config, problems: &mut Problems) {
     }
 }
 
-/// The plan for the function of a configuration.
 pub struct FunctionPlan {
-    /// The function, with its domain and the allowed error.
+    /// The function with its domain and the allowed error.
     pub function: TargetFunction,
-    /// The polynomials that approximate the function, with a proved bound of the error.
+    /// They approximate the function, with a proved bound of the error.
     pub polynomials: Arc<Piecewise>,
     /// The operations that evaluate the polynomials.
     pub plan: ExpressionPlan,
 }
 
-/// Plans the function that a configuration states: finds polynomials that approximate it, and proves a bound of the error.
+/// Finds polynomials that approximate the function of a configuration, and proves a bound of the error.
 ///
 /// # Errors
 /// Fails if the formula, the samples or the domain are wrong, if no approximation can be found, or if the planner refuses the
-/// approximation. The error says why, and names a key to change.
+/// approximation. The error names a key to change.
 pub fn plan(config: &Config) -> Result<FunctionPlan, ConfigError> {
     let keys = Keys::of(config);
     let function = function(&keys)?;
@@ -112,7 +109,7 @@ pub fn plan(config: &Config) -> Result<FunctionPlan, ConfigError> {
     Ok(FunctionPlan { function, polynomials, plan })
 }
 
-/// Returns the refusal of the search as an error of the key that the user should change.
+/// Turns the refusal of the search into an error of the key that the user should change.
 fn refused(refusal: Refusal, function: &TargetFunction, wish: Wish) -> ConfigError {
     const SMALLER: &str = "set a smaller operand.fraction";
     const DIVIDED: &str = "use device = \"expression\", which divides such a domain into octaves, or set a smaller \
@@ -160,7 +157,7 @@ fn refused(refusal: Refusal, function: &TargetFunction, wish: Wish) -> ConfigErr
     ConfigError::new(key, refusal.message, remedy).at(refusal.place)
 }
 
-/// Returns the operand x of the device, with the format and the domain of the piecewise polynomial.
+/// Returns the operand x, with the format and the domain of the piecewise polynomial.
 pub fn operand(polynomials: &Piecewise) -> StatedOperand {
     StatedOperand {
         name: "x".to_owned(),
@@ -221,19 +218,18 @@ fn function(keys: &Keys) -> Result<TargetFunction, ConfigError> {
     })
 }
 
-/// An end of a domain, as a raw operand. For example, the end `1.5` of an operand without fraction bits has the `ceiling` 2,
-/// and the end itself is not an operand.
+/// An end of a domain. The end `1.5` of an operand without fraction bits has the `ceiling` 2, and is not an operand itself.
 #[derive(Clone, Copy)]
 pub(super) struct End {
     /// The smallest raw operand that is not below the end.
     pub(super) ceiling: i128,
-    /// Whether the raw operand `ceiling` is exactly the end of the domain.
+    /// Whether `ceiling` is exactly the end.
     pub(super) is_operand: bool,
 }
 
 impl End {
-    /// Evaluates the text of an end, for an operand with `fraction` fraction bits, without rounding errors. For example, `0.1 *
-    /// 10` is 1, and `log2(16)` is 4. `key` is the configuration key for errors.
+    /// Evaluates the text of an end, for an operand with `fraction` fraction bits, without rounding errors: `0.1 * 10` is 1, and
+    /// `log2(16)` is 4. `key` is the configuration key for errors.
     ///
     /// # Errors
     /// Fails if the text is not a formula, or if the formula has an operand or no value, such as `1 / 0`. Fails also if 1024 bits
@@ -249,7 +245,7 @@ impl End {
     }
 }
 
-/// Returns the remedy for a domain whose raw operands have too many bits. `fraction` is the operand's number of fraction bits.
+/// The remedy for a domain whose raw operands have too many bits.
 fn too_wide(from: &End, to: &End, fraction: u32) -> String {
     let bits = |end: &End| i128::BITS - end.ceiling.unsigned_abs().leading_zeros();
     let excess = bits(from).max(bits(to)) - (MAX_WIDTH - 2);

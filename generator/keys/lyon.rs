@@ -1,24 +1,21 @@
-//! Declares the configuration keys of the device `lyon`, and checks that their values are valid together.
-//!
-//! `lyon` computes f = max(0, 1 − β·D²)^m, where D is the difference between normal and half vector, and β depends on the
-//! specular exponent. For example, the key `power` sets m.
+//! Declares the configuration keys of the device `lyon`, which computes f = max(0, 1 − β·D²)^m. D is the difference between
+//! normal and half vector, and β depends on the specular exponent. The key `power` sets m.
 
 use super::common::{self, ColourKeys, Domain, Intensity};
 use glint_base::fixed::Rounding;
 use glint_config::{Config, Key, Problems, Schema};
 
 glint_config::choices! {
-    /// The ways to obtain the factor β = n/(2·m) of the formula (1 − β·D²)^m.
+    /// Where the factor β = n/(2·m) of the formula comes from.
     pub enum Scale {
-        /// β = `2^shift/(2·m)`. The device has an operand `shift`, which is log₂ n, rounded.
+        /// β = `2^shift/(2·m)` with an operand `shift`, which is log₂ n, rounded.
         Shift = "shift",
-        /// β = `n/(2·m)`. The device has an operand `exponent`, which is n.
+        /// β = `n/(2·m)` with an operand `exponent`, which is n.
         Multiplier = "multiplier",
     }
 }
 
 glint_config::keys! {
-    /// The values of a configuration of the device `lyon`, one field for each of its keys.
     pub struct Keys {
         power: u32 = common::power(),
         scale: Scale = Key::choice("scale", "shift", Scale::WORDS,
@@ -43,19 +40,18 @@ glint_config::keys! {
 }
 
 impl Keys {
-    /// Returns the number s of squarings that compute the power m = 2^s. For example, the power 16 takes 4 squarings.
+    /// Returns the s of m = 2^s: the power 16 takes 4 squarings.
     pub fn squarings(&self) -> u32 {
         self.power.ilog2()
     }
 
-    /// Returns whether one multiplier squares the three components of D one after the other. If not, each component has its own
-    /// multiplier, as in every pipeline.
+    /// Returns whether one multiplier squares the three components of D one after the other. In every pipeline, each component
+    /// has its own.
     pub fn squares_in_turn(&self) -> bool {
         self.distance_multipliers == 1
     }
 }
 
-/// Returns the schema of the device `lyon`: its configuration keys, and the check of their combinations.
 pub fn schema() -> Schema {
     Schema { device: "lyon", keys: Keys::keys(), check }
 }

@@ -1,14 +1,10 @@
-//! Declares the configuration keys of the device `normaliser`, and checks that their values are valid together.
-//!
-//! `normaliser` computes the unit vector in the direction of a vector of any length. For example, the key `vector.fraction`
-//! sets the number of fraction bits of a component.
+//! Declares the configuration keys of the device `normaliser`, which computes the unit vector in the direction of a vector of
+//! any length.
 
 use glint_base::fixed::Rounding;
 use glint_config::{Config, Key, Problems, Schema};
 
 glint_config::keys! {
-    /// The values of a configuration of the device `normaliser`, one field for each of its keys. For example, `vector.fraction`
-    /// sets the number of fraction bits of a component.
     pub struct Keys {
         fraction: u32 = Key::integer("vector.fraction", 14, 2..=14,
             "Number of fraction bits F of the components of the vector, whose format is s1.F."),
@@ -37,7 +33,6 @@ pub(super) fn inverse() -> Key {
     )
 }
 
-/// Returns the schema of the device `normaliser`: its configuration keys, and the check of their combinations.
 pub fn schema() -> Schema {
     Schema { device: "normaliser", keys: Keys::keys(), check }
 }
@@ -55,8 +50,8 @@ fn check(config: &Config, problems: &mut Problems) {
     }
 }
 
-/// Checks the table of inverse roots for vectors whose components have `fraction` fraction bits. The sum of squares must have
-/// more bits than `address`, and `inverse` must not be below `address`. Adds the problems to `problems`.
+/// Checks the table of inverse roots for components with `fraction` fraction bits. The sum of squares must have more bits than
+/// `address`, and `inverse` must not be below `address`.
 pub(super) fn check_root(fraction: u32, address: u32, inverse: u32, problems: &mut Problems) {
     let sum = 2 * fraction + 4;
     if address >= sum {

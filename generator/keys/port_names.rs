@@ -1,19 +1,19 @@
 //! Checks the names of the operands, parts and results of the device `expression`.
 //!
-//! An operand is a port of the core, and has a register and a write strobe with names of their own. A result `r` is a port `r_out`.
-//! The emitted files contain further names, for example of the sequencer's signals, of the bus registers and of constants in the
-//! test bench. A name that would collide with one of them is refused, with a similar name that is free.
+//! An operand is a port of the core, and has a register and a write strobe with names of their own. A result `r` is a port
+//! `r_out`. The emitted files contain further names, for example of the bus registers and of constants in the test bench. A
+//! colliding name is refused, with a similar name that is free.
 
 use glint_base::identifier;
 use glint_formula::{Kind, parse};
 
-/// A group of names that a core or its files use themselves, and the phrase that says for what.
+/// Names that a core or its files use themselves, and for what.
 struct TakenNames {
     names: &'static [&'static str],
     what: &'static str,
 }
 
-/// The names that no operand can have, in any mix of upper and lower case. VHDL and C macros do not distinguish case.
+/// No operand can have these names, in any mix of upper and lower case: VHDL and C macros do not distinguish case.
 const TAKEN: [TakenNames; 6] = [
     TakenNames {
         names: &[
@@ -69,7 +69,6 @@ const TAKEN: [TakenNames; 6] = [
     },
 ];
 
-/// The tables of a configuration whose entries have names.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum NamedTable {
     Operands,
@@ -78,7 +77,6 @@ pub(super) enum NamedTable {
 }
 
 impl NamedTable {
-    /// Returns the name of the table in a configuration.
     pub(super) fn key(self) -> &'static str {
         match self {
             Self::Operands => "operands",
@@ -88,26 +86,22 @@ impl NamedTable {
     }
 }
 
-/// A name that an entry cannot have.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct NameFault {
-    /// The number of the entry in the list that was checked.
+    /// The entry's number in the list that was checked.
     pub(super) entry: usize,
-    /// The reason, as a message.
+    /// The reason.
     pub(super) message: String,
-    /// The remedy, as a message.
     pub(super) remedy: String,
 }
 
-/// Checks the names of all entries, each with its table.
-///
-/// # Errors
-/// Fails at the first entry whose name cannot be used. The remedy names another name, if the name has only legal characters.
+/// Checks the names of all entries, and fails at the first one that cannot be used. The remedy names another name, if the name
+/// has only legal characters.
 pub(super) fn check(entries: &[(NamedTable, &str)]) -> Result<(), NameFault> {
     for (entry, (table, name)) in entries.iter().enumerate() {
         let others: Vec<(NamedTable, &str)> =
             entries.iter().enumerate().filter(|(at, _)| *at != entry).map(|(_, it)| *it).collect();
-        // If two entries have the same name, the second one is refused.
+        // The second of two entries with the same name is refused.
         let found = obstacle(*table, name, &entries[..entry]);
         let Some(message) = found.or_else(|| owned_name(name, &others)) else { continue };
         let remedy = match free_name(*table, name, &others) {
@@ -119,8 +113,8 @@ pub(super) fn check(entries: &[(NamedTable, &str)]) -> Result<(), NameFault> {
     Ok(())
 }
 
-/// Returns the reason why an entry of `table` cannot have the name `name` beside the entries `others`, as a message. Returns
-/// `None` if it can, apart from names that other entries own ([`owned_name`]).
+/// Returns the reason why an entry of `table` cannot have the name `name` beside `others`, apart from names that other entries
+/// own ([`owned_name`]).
 fn obstacle(table: NamedTable, name: &str, others: &[(NamedTable, &str)]) -> Option<String> {
     if let Err(fault) = identifier::check(name) {
         return Some(fault.to_owned());
@@ -148,7 +142,7 @@ fn obstacle(table: NamedTable, name: &str, others: &[(NamedTable, &str)]) -> Opt
     None
 }
 
-/// Returns the message that one of the entries `others` gives the name `name` to something of its own, or `None` if none does.
+/// Returns a message if one of `others` gives the name to something of its own.
 fn owned_name(name: &str, others: &[(NamedTable, &str)]) -> Option<String> {
     let mut owners = others.iter();
     owners.find_map(|owner| {
@@ -157,13 +151,12 @@ fn owned_name(name: &str, others: &[(NamedTable, &str)]) -> Option<String> {
     })
 }
 
-/// The endings of further signals of an operand: the enable and the data of its register, its buffer, and the comparisons that
-/// limit it to its domain.
+/// Further signals of an operand: the enable and the data of its register, its buffer, and the comparisons that limit it to its
+/// domain.
 const ENDINGS: [&str; 7] =
     ["_load", "_next", "_buffer", "_under", "_over", "_at_least", "_at_most"];
 
-/// Returns the role of the name `name` if the entry `owner` gives this name to something of its own. For example, the operand
-/// `x` has a register `x_reg`.
+/// Returns the role of `name` if the entry `owner` gives it to something of its own: the operand `x` has a register `x_reg`.
 fn owned_as((table, owner): (NamedTable, &str), name: &str) -> Option<&'static str> {
     let end = name.strip_prefix(owner)?;
     match (table, end) {
@@ -175,7 +168,7 @@ fn owned_as((table, owner): (NamedTable, &str), name: &str) -> Option<&'static s
     }
 }
 
-/// Returns a name like `name` that an entry of `table` can have beside all `others`. Returns `None` if no such name is found.
+/// Returns a similar name that an entry of `table` can have beside `others`, if one is found.
 fn free_name(table: NamedTable, name: &str, others: &[(NamedTable, &str)]) -> Option<String> {
     let mut candidates = vec![format!("{name}_value")];
     candidates.extend((1..10).map(|number| format!("{name}{number}")));

@@ -1,30 +1,26 @@
-//! Lists the configurations from which a user can start, by name.
-//!
-//! For the device `function` a preset has the name of a function, such as `exp2`, `sqrt` or `sigmoid`. For the device
-//! `expression` a preset has the name of a computation, such as `divide`, `polar` or `rotate`. A preset states some keys of the
-//! device; the other keys have their defaults.
+//! Lists the configurations from which a user can start, by name. A function, such as `exp2` or `sigmoid`, is for the device
+//! `function`, and a computation, such as `divide` or `rotate`, for `expression`. A preset states some keys; the others have
+//! their defaults.
 
 use glint_config::{TableEntries, TableEntry, Value};
 
-/// The name of the device that computes a function of one operand.
 pub const FUNCTION: &str = "function";
 
-/// A named configuration from which a user can start.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Preset {
-    /// The name of the device, `function` or `expression`.
+    /// The device `function` or `expression`.
     pub device: &'static str,
-    /// The names of the keys that the preset states, with their values. The other keys have their defaults.
+    /// The keys that the preset states.
     pub values: Vec<(String, Value)>,
 }
 
-/// The name, the formula, the ends of the domain, the value of `function.outside`, the numbers of fraction bits of operand and
-/// result, and the value of `approximation.reduction`.
+/// A preset of the device `function`: the name, the formula, the ends of the domain, the value of `function.outside`, the
+/// numbers of fraction bits of operand and result, and the value of `approximation.reduction`.
 type FunctionPreset =
     (&'static str, &'static str, [&'static str; 2], &'static str, [i64; 2], &'static str);
 
-/// The presets of the device `function`. A domain is a whole operand format, without 0 if the function has no value at 0. For
-/// example, −8 to 8 with 12 fraction bits is the format `s3.12`.
+/// A domain is a whole operand format, without 0 if the function has no value there. −8 to 8 with 12 fraction bits is the
+/// format `s3.12`.
 const FUNCTIONS: [FunctionPreset; 16] = [
     ("exp2", "2^x", ["-8", "8"], "clamp", [12, 8], "exponent"),
     ("exp", "exp(x)", ["-8", "8"], "clamp", [12, 4], "exponent"),
@@ -44,24 +40,23 @@ const FUNCTIONS: [FunctionPreset; 16] = [
     ("gamma", "x^(1 / 2.2)", ["0", "1"], "clamp", [12, 12], "none"),
 ];
 
-/// A preset of the device `expression`: its name, its operands with their formats, its named parts with their formulas, and its
-/// results.
+/// A preset of the device `expression`: operands with their formats, named parts with their formulas, and results.
 struct ExpressionPreset {
     name: &'static str,
     operands: &'static [(&'static str, OperandFormat)],
     parts: &'static [(&'static str, &'static str)],
-    /// The results. A result has its name, its formula, its number of fraction bits, and the condition under which the error
-    /// bound is promised. An empty condition means that the bound is promised for all operands.
+    /// The results, each with its name, its formula, its number of fraction bits, and the condition under which the error bound
+    /// is promised. An empty condition promises it for all operands.
     results: &'static [(&'static str, &'static str, i64, &'static str)],
 }
 
-/// The format of an operand: whether it has a sign, its width in bits, and its number of fraction bits.
+/// Whether the operand has a sign, its width in bits, and its number of fraction bits.
 type OperandFormat = (bool, i64, i64);
 
-/// The format of a coordinate, from −1 to below 1, with 16 bits.
+/// The format of numbers from −1 to below 1.
 const COORDINATE: OperandFormat = (true, 16, 15);
 
-/// The format of a part of one, from 0 to below 1, with 16 bits.
+/// The format of numbers from 0 to below 1.
 const PART_OF_ONE: OperandFormat = (false, 16, 16);
 
 const EXPRESSIONS: [ExpressionPreset; 10] = [
@@ -130,23 +125,21 @@ const EXPRESSIONS: [ExpressionPreset; 10] = [
     },
 ];
 
-/// Returns the names of all presets: first the presets of `function`, then the presets of `expression`.
+/// Returns the names of all presets, first of `function`, then of `expression`.
 pub fn names() -> impl Iterator<Item = &'static str> {
     names_of_functions().chain(names_of_expressions())
 }
 
-/// Returns the names of the presets for the device `expression`.
 pub fn names_of_expressions() -> impl Iterator<Item = &'static str> {
     EXPRESSIONS.iter().map(|preset| preset.name)
 }
 
-/// Returns the names of the presets for the device `function`.
 pub fn names_of_functions() -> impl Iterator<Item = &'static str> {
     FUNCTIONS.iter().map(|preset| preset.0)
 }
 
-/// Returns the preset with the name `name`, or `None` if there is no such preset. For example, `sqrt` is a preset of the device
-/// `function` with `function.formula = "sqrt(x)"`, `function.to = "256"` and five more keys.
+/// Returns the preset with this name. `sqrt` is a preset of the device `function` with `function.formula = "sqrt(x)"`,
+/// `function.to = "256"` and five more keys.
 pub fn find(name: &str) -> Option<Preset> {
     if let Some(preset) = FUNCTIONS.iter().find(|preset| preset.0 == name) {
         return Some(Preset { device: FUNCTION, values: of_function(preset) });

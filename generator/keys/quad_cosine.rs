@@ -1,14 +1,11 @@
-//! Declares the configuration keys of the device `quad-cosine`, and checks that their values are valid together.
-//!
-//! `quad-cosine` computes f = cosᵏ(√(n/k)·δ) for the points of a scan line, where δ is an angle and n is the specular exponent.
-//! For example, the key `exponent.bits` sets the width of n.
+//! Declares the configuration keys of the device `quad-cosine`, which computes f = cosᵏ(√(n/k)·δ) for the points of a scan
+//! line. δ is an angle, and n the specular exponent.
 
 use super::common::{self, Domain};
 use glint_base::fixed::{Format, Rounding};
 use glint_config::{Config, Key, Problems, Schema};
 
 glint_config::keys! {
-    /// The values of a configuration of the device `quad-cosine`, one field for each of its keys.
     pub struct Keys {
         angle_fraction: u32 = common::angle_fraction(26),
         angle_multiplied: u32 = Key::integer("angle.multiplied", 17, 4..=24,
@@ -27,18 +24,17 @@ glint_config::keys! {
 }
 
 impl Keys {
-    /// Returns the format of an angle along the scan line, in right angles. For example, the defaults give `s1.26`.
+    /// The angle is in right angles. The defaults give `s1.26`.
     pub fn angle_format(&self) -> Format {
         Format::signed(1, self.angle_fraction as i32)
     }
 
-    /// Returns the format of the reflectance f. For example, the default gives `u0.10`.
+    /// The default gives `u0.10`.
     pub fn f_format(&self) -> Format {
         Format::unsigned(0, self.fraction as i32)
     }
 }
 
-/// Returns the schema of the device `quad-cosine`: its configuration keys, and the check of their combinations.
 pub fn schema() -> Schema {
     Schema { device: "quad-cosine", keys: Keys::keys(), check }
 }

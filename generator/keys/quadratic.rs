@@ -1,24 +1,21 @@
-//! Declares the configuration keys of the device `quadratic`, and checks that their values are valid together.
-//!
-//! `quadratic` computes f = max(0, c + a(n)·(c² − c)) with c = cos γ. A table gives the coefficient a(n) for the specular
-//! exponent n.
+//! Declares the configuration keys of the device `quadratic`, which computes f = max(0, c + a(n)·(c² − c)) with c = cos γ. A
+//! table gives the coefficient a(n) for the specular exponent n.
 
 use super::common::{self, Domain, Intensity, Operands};
 use glint_base::fixed::Rounding;
 use glint_config::{Config, Key, Problems, Schema};
 
 glint_config::choices! {
-    /// The choice of the coefficients a(n) in the table ROM(n).
+    /// The coefficients a(n) in the table ROM(n).
     pub enum Scheme {
         /// a(n) = n − 1, and 0 for n = 0. For n ≥ 1, f agrees with cosⁿγ in value and slope at the peak.
         Taylor = "taylor",
-        /// The a(n) for which the largest error of f is smallest; 0 for n = 0, as for n = 1.
+        /// The a(n) with the smallest largest error of f; 0 for n = 0, as for n = 1.
         Minimax = "minimax",
     }
 }
 
 glint_config::keys! {
-    /// The values of a configuration of the device `quadratic`, one field for each of its keys.
     pub struct Keys {
         scheme: Scheme = Key::choice("coefficient.scheme", "minimax", Scheme::WORDS,
             "The contents of ROM(n). taylor: a(n) = n - 1, with which f has the slope of cos^n at its peak. \
@@ -36,14 +33,12 @@ glint_config::keys! {
 }
 
 impl Keys {
-    /// Returns the number of fraction bits of the coefficient a(n). Returns 0 for the scheme `Taylor`, whose coefficients are
-    /// integers.
+    /// The coefficients of the scheme `Taylor` are integers.
     pub fn coefficient_fraction(&self) -> u32 {
         if self.scheme == Scheme::Minimax { self.fraction } else { 0 }
     }
 }
 
-/// Returns the schema of the device `quadratic`: its configuration keys, and the check of their combinations.
 pub fn schema() -> Schema {
     Schema { device: "quadratic", keys: Keys::keys(), check }
 }

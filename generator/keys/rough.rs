@@ -1,15 +1,12 @@
-//! Declares the configuration keys of the device `rough`, and checks that their values are valid together.
-//!
-//! `rough` computes f = (n/2·(cos(γ ± dγ) − 1) + 1)², where dγ is a perturbation of the normal's angle. By default, f is 0 if
-//! the base of the square is negative or if cos γ ≤ 0. For example, the key `sine.scheme` chooses the layout of ROM 18, the
-//! table of sines.
+//! Declares the configuration keys of the device `rough`, which computes f = (n/2·(cos(γ ± dγ) − 1) + 1)². dγ is a perturbation
+//! of the normal's angle. By default, f is 0 if the base of the square is negative or if cos γ ≤ 0.
 
 use super::common::{self, Domain, Intensity, Operands};
 use glint_base::fixed::Rounding;
 use glint_config::{Config, Key, Problems, Schema};
 
 glint_config::choices! {
-    /// The number system in which `rough` computes its sums and products.
+    /// The number system of sums and products.
     pub enum ArithmeticMode {
         /// Numbers with integer bits and signs.
         Exact = "exact",
@@ -22,17 +19,15 @@ glint_config::choices! {
 glint_config::choices! {
     /// The layout of ROM 18, the table of sines.
     pub enum RomLayout {
-        /// The table has ranges of 1 − cos that become shorter toward cos = 1. A range consists of segments, within which the
-        /// sine is interpolated along a straight line. Below the last range, the table has an exact entry for each cosine.
+        /// The table has ranges of 1 − cos that become shorter toward cos = 1. A range consists of segments with linear
+        /// interpolation. Below the last range, the table has an exact entry for each cosine.
         Segmented = "segmented",
-        /// The table has one entry for each of 2^`sine.address` equally long intervals of the cosine, without interpolation.
+        /// The table has one entry for each of 2^`sine.address` equally long intervals of the cosine.
         Direct = "direct",
     }
 }
 
 glint_config::keys! {
-    /// The values of a configuration of the device `rough`, one field for each of its keys.
-    ///
     /// In the patent's arithmetic, cosines, sines, their products and f all have `cosine.fraction` bits; `cosine.signed`,
     /// `clamp`, `product.*`, `intensity.*` and `sine.fraction` do not apply.
     pub struct Keys {
@@ -79,13 +74,11 @@ fn exact_of(keys: Vec<Key>, names: &[&str]) -> Vec<Key> {
 }
 
 impl Keys {
-    /// Returns whether the configuration chooses the arithmetic of the patent UA 60139.
     pub fn patent(&self) -> bool {
         self.arithmetic == ArithmeticMode::Patent
     }
 }
 
-/// Returns the schema of the device `rough`: its configuration keys, and the check of their combinations.
 pub fn schema() -> Schema {
     Schema { device: "rough", keys: Keys::keys(), check }
 }

@@ -1,25 +1,21 @@
-//! Reads the samples of a function from a configuration of the device `function`. Samples are measured points, which the
-//! configuration may state instead of a formula.
+//! Reads samples, the measured points that a configuration of the device `function` may state instead of a formula.
 
 use glint_approximate::Samples;
 use glint_base::config_error::ConfigError;
 use glint_base::fixed::exp2;
 use glint_formula::{Enclosure, Expression, parse};
 
-/// The largest ratio of a step between two samples to the longer of the two neighbouring steps. A step with a larger ratio is a
-/// gap, which is an error.
+/// A step between two samples is a gap, which is an error, if it exceeds the longer neighbouring step by more than this factor.
 const GAP: i64 = 4;
 
-/// The configuration key that states the samples.
 const KEY: &str = "function.samples";
 
-/// Reads samples from the text of a configuration. The text has the form `x,y x,y`, for example `0,0 2,0.5`. `fraction` is
-/// the number of fraction bits of the operand, and `domain` has the smallest and the largest raw operand.
+/// Reads samples from a text such as `0,0 2,0.5`. `fraction` is the number of fraction bits of the operand, and `domain` has
+/// the smallest and the largest raw operand.
 ///
 /// # Errors
-/// Fails if a sample is not a pair of numbers, or if its x is not an operand of the domain. Also fails if two samples have
-/// the same operand, or if an end of the domain has no sample. More than three samples also fail if a step is over four
-/// times as long as both neighbouring steps.
+/// Fails if a sample is not a pair of numbers, or if its x is not an operand of the domain. Also fails as [`check_points`]
+/// does.
 pub(super) fn read(text: &str, fraction: u32, domain: (i64, i64)) -> Result<Samples, ConfigError> {
     let mut points: Vec<(i64, Enclosure)> = Vec::new();
     for point in text.split(' ').filter(|point| !point.is_empty()) {
@@ -30,10 +26,7 @@ pub(super) fn read(text: &str, fraction: u32, domain: (i64, i64)) -> Result<Samp
     Ok(Samples::through(points))
 }
 
-/// Reads a sample from the text `x,y`. Returns its raw operand and an interval that contains its value.
-///
-/// # Errors
-/// Fails if the text is not a pair of numbers, or if x is not an operand of the domain.
+/// Reads a sample from the text `x,y`: its raw operand and an interval that contains its value.
 fn read_point(
     point: &str,
     fraction: u32,
@@ -64,11 +57,8 @@ fn read_point(
     }
 }
 
-/// Checks points in the order of rising operands.
-///
-/// # Errors
-/// Fails if two points have the same operand, if an end of the domain has no point, or if a step is longer than [`GAP`] times
-/// both neighbouring steps. A list of at most three points has no gap.
+/// Checks points in the order of rising operands. Fails if two points have the same operand, if an end of the domain has no
+/// point, or if there is a [`GAP`]. A list of at most three points has no gap.
 fn check_points(
     points: &[(i64, Enclosure)],
     fraction: u32,
@@ -114,9 +104,8 @@ fn check_points(
     Ok(())
 }
 
-/// Returns the raw operand of a number with `fraction` fraction bits. For example, 1.5 with one fraction bit gives 3. A number
-/// with many decimal digits may also be the printed form of an `f64` that is an operand. Returns `None` if the number is not an
-/// operand.
+/// Returns the raw operand of a number, if it is one: 1.5 with one fraction bit gives 3. A number with many decimal digits may
+/// also be the printed form of an `f64` that is an operand.
 fn raw_operand(x: &Expression, fraction: u32) -> Option<i128> {
     match x.ceiling(fraction) {
         Ok((raw, true)) => Some(raw),

@@ -1,13 +1,11 @@
-//! Declares the configuration keys of the device `schlick`, and checks that their values are valid together.
-//!
-//! `schlick` computes f = c / (n − n·c + c) with c = cos γ. For example, the key `exponent.bits` sets the width of n.
+//! Declares the configuration keys of the device `schlick`. It computes f = c / (n − n·c + c) with c = cos γ and
+//! the specular exponent n.
 
 use super::common::{self, Domain, Operands};
 use glint_base::fixed::{Format, Rounding};
 use glint_config::{Config, Key, Problems, Schema};
 
 glint_config::keys! {
-    /// The values of a configuration of the device `schlick`, one field for each of its keys.
     pub struct Keys {
         operands: Operands = Operands::keys(),
         fraction: u32 = Key {
@@ -21,13 +19,12 @@ glint_config::keys! {
 }
 
 impl Keys {
-    /// Returns the format of the reflectance f. For example, the default gives `u0.10`.
+    /// The default gives `u0.10`.
     pub fn f_format(&self) -> Format {
         Format::unsigned(0, self.fraction as i32)
     }
 }
 
-/// Returns the schema of the device `schlick`: its configuration keys, and the check of their combinations.
 pub fn schema() -> Schema {
     Schema { device: "schlick", keys: Keys::keys(), check }
 }

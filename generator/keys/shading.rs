@@ -1,7 +1,5 @@
-//! Declares the configuration keys of the device `shading`, and derives the configurations of its parts from them.
-//!
-//! `shading` computes colours from a normal, lights and a material. Its parts are other devices: `dot-product` for the cosines,
-//! and a highlight device such as `blinn`.
+//! Declares the configuration keys of the device `shading`, and derives the configurations of its parts from them: `dot-product`
+//! for the cosines, and a highlight device such as `blinn`.
 
 use super::common;
 use super::function::FunctionPlan;
@@ -11,7 +9,7 @@ use glint_base::fixed::Format;
 use glint_config::{Config, Key, Problems, Schema, TextPattern, Value};
 
 glint_config::choices! {
-    /// The device that computes the highlight from the cosine c = cos γ and the specular exponent n.
+    /// Computes the highlight from the cosine c = cos γ and the specular exponent n.
     pub enum HighlightDevice {
         /// (n/m·(c − 1) + 1)^m with the key `power` as m; 0 if the base is negative.
         CosinePower = "cosine-power",
@@ -31,7 +29,6 @@ glint_config::choices! {
 }
 
 glint_config::keys! {
-    /// The values of a configuration of the device `shading`, one field for each of its keys.
     pub struct Keys {
         highlight: HighlightDevice = Key::choice("highlight", "cosine-power", HighlightDevice::WORDS,
             "The device that computes the highlight from the cosine."),
@@ -60,7 +57,6 @@ glint_config::keys! {
     }
 }
 
-/// Returns the schema of the device `shading`: its configuration keys, and the check of their combinations.
 pub fn schema() -> Schema {
     Schema { device: "shading", keys: Keys::keys(), check }
 }
@@ -79,42 +75,35 @@ fn check(config: &Config, problems: &mut Problems) {
     }
 }
 
-/// The key with the formula of a highlight.
 const FORMULA: &str = "function.formula";
 
 /// The suffixes of the operands of each light.
 const SUFFIXES: [&str; 4] = ["", "2", "3", "4"];
 
-/// The configurations of the devices that are the parts of `shading`.
 pub struct LightParts {
-    /// The configuration of the `dot-product` that computes the cosine between the normal and the direction of the light.
+    /// The `dot-product` between the normal and the direction of the light.
     pub facing: Config,
-    /// The configuration of the `dot-product` that computes the cosine between the normal and the half vector.
+    /// The `dot-product` between the normal and the half vector.
     pub cosine: Config,
-    /// The part that computes the highlight.
     pub highlight: HighlightPart,
 }
 
-/// The part that computes the highlight: the reflectance f at the cosine c.
+/// Computes the reflectance f at the cosine c.
 pub enum HighlightPart {
-    /// The configuration of a highlight device that has the exponent n as an operand, such as `blinn`.
+    /// A highlight device that has the exponent n as an operand, such as `blinn`.
     OfExponent(Config),
-    /// The configuration of the device `function` for the formula of the highlight, with the plan of the formula.
+    /// The device `function` for the formula of the highlight, with its plan.
     OfFormula(Config, Box<FunctionPlan>),
 }
 
-/// Makes the parts of a configuration of `shading`, and plans the formula of the highlight.
-///
-/// # Errors
-/// Fails if a part refuses its configuration, or if the formula has no plan. The error names a key of `shading`.
+/// Makes the parts of a configuration of `shading`, and plans the formula of the highlight. Fails, with a key of `shading`, if a
+/// part refuses its configuration, or if the formula has no plan.
 pub fn parts(config: &Config) -> Result<LightParts, ConfigError> {
     Keys::of(config).parts()
 }
 
-/// Makes the configuration of a part, with the module name `part`.
-///
-/// # Errors
-/// Fails if the part refuses its configuration. The first problem of the part becomes an error of the key `highlight`.
+/// Makes the configuration of a part, with the module name `part`. The first problem of the part becomes an error of the key
+/// `highlight`.
 fn part(schema: &Schema, keys: Vec<(&str, Value)>) -> Result<Config, ConfigError> {
     let keys = keys.into_iter().map(|(key, value)| (key.to_owned(), value)).collect();
     Config::from_values(schema, "part", keys).map_err(|problems| {
@@ -128,9 +117,7 @@ fn integer(key: &'static str, value: i64) -> (&'static str, Value) {
     (key, Value::Integer(value))
 }
 
-/// A highlight device as a part of `shading`.
 struct PartSettings {
-    /// The configuration keys of the device.
     schema: Schema,
     /// The number of fraction bits of the reflectance f.
     fraction: i64,
@@ -140,7 +127,6 @@ struct PartSettings {
 }
 
 impl Keys {
-    /// Returns the highlight device that the key `highlight` names.
     fn highlight_part(&self) -> PartSettings {
         let (schema, fraction, least) = match self.highlight {
             HighlightDevice::CosinePower => (cosine_power::schema(), 18, self.power.into()),
@@ -154,7 +140,7 @@ impl Keys {
         PartSettings { schema, fraction, least }
     }
 
-    /// Returns the format of a component of the normal vector.
+    /// Returns the format of a component of the normal.
     pub fn normal_format(&self) -> Format {
         Format::signed(1, self.normal as i32)
     }
@@ -164,48 +150,45 @@ impl Keys {
         Format::signed(1, self.light as i32)
     }
 
-    /// Returns the format of a material coefficient and of a result. For example, `colour.bits = 8` gives `u8.0`.
+    /// Returns the format of a material coefficient and of a result, such as `u8.0`.
     pub fn colour_format(&self) -> Format {
         Format::unsigned(self.colour_bits as i32, 0)
     }
 
-    /// Returns the format of the operand `exponent`.
     pub fn exponent_format(&self) -> Format {
         Format::unsigned(self.exponent_bits as i32, 0)
     }
 
-    /// Returns the number of guard bits: the colours of the highlight device have so many bits more than a result, to make the
-    /// rounding error of the highlight small. For example, `colour.bits = 8` gives 4. A colour of the highlight device has at
-    /// most 12 bits, so `colour.bits = 10` gives 2.
+    /// Returns by how many bits the colours of the highlight device are wider than a result, to make the rounding error of the
+    /// highlight small: 4 for `colour.bits = 8`. They have at most 12 bits, so `colour.bits = 10` gives 2.
     pub fn guard(&self) -> u32 {
         (12 - self.colour_bits).min(4)
     }
 
-    /// Returns the number of fraction bits of the cosine between normal and light: `colour.bits` + 6, but at most
-    /// `cosine.fraction`. A colour changes less with this cosine than with the cosine of the highlight, so fewer bits suffice.
+    /// Returns the number of fraction bits of the cosine between normal and light. A colour changes less with this cosine than
+    /// with the cosine of the highlight, so fewer bits suffice.
     pub fn facing(&self) -> u32 {
         self.cosine.min(self.colour_bits + 6)
     }
 
-    /// Returns the smallest exponent n for which the accuracy contract is stated. For a smaller n, the highlight can jump from a
-    /// positive value to 0 where γ reaches a right angle. For example, the number is 1 for `blinn`, 16 for `gauss` and the key
-    /// `power` for `cosine-power`. The device `function`, which has no exponent, gives 1.
+    /// Returns the smallest exponent n for which the accuracy contract is stated: 1 for `blinn` and `function`, 16 for `gauss`,
+    /// and the key `power` for `cosine-power`.
     pub fn least(&self) -> i64 {
         self.highlight_part().least
     }
 
-    /// Returns whether the highlight device has an operand `exponent`. The device `function` has none.
+    /// The device `function` has no operand `exponent`.
     pub fn has_exponent(&self) -> bool {
         self.highlight != HighlightDevice::Function
     }
 
-    /// Returns the suffixes that the names of operands and parts have, one for each light. The first suffix is empty; the
-    /// suffixes of the other lights are `2`, `3` and `4`.
+    /// Returns the suffixes that the names of operands and parts have, one for each light: none for the first, then `2`, `3` and
+    /// `4`.
     pub fn suffixes(&self) -> impl Iterator<Item = &'static str> + use<> {
         SUFFIXES.into_iter().take(self.lights as usize)
     }
 
-    /// Makes the parts as [`parts`] does, and fails as it does.
+    /// See [`parts`].
     fn parts(&self) -> Result<LightParts, ConfigError> {
         let facing = self.cosine_part(self.facing())?;
         let cosine = self.cosine_part(self.cosine)?;
@@ -216,7 +199,7 @@ impl Keys {
         Ok(LightParts { facing, cosine, highlight })
     }
 
-    /// Makes a `dot-product` whose cosine has `fraction` fraction bits. Fails as [`part`] does.
+    /// Makes a `dot-product` whose cosine has `fraction` fraction bits.
     fn cosine_part(&self, fraction: u32) -> Result<Config, ConfigError> {
         // The highlight's slope is n: beyond 128 each bit of n is one more of the cosine.
         let more = i64::from((self.most.max(2) - 1).ilog2()).saturating_sub(6).clamp(0, 3);
@@ -232,7 +215,7 @@ impl Keys {
         part(&dot_product::schema(), keys)
     }
 
-    /// Makes the configuration of the highlight device that the key `highlight` names. Fails as [`part`] does.
+    /// Makes the configuration of the highlight device that the key `highlight` names.
     fn exponent_part(&self) -> Result<Config, ConfigError> {
         let PartSettings { schema, fraction, .. } = self.highlight_part();
         let mut keys = vec![
@@ -249,10 +232,8 @@ impl Keys {
         part(&schema, keys)
     }
 
-    /// Makes the device `function` for the formula of the highlight, and plans the formula.
-    ///
-    /// # Errors
-    /// Fails if the formula cannot be read, has no value at a cosine from 0 to 1, or has no plan.
+    /// Makes the device `function` for the formula of the highlight. Fails if the formula cannot be read, has no value at a
+    /// cosine from 0 to 1, or has no plan.
     fn formula_part(&self) -> Result<HighlightPart, ConfigError> {
         let text = |key: &'static str, value: &str| (key.to_owned(), Value::Text(value.to_owned()));
         let integer = |key: &'static str, value: i64| (key.to_owned(), Value::Integer(value));
@@ -265,7 +246,7 @@ impl Keys {
             integer("operand.fraction", self.cosine.into()),
             integer("result.fraction", fraction),
         ];
-        // The part shares only the formula with the user's file, and has its other keys from here.
+        // The part shares only the formula with the user's file.
         const OTHER: &str = "give another formula, or set a smaller cosine.fraction";
         let of_formula = |error: ConfigError, remedy: &str| match error.key == FORMULA {
             true => ConfigError { remedy: remedy.to_owned(), ..error },

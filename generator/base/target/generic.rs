@@ -2,7 +2,7 @@
 
 use super::{BlockMemory, Timing};
 
-/// A generic device. A level of logic takes one nanosecond. The delays belong to no real chip.
+/// A level of logic takes one nanosecond. The delays belong to no real chip.
 pub const GENERIC: Timing = Timing {
     name: "generic",
     multiplier: (18, 18),

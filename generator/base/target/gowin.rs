@@ -31,8 +31,8 @@ const LUTS: Kinds = &[
     ("RAM16SDP4", 4),
 ];
 
-/// The cells that count as DSP blocks, which multiply 18 by 18 bits. Two products of 9 by 9 bits share a block only if placement
-/// brings them together, so that each counts as one block.
+/// The DSP blocks multiply 18 by 18 bits. Two products of 9 by 9 bits share a block only if placement brings them together, so
+/// that each counts as one block.
 const DSPS: Kinds = &[("MULT9X9", 1), ("MULT18X18", 1), ("MULT36X36", 4)];
 
 const BLOCK_RAMS: Kinds = &[
@@ -59,12 +59,11 @@ const FLIP_FLOPS: Kinds = &[
     ("DFFCE", 1),
 ];
 
-/// A memory of 16 words of 4 bits in four look-up tables.
 const DELAY_MEMORY: DelayMemory = DelayMemory { words: 16, width: 4, tables: 4 };
 
-/// The numbers for estimates of cost. `benches/tune/fit` computed the weights from twelve cores on GW2A. For half of the cores,
-/// the estimated number of look-up tables is within 20 % of the number after synthesis. The worst is `cosine_power` (46 % too
-/// few), where Yosys makes 182 tables with one input.
+/// `benches/tune/fit` computed the weights from twelve cores on GW2A. For half of them, the estimated number of look-up tables
+/// is within 20 % of the number after synthesis. The worst is `cosine_power` (46 % too few), where Yosys makes 182 tables with
+/// one input.
 const ESTIMATE: Estimate = Estimate {
     weights: [0.72, 0.79, 0.78, 2.50, 2.07, 26.88],
     scale: 1.0,
@@ -72,7 +71,7 @@ const ESTIMATE: Estimate = Estimate {
     least_product: 9,
 };
 
-/// Data of Gowin's GW2A, speed grade C8/I7, for the chip GW2AR-18 of the Tang Nano 20K.
+/// The delays are for speed grade C8/I7 and the chip GW2AR-18 of the Tang Nano 20K.
 pub const GOWIN: Family = Family {
     title: "Gowin GW2A",
     timing: Timing {
@@ -105,7 +104,7 @@ pub const GOWIN: Family = Family {
     estimate: ESTIMATE,
 };
 
-/// Data of Gowin's GW1N, speed grade C6/I5, for the chip GW1NR-9 of the Tang Nano 9K.
+/// The delays are for speed grade C6/I5 and the chip GW1NR-9 of the Tang Nano 9K.
 pub const GOWIN_GW1N: Family = Family {
     title: "Gowin GW1N",
     timing: Timing {

@@ -1,19 +1,19 @@
 //! Data of Lattice iCE40. The delays are estimates. `benches/tune/fit` computed the weights for the cost from 20 of the cores
 //! in `records/synthesis/`, sequential and pipelined. For half of these cores, the estimate of look-up tables is within 9 % of
-//! the number after synthesis; the worst is `threshold` (33 % too many). Three pipelines are no part of the fit: the estimate
+//! the number after synthesis. The worst is `threshold` (33 % too many). Three pipelines are no part of the fit: the estimate
 //! of `lyon_up5k_pipelined` is 51 % too high, of `rough_up5k_pipelined` 10 % too high, and of `shading_pipelined` 31 % too low.
 
 use super::{BlockMemory, Chip, Estimate, Family, Timing};
 
-/// The Yosys commands that put products into DSP blocks of iCE40 as multipliers alone. `synth_ice40 -dsp` would move registers
-/// and adders into the blocks too. No tool knows the delays of such blocks: `icetime` treats them as the end of every path.
+/// Puts products into DSP blocks as multipliers alone. `synth_ice40 -dsp` would move registers and adders into the blocks too.
+/// No tool knows the delays of such blocks: `icetime` treats them as the end of every path.
 const PURE_MULTIPLIERS: &str = "synth_ice40 -top {top} -run begin:coarse; opt; wreduce; peepopt; opt_clean; memory_dff; \
     wreduce t:$mul; techmap -map +/mul2dsp.v -map +/ice40/dsp_map.v -D DSP_A_MAXWIDTH=16 \
     -D DSP_B_MAXWIDTH=16 -D DSP_A_MINWIDTH=2 -D DSP_B_MINWIDTH=2 -D DSP_Y_MINWIDTH=11 -D DSP_NAME=$__MUL16X16; \
     select a:mul2dsp; setattr -unset mul2dsp; opt_expr -fine; wreduce; select -clear; \
     chtype -set $mul t:$__soft_mul; ";
 
-/// Data of the family Lattice iCE40, for the chip UP5K.
+/// The delays are for the chip UP5K.
 pub const ICE40: Family = Family {
     title: "iCE40",
     timing: Timing {

@@ -16,11 +16,10 @@
 
 use super::{BlockMemory, Chip, DelayMemory, Estimate, Family, Timing};
 
-/// The Yosys commands that put products into DSP blocks as multipliers alone, and small products into look-up tables. By itself
-/// `synth_nexus` of Yosys 0.70 also moves registers and sums into the blocks, and its netlists then give wrong results. For
-/// example, the simulation of `cosine_power` after synthesis has a constant 0 at an input of two multipliers. (The reports at
-/// Yosys's pull request 5929 describe such faults.) The clocks, enables and resets that such a multiplier does not use become
-/// undefined constants.
+/// Puts products into DSP blocks as multipliers alone, and small products into look-up tables. By itself `synth_nexus` of Yosys
+/// 0.70 also moves registers and sums into the blocks, and its netlists then give wrong results. For example, the simulation of
+/// `cosine_power` after synthesis has a constant 0 at an input of two multipliers. (The reports at Yosys's pull request 5929
+/// describe such faults.) The clocks, enables and resets that such a multiplier does not use become undefined constants.
 const PURE_MULTIPLIERS: &str = "synth_nexus -top {top} -run begin:coarse; proc; flatten; opt_expr; opt_clean; \
     opt -nodffe -nosdff; check -assert; wreduce; peepopt; opt_clean; wreduce t:$mul; \
     techmap -map +/mul2dsp.v -map +/lattice/dsp_map_nexus.v -D DSP_A_MAXWIDTH=18 -D DSP_B_MAXWIDTH=18 \
@@ -30,7 +29,7 @@ const PURE_MULTIPLIERS: &str = "synth_nexus -top {top} -run begin:coarse; proc; 
     setattr -unset mul2dsp; opt_expr -fine; wreduce; select -clear; opt_expr -undriven; chtype -set $mul t:$__soft_mul; \
     alumacc; maccmap; opt; ";
 
-/// Data of Lattice Nexus, for the chip LIFCL-40 (CrossLink-NX).
+/// The delays are for the chip LIFCL-40 (CrossLink-NX).
 pub const NEXUS: Family = Family {
     title: "Nexus",
     timing: Timing {

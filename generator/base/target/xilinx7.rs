@@ -4,7 +4,7 @@
 
 use super::{BlockMemory, Chip, Estimate, Family, Timing};
 
-/// Data of the family AMD 7 series, for speed grade −1.
+/// The delays are for speed grade −1.
 pub const XILINX7: Family = Family {
     title: "Xilinx 7",
     timing: Timing {
@@ -26,7 +26,7 @@ pub const XILINX7: Family = Family {
     },
     library: "",
     prepare: "",
-    // Without -abc9, in which Yosys 0.23 crashes.
+    // The command omits -abc9, in which Yosys 0.23 crashes.
     command: "synth_xilinx -flatten",
     least_yosys: (0, 23),
     luts: &[("LUT1", 1), ("LUT2", 1), ("LUT3", 1), ("LUT4", 1), ("LUT5", 1), ("LUT6", 1)],

@@ -1,18 +1,17 @@
-//! Computes the coefficients a(n) of the device `quadratic`, with which `max(0, c + a·(c² − c))` approximates `cⁿ`.
+//! Computes the coefficients a(n) of the device `quadratic`, with which `max(0, c + a·(c² − c))` approximates `cⁿ`
+//! ([symbols](crate#symbols)).
 //!
-//! c is the cosine of the angle between the surface normal and the half vector, and n the specular exponent. With x = 1 − c the
-//! parabola is `(1 − x)·(1 − a·x)`, with a zero at x = 1/a. For 1 < a < n − 1 the parabola lies above cⁿ near the peak c = 1, and
-//! the error is largest where both curves have the same slope. Farther from the peak the parabola lies below cⁿ, and the error is
-//! largest at the zero. For n ≤ 2 the parabola with a = n − 1 (0 for n = 0) is used.
+//! With x = 1 − c the parabola is `(1 − x)·(1 − a·x)`, with a zero at x = 1/a. For 1 < a < n − 1 the parabola lies above cⁿ near
+//! the peak c = 1. The error is largest where both curves have the same slope. Farther from the peak the parabola lies below cⁿ,
+//! and the error is largest at the zero. For n ≤ 2 the parabola with a = n − 1 (0 for n = 0) is used.
 
-/// Returns the coefficient n − 1, with which the parabola and cⁿ have the same value and slope at c = 1; for n = 0 it returns 0.
-/// For example, n = 20 gives 19.
+/// Returns n − 1, with which the parabola and cⁿ have the same value and slope at c = 1, or 0 for n = 0.
 pub fn taylor(n: u32) -> f64 {
     f64::from(n.max(1) - 1)
 }
 
-/// Returns the coefficient a(n) with the smallest maximum error over 0 ≤ c ≤ 1. Its largest errors above and below cⁿ are equal.
-/// For n ≤ 2 the function returns the coefficient of [`taylor`].
+/// Returns the coefficient with the smallest maximum error over 0 ≤ c ≤ 1: its largest errors above and below cⁿ are equal. For n
+/// ≤ 2 it is the coefficient of [`taylor`].
 ///
 /// For each x there is one coefficient with which the slopes agree at x. The function bisects x until the two errors are equal.
 pub fn minimax(n: u32) -> f64 {
@@ -43,10 +42,9 @@ fn touching(n: f64, x: f64) -> f64 {
     (n * libm::exp((n - 1.0) * libm::log1p(-x)) - 1.0) / (1.0 - 2.0 * x)
 }
 
-/// Returns the error of the parabola with the coefficient `a` at its zero, which is the value of cⁿ at this zero. This is the
-/// largest error below cⁿ, and for the coefficients of [`taylor`] and [`minimax`] the largest error of all. Returns 0 for n ≤ 2,
-/// because these coefficients make no error for n = 1 and n = 2. Returns 0 for a ≤ 1 too, because the zero is then not within 0 <
-/// c < 1.
+/// Returns the error of the parabola with the coefficient `a` at its zero, which is the value of cⁿ there. This is the largest
+/// error below cⁿ, and for the coefficients of [`taylor`] and [`minimax`] the largest error of all. For n ≤ 2 these coefficients
+/// make no error, and for a ≤ 1 the zero is not within 0 < c < 1. Both give 0.
 pub fn error(a: f64, n: u32) -> f64 {
     if n <= 2 || a <= 1.0 { 0.0 } else { libm::exp(f64::from(n) * libm::log1p(-1.0 / a)) }
 }
@@ -55,7 +53,7 @@ pub fn error(a: f64, n: u32) -> f64 {
 mod tests {
     use super::*;
 
-    /// Returns the largest error on a grid of x that is fine where cⁿ is large.
+    /// The grid of x is fine where cⁿ is large.
     fn on_a_grid(a: f64, n: u32) -> f64 {
         (1..20_000)
             .map(|step| {

@@ -1,7 +1,6 @@
-//! Builds the table of sines of the device `rough`, ROM 18 of the patent UA 60139, which gives √(1 − x²) for a cosine x.
-//!
-//! The key `sine.scheme` chooses one entry for each bucket of cosines, as in the patent, or straight segments that become shorter
-//! toward x = 1.
+//! Builds the table of sines of the device `rough`, ROM 18 of the patent UA 60139, which gives √(1 − x²) for a cosine x. The key
+//! `sine.scheme` chooses one entry for each bucket of cosines, as in the patent, or straight segments that become shorter toward
+//! x = 1.
 
 use super::Formats;
 use glint_base::fixed::{Format, exp2};
@@ -9,7 +8,6 @@ use glint_keys::rough::{Keys, RomLayout};
 use glint_rtl::blocks::segmented::{self, Segment, Segmentation, SegmentedFormats};
 use glint_rtl::dsl::{Designer, Signal};
 
-/// Builds ROM 18, which returns the sine √(1 − x²) of the angle whose cosine is x.
 pub(super) fn sine_rom<'d>(
     d: &'d Designer,
     keys: &Keys,
@@ -38,7 +36,7 @@ pub(super) fn sine_rom<'d>(
         .doc("sine of the cosine that addresses the table")
 }
 
-/// Builds the table of the patent: one entry for each bucket of cosines, with the sine at the middle of the bucket.
+/// Builds the table of the patent: an entry has the sine at the middle of its bucket of cosines.
 fn direct_sine<'d>(
     d: &'d Designer,
     keys: &Keys,

@@ -3,8 +3,7 @@
 use super::*;
 use glint_keys::common::{Domain, Intensity, Operands};
 
-/// Returns the arithmetic of a small configuration: cosines with 4 fraction bits, ratio and decay with 6, n·decay with 2, and f
-/// with 6.
+/// Cosines have 4 fraction bits, ratio, decay and f have 6, and n·decay has 2.
 fn small(of: Decay) -> DecayArithmetic {
     let f = Intensity { fraction: 6, ..Intensity::small() };
     let degree = || "auto".to_owned();

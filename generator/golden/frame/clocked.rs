@@ -1,6 +1,5 @@
-//! Runs the golden model that a [`Frame`] describes, clock by clock: the handshake, the microinstructions and the registers.
-//!
-//! [`ClockedModel`] also makes variants of a model, with registers behind its results or with buffers in front of its operands.
+//! Runs the golden model that a [`Frame`] describes, clock by clock: the handshake, the microinstructions and the registers. It
+//! also makes variants of a model, with registers behind its results or with buffers in front of its operands.
 
 use std::mem;
 use std::sync::Arc;
@@ -12,23 +11,21 @@ use glint_base::fixed::mask;
 /// The signals of the handshake, which come before the signals of the device.
 const HANDSHAKE: [&str; 5] = ["valid", "busy", "done", "run", "word_address"];
 
-/// The part of a model that does not change from clock to clock.
 #[derive(Clone)]
 pub(super) struct ModelConstants {
     pub(super) program: Vec<FrameStep>,
     pub(super) operands: Vec<FrameOperand>,
-    /// The slot of each predicted signal with a mask of its width, the outputs first.
+    /// The signals with masks of their widths, the outputs first.
     pub(super) shown: Vec<(Slot, u64)>,
     /// The number of outputs in `shown`.
     pub(super) outputs: usize,
-    /// The outputs that are combinational logic, each with the function that computes it.
+    /// The outputs that are combinational logic.
     pub(super) logic: Vec<(Slot, Value)>,
     pub(super) edges: Vec<Does>,
     /// Pairs of a result that is combinational logic and the register that loads it.
     pub(super) taken: Vec<(Slot, Slot)>,
-    /// The slots that the operand strobes write: the operand registers, or the buffers in front of them.
+    /// The operand registers, or the buffers in front of them.
     written: Vec<Slot>,
-    /// Whether each operand register has a buffer in front of it.
     buffered: bool,
     flags: Vec<Slot>,
     pub(super) valid_delay: u32,
@@ -46,7 +43,7 @@ pub struct ClockedModel {
     pub(super) fixed: Arc<ModelConstants>,
     /// Whether a computation is running; this is also the output `busy`.
     run: bool,
-    /// The number of the microinstruction that is being executed; 0 when idle.
+    /// The microinstruction that is being executed; 0 when idle.
     address: usize,
     /// Whether the microinstructions of the latest clocks raised `valid`, one bit a clock; bit 0 is the latest clock.
     pulses: u64,
@@ -55,16 +52,13 @@ pub struct ClockedModel {
 }
 
 impl Frame {
-    /// Returns the golden model in the state after power-up. The first microinstruction of `program` is the idle one; the last
-    /// must end the program.
-    ///
-    /// # Panics
-    /// Panics if there is no microinstruction. A program must have at least one.
+    /// Returns the golden model after power-up. The first microinstruction of `program` is the idle one; the last must end the
+    /// program. Panics if there is no microinstruction.
     pub fn model(mut self, program: impl IntoIterator<Item = FrameStep>) -> ClockedModel {
         let program: Vec<_> = program.into_iter().collect();
         assert!(!program.is_empty(), "a device idles in its first microinstruction");
-        // A comparison reports the first signal that differs in a clock, which should be an output: a user of the device sees
-        // it.
+        // A comparison reports the first signal that differs in a clock, which should be an output that a user of the device
+        // sees.
         self.shown.sort_by_key(|shown| !shown.output);
         let mut inputs: Vec<String> = ["rst_n", "start"].map(str::to_owned).into();
         let mut written = Vec::new();
@@ -99,8 +93,8 @@ impl Frame {
 }
 
 impl ModelConstants {
-    /// Loads the operand registers, or the buffers in front of them. `ports` has the bits of the data and of the strobe for
-    /// each operand in turn. Returns whether anything was loaded.
+    /// Loads the operand registers, or the buffers in front of them, from the data and the strobe of each operand in turn.
+    /// Returns whether anything was loaded.
     fn write(&self, state: &mut State, ports: &[u64]) -> bool {
         let mut taken = false;
         let registers = self.operands.iter().zip(&self.written);
@@ -115,7 +109,7 @@ impl ModelConstants {
 }
 
 impl ClockedModel {
-    /// Makes the model in the state after power-up: `slots` slots, all 0.
+    /// Makes a model of `slots` slots, all 0.
     fn at_power_up(fixed: ModelConstants, slots: usize) -> Self {
         let mut model = Self {
             run: false,
@@ -129,17 +123,11 @@ impl ClockedModel {
         model
     }
 
-    /// Returns whether the output `valid` is high.
     pub fn is_valid(&self) -> bool {
         self.values[0] == 1
     }
 
-    /// Returns the model of the device with a register behind each result that is combinational logic. The microinstruction
-    /// that raised `valid` loads these registers, and an added microinstruction after it raises `valid`. If `valid` is delayed,
-    /// the registers load the results in every clock, and `valid` is delayed by one clock more.
-    ///
-    /// Returns a copy of the model if no result is combinational logic. Returns `None` if a condition decides what follows a
-    /// microinstruction with `valid`, and `valid` is not delayed.
+    /// Returns the variant of [`Model::with_output_registers`], if it exists.
     pub(crate) fn registered(&self) -> Option<Self> {
         let mut it = ModelConstants::clone(&self.fixed);
         let mut slots = self.state.len();
@@ -168,8 +156,8 @@ impl ClockedModel {
         Some(Self::at_power_up(it, slots))
     }
 
-    /// Computes the values of the signals after an edge. If `still`, it updates only the handshake, because neither registers
-    /// nor outputs have changed.
+    /// Computes the values of the signals after an edge. If `still`, neither registers nor outputs have changed, and only the
+    /// handshake is updated.
     #[inline]
     fn settle(&mut self, still: bool) {
         let it = &*self.fixed;
@@ -234,8 +222,8 @@ impl Model for ClockedModel {
                 state[operand.slot] = state[buffer];
             }
         }
-        // Registers and outputs keep their values if nothing loads a register, no operation runs at every edge, and there are
-        // no flags.
+        // Registers and outputs keep their values if nothing loads a register, no operation runs at every edge, and there are no
+        // flags.
         let still = here.does.is_none()
             && !(taken || here.takes_results)
             && it.edges.is_empty()
@@ -276,9 +264,8 @@ impl Model for ClockedModel {
     }
 }
 
-/// Returns the program of a device with output registers. Each microinstruction that raised `valid` loads these registers
-/// instead, and an added microinstruction after it raises `valid`. Returns `None` if a microinstruction with `valid` decides by
-/// a condition what follows.
+/// Returns the program of a device with output registers, which each microinstruction that raised `valid` loads instead; an
+/// added one after it raises `valid`. Returns `None` if a microinstruction with `valid` decides by a condition what follows.
 fn taking(program: &[FrameStep]) -> Option<Vec<FrameStep>> {
     let mut longer = Vec::new();
     for (at, step) in program.iter().enumerate() {

@@ -1,9 +1,9 @@
 //! Builds golden models that run clock by clock. A golden model predicts the architectural registers and outputs of a device.
 //!
 //! The author of a device declares its operands, registers and outputs in a [`Frame`] and gets a [`Slot`] for each. The author
-//! then states the operation of each microinstruction with [`step`], in the order of execution. [`Frame::model`] makes a
-//! [`Model`](super::Model) from them, and adds the behaviour that all devices share: reset, `start`, the strobes that write
-//! operands, `busy`, `valid` and `done`. For example, this device doubles its operand:
+//! then states the operation of each microinstruction with [`step`], in the order of execution. [`Frame::model`] adds the
+//! behaviour that all devices share: reset, `start`, the strobes that write operands, `busy`, `valid` and `done`. For example,
+//! this device doubles its operand:
 //!
 //! ```
 //! use glint_base::fixed::Format;
@@ -38,16 +38,16 @@ pub use part::Part;
 
 use glint_base::fixed::Format;
 
-/// The position of one value in the [`State`] of a golden model.
+/// The position of a value in the [`State`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Slot(usize);
 
-/// The raw values of all operands, registers and outputs of a golden model. If a device contains parts, the values of a part are
-/// adjacent and in the order of the part's own golden model.
+/// The raw values of all operands, registers and outputs of a golden model. The values of a part are adjacent, in the order of
+/// the part's own golden model.
 pub type State = [i64];
 
 impl Slot {
-    /// Returns the slot in the state of a whole device, for a slot of a part whose state begins at `base`.
+    /// Converts a slot of a part whose state begins at `base` to a slot of the whole device.
     fn after(self, base: usize) -> Self {
         Self(base + self.0)
     }
@@ -73,7 +73,6 @@ type Does = Arc<dyn Fn(&mut State) + Send + Sync>;
 type Value = Arc<dyn Fn(&State) -> i64 + Send + Sync>;
 type Condition = Arc<dyn Fn(&State) -> bool + Send + Sync>;
 
-/// The successor of a microinstruction.
 #[derive(Clone)]
 enum Next {
     Following,
@@ -82,18 +81,18 @@ enum Next {
     End,
 }
 
-/// One microinstruction: the operation on the registers, the flags that it sets, and its successor.
+/// A microinstruction: the operation on the registers, the flags that it sets, and its successor.
 #[derive(Clone)]
 pub struct FrameStep {
     does: Option<Does>,
     next: Next,
     valid: bool,
     asserts: Vec<Slot>,
-    /// Whether the registers behind the outputs load the results in this microinstruction.
+    /// Whether the registers behind the outputs load the results.
     takes_results: bool,
 }
 
-/// Returns a microinstruction without an operation: it changes no register itself. Operations of every edge run nevertheless.
+/// Returns a microinstruction that changes no register itself. Operations of every edge run nevertheless.
 pub fn idle() -> FrameStep {
     FrameStep {
         does: None,
@@ -104,13 +103,12 @@ pub fn idle() -> FrameStep {
     }
 }
 
-/// Returns a microinstruction that applies the operation `does` to the registers at the rising edge that ends it.
+/// Applies `does` to the registers at the rising edge that ends the microinstruction.
 pub fn step(does: impl Fn(&mut State) + Send + Sync + 'static) -> FrameStep {
     FrameStep { does: Some(Arc::new(does)), ..idle() }
 }
 
-/// Returns a microinstruction like [`step`], whose operation also gets `arithmetic`, data that several microinstructions share.
-/// For example, `arithmetic` may have the tables of the device.
+/// Like [`step`], with data that several microinstructions share, such as the tables of the device.
 pub fn step_by<A: Send + Sync + 'static>(
     arithmetic: &Arc<A>,
     does: impl Fn(&A, &mut State) + Send + Sync + 'static,
@@ -120,24 +118,22 @@ pub fn step_by<A: Send + Sync + 'static>(
 }
 
 impl FrameStep {
-    /// Returns the microinstruction with `valid` raised in it: the outputs have a result.
+    /// Raises `valid`: the outputs have a result.
     pub fn valid(self) -> Self {
         Self { valid: true, ..self }
     }
 
-    /// Returns the microinstruction as the end of the program: the device is idle after it.
+    /// Ends the program: the device is idle afterwards.
     pub fn end(self) -> Self {
         Self { next: Next::End, ..self }
     }
 
-    /// Returns the microinstruction with a condition: it is repeated as long as `holds` is true of the values before its rising
-    /// edge.
+    /// Repeats the microinstruction as long as `holds` is true of the values before its rising edge.
     pub fn repeat_while(self, holds: impl Fn(&State) -> bool + Send + Sync + 'static) -> Self {
         Self { next: Next::RepeatWhile(Arc::new(holds)), ..self }
     }
 
-    /// Returns the microinstruction with a condition: it skips the next `count` microinstructions if `holds` is true of the
-    /// values before its rising edge.
+    /// Skips the next `count` microinstructions if `holds` is true of the values before the rising edge.
     pub fn skip_if(
         self,
         count: u32,
@@ -146,15 +142,14 @@ impl FrameStep {
         Self { next: Next::SkipIf(count, Arc::new(holds)), ..self }
     }
 
-    /// Returns the microinstruction with a flag that is 1 during it. [`Frame::flag`] declares the flag.
+    /// Makes a flag that [`Frame::flag`] declared 1.
     pub fn asserts(mut self, flag: Slot) -> Self {
         self.asserts.push(flag);
         self
     }
 }
 
-/// An operand register with its write strobe. The register ignores writes while the device is busy, and a reset does not change
-/// it.
+/// An operand register. It ignores writes while the device is busy, and a reset does not change it.
 #[derive(Clone)]
 struct FrameOperand {
     name: String,
@@ -165,13 +160,12 @@ struct FrameOperand {
 }
 
 impl FrameOperand {
-    /// Returns the raw value that the register loads for the bit pattern on the port, limited to `min ..= max`.
+    /// Returns the raw value that the register loads from the port, limited to `min ..= max`.
     fn held(&self, bits: u64) -> i64 {
         (self.format.raw(bits) as i64).clamp(self.min, self.max)
     }
 }
 
-/// A predicted register or output, with the slot of its value and the format of its net.
 struct FrameSignal {
     name: String,
     output: bool,
@@ -179,7 +173,7 @@ struct FrameSignal {
     format: Format,
 }
 
-/// The declarations from which [`Frame::model`] makes a golden model: operands, registers, outputs and operations.
+/// Declares the operands, registers, outputs and operations of a golden model.
 #[derive(Default)]
 pub struct Frame {
     operands: Vec<FrameOperand>,
@@ -194,7 +188,7 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// Adds a state value that corresponds to no signal of the hardware, and returns its slot.
+    /// Adds a state value that corresponds to no signal of the hardware.
     pub fn hidden(&mut self) -> Slot {
         self.slots += 1;
         Slot(self.slots - 1)
@@ -206,7 +200,7 @@ impl Frame {
         slot
     }
 
-    /// Adds a register and returns its slot. Checks see only the low bits of its value, as many as `format` has.
+    /// Adds a register. Checks see only as many low bits of its value as `format` has.
     pub fn register(&mut self, name: &str, format: Format) -> Slot {
         self.shown(name.to_owned(), format, false)
     }
@@ -222,11 +216,8 @@ impl Frame {
         self.logic.push((slot, Arc::new(value)));
     }
 
-    /// Adds an output that has the value of a register.
-    ///
-    /// # Panics
-    /// Panics if `register` is not the slot of a predicted signal, for example a slot of [`Frame::hidden`]. An output that is
-    /// logic must use [`Frame::output`].
+    /// Adds an output that has the value of a register. Panics if `register` is not the slot of a predicted signal, for example
+    /// a slot of [`Frame::hidden`]; an output that is logic must use [`Frame::output`].
     pub fn shows(&mut self, name: &str, register: Slot) {
         let of = self.shown.iter().find(|shown| shown.slot == register);
         let format = of.expect("a register that is shown").format;
@@ -238,36 +229,33 @@ impl Frame {
         });
     }
 
-    /// Adds an output of one bit, and returns its slot. The bit is 1 during every microinstruction that asserts it with
-    /// [`FrameStep::asserts`], and 0 otherwise.
+    /// Adds an output of one bit that is 1 during every microinstruction that asserts it with [`FrameStep::asserts`].
     pub fn flag(&mut self, name: &str) -> Slot {
         let slot = self.shown(name.to_owned(), Format::BIT, true);
         self.flags.push(slot);
         slot
     }
 
-    /// Adds an operand and its register, which can have every value of `format`. Returns the register's slot.
+    /// Adds an operand whose register can have every value of `format`. Returns the register's slot.
     pub fn operand(&mut self, name: &str, format: Format) -> Slot {
         self.clamped(name, format, format.min_raw() as i64, format.max_raw() as i64)
     }
 
-    /// Adds an operand whose register limits each loaded value to the raw values `min ..= max`. Returns the register's slot.
+    /// Adds an operand whose register limits each loaded value to the raw values `min ..= max`.
     pub fn clamped(&mut self, name: &str, format: Format, min: i64, max: i64) -> Slot {
         let slot = self.shown(format!("{name}_reg"), format, false);
         self.operands.push(FrameOperand { name: name.to_owned(), slot, format, min, max });
         slot
     }
 
-    /// Adds an operation that runs at every rising edge, whatever microinstruction is executed. For example, a synchronous ROM
-    /// reads its word at every edge. The operation runs before the operation of the microinstruction, and after the operations
-    /// that earlier calls added. It sees the values before the edge, except in slots that an earlier operation wrote at the same
-    /// edge.
+    /// Adds an operation that runs at every rising edge, such as the read of a synchronous ROM. It runs before the operation of
+    /// the microinstruction, and after the operations that earlier calls added. It sees the values before the edge, except in
+    /// slots that an earlier operation wrote at the same edge.
     pub fn every_edge(&mut self, does: impl Fn(&mut State) + Send + Sync + 'static) {
         self.edges.push(Arc::new(does));
     }
 
-    /// Returns the operands, in the order in which they were added: the name, the format, and the smallest and largest raw
-    /// value of the register.
+    /// Returns the name, the format, and the smallest and largest raw value of each operand, in the order of declaration.
     pub fn operands(&self) -> impl Iterator<Item = (&str, Format, (i64, i64))> {
         self.operands.iter().map(|it| (it.name.as_str(), it.format, (it.min, it.max)))
     }

@@ -1,8 +1,8 @@
 //! Builds the golden model of a device that contains other devices as parts, from the golden models of the parts.
 //!
-//! The parts run one after the other in one microprogram, and each works on its own registers. The device loads the operand
-//! registers of a part in the microinstruction before the part's first one. The results of a part remain in registers after its
-//! last microinstruction. For example, here a device uses two copies of a doubler:
+//! The parts run one after the other in one microprogram, and each works on its own registers. The microinstruction before a
+//! part's first one loads the part's operand registers, and its results remain in registers. For example, here a device uses two
+//! copies of a doubler:
 //!
 //! ```
 //! use glint_base::fixed::Format;
@@ -34,17 +34,14 @@ use super::{Condition, Does, Frame, FrameSignal, FrameStep, Next, Slot, State, i
 use crate::Model;
 use glint_base::fixed::Format;
 
-/// The outputs of a part, as slots in the state of the whole device.
+/// The outputs of a part, as slots of the whole device.
 pub struct Part {
     name: String,
     outputs: Vec<(String, Slot)>,
 }
 
 impl Part {
-    /// Returns the slot of the part's output with this name.
-    ///
-    /// # Panics
-    /// Panics if the part has no such output.
+    /// Returns the slot of the part's output. Panics if the part has no such output.
     pub fn out(&self, name: &str) -> Slot {
         let found = self.outputs.iter().find(|(output, _)| output == name);
         found.unwrap_or_else(|| panic!("`{}` has no output `{name}`", self.name)).1
@@ -52,9 +49,8 @@ impl Part {
 }
 
 impl Frame {
-    /// Adds a part, and returns its outputs. `operands` pairs the name of each operand of the part with a function that computes
-    /// its value from values that are already known. `name` becomes the prefix of the part's registers, for example
-    /// `twice_doubled`.
+    /// Adds a part. `operands` pairs the name of each operand of the part with a function that computes its value from values
+    /// that are already known. `name` becomes the prefix of the part's registers, for example `twice_doubled`.
     ///
     /// # Panics
     /// Panics if a [`Frame`] did not make `model`, if `model` delays `valid`, or if [`Model::with_output_registers`] returns
@@ -128,22 +124,19 @@ impl Frame {
     }
 }
 
-/// Converts an operation on the state of a part to an operation on the state of the whole device, in which the part's state
-/// begins at `base`.
+/// Converts an operation on the state of a part, which begins at `base`, to one on the state of the whole device.
 fn within(base: usize, does: &Does) -> Does {
     let of_part = does.clone();
     Arc::new(move |s| of_part(&mut s[base..]))
 }
 
-/// Converts a condition on the state of a part to a condition on the state of the whole device, in which the part's state
-/// begins at `base`.
+/// Converts a condition on the state of a part, which begins at `base`.
 fn condition_within(base: usize, holds: &Condition) -> Condition {
     let of_part = holds.clone();
     Arc::new(move |s| of_part(&s[base..]))
 }
 
-/// Returns the operation that loads the results of a part, whose state begins at `base`, into their registers. `taken` pairs the
-/// result and the register.
+/// Loads the results of a part, whose state begins at `base`, into their registers: `taken` has both slots.
 fn takes_results(base: usize, taken: &[(Slot, Slot)]) -> Does {
     let mut pairs = Vec::new();
     for (result, register) in taken {
@@ -156,7 +149,7 @@ fn takes_results(base: usize, taken: &[(Slot, Slot)]) -> Does {
     })
 }
 
-/// Returns an operation that does `first` and then `second`. Neither may read a slot that the other writes.
+/// Does `first` and then `second`. Neither may read a slot that the other writes.
 fn then(first: Does, second: Option<Does>) -> Does {
     let Some(second) = second else { return first };
     Arc::new(move |s| {

@@ -1,8 +1,7 @@
 use super::*;
 use crate::Model;
 
-/// Adds the operand `from` (s1.2, limited to 0 … 1.0), the register `count` for a countdown, and the output `twice`, which is
-/// −2 · `count`. Returns the slots of `from` and `count`.
+/// The operand `from` (s1.2, limited to 0 … 1.0) starts the countdown `count`, and the output `twice` is −2 · `count`.
 fn countdown(frame: &mut Frame) -> (Slot, Slot) {
     let from = frame.clamped("from", Format::signed(1, 2), 0, 4);
     let count = frame.register("count", Format::unsigned(3, 0));
@@ -88,7 +87,6 @@ fn an_operand_clamps_and_is_written_by_its_strobe() {
     assert_eq!(model.value("nothing"), None);
 }
 
-/// An added microinstruction raises `valid`. The microinstruction before it loads the result into a register.
 #[test]
 fn results_in_registers() {
     let mut model = model(0).with_output_registers().expect("one result");
@@ -105,8 +103,7 @@ fn results_in_registers() {
     assert_course(model.as_mut(), 2, &course);
 }
 
-/// A skip also skips a microinstruction that was added inside the skipped ones. The register keeps its result from one
-/// computation to the next.
+/// A skip also skips an added microinstruction inside the skipped ones. The register keeps its result.
 #[test]
 fn a_jump_beyond_a_result_in_a_register() {
     let mut frame = Frame::default();
@@ -150,7 +147,6 @@ fn a_jump_beyond_a_result_in_a_register() {
     assert_eq!(course(0, 5), expected);
 }
 
-/// If `valid` is delayed, the output registers load the results in every clock.
 #[test]
 fn results_in_registers_that_follow() {
     let mut model = model(2).with_output_registers().expect("one result");
@@ -167,7 +163,7 @@ fn results_in_registers_that_follow() {
     assert_course(model.as_mut(), 2, &course);
 }
 
-/// A model cannot get output registers if the microinstruction with `valid` decides by a condition what follows.
+/// A microinstruction with `valid` must not decide by a condition what follows.
 #[test]
 fn no_registers_behind_a_result_that_decides() {
     let mut frame = Frame::default();
@@ -177,8 +173,7 @@ fn no_registers_behind_a_result_that_decides() {
     assert!(model.with_output_registers().is_none());
 }
 
-/// A buffer accepts writes at any time. A `start` in the last microinstruction begins the next computation, with the value that
-/// is written in the same clock.
+/// A `start` in the last microinstruction begins the next computation, with the value that is written in the same clock.
 #[test]
 fn operands_in_buffers() {
     let mut model = model(0).with_operand_buffers().expect("a frame's");

@@ -1,19 +1,16 @@
-//! Converts configuration keys to the operands, the register slots and the colour products of a highlight device.
-//!
-//! A highlight device multiplies colours by a reflectance f. Golden models and accuracy contracts of the devices with the
-//! operands `cos_gamma`, `exponent` and colours share these functions; for example, `blinn` and `schlick` use them.
+//! Converts configuration keys to the operands, the register slots and the colour products of highlight devices, such as
+//! `blinn` and `schlick`.
 
 use super::Products;
 use crate::frame::{Frame, Slot};
 use crate::{Operand, contract};
 use glint_keys::common::{ColourKeys, Domain, Intensity, Operands};
 
-/// Returns the products of the reflectance f with the colour operands, as the configuration keys state them.
 pub fn products(keys: &ColourKeys, f: &Intensity) -> Products {
     Products::colours(f.format(), keys.bits, f.output_rounding).in_turn(keys.in_turn())
 }
 
-/// Returns the control operands `cos_gamma` and `exponent` as the accuracy contract sees them, in this order.
+/// Returns the control operands `cos_gamma` and `exponent`, in this order.
 pub fn operands(keys: &Operands, domain: &Domain) -> Vec<Operand> {
     let one = keys.cosine.one();
     let lowest = if keys.cosine.signed { -one } else { 0 };
@@ -23,7 +20,7 @@ pub fn operands(keys: &Operands, domain: &Domain) -> Vec<Operand> {
     ]
 }
 
-/// Adds the operands `cos_gamma`, whose register limits it to 0 … 1.0, and `exponent` to `frame`, and returns their slots.
+/// Adds the operands `cos_gamma`, limited to 0 … 1.0, and `exponent`.
 pub fn slots(keys: &Operands, frame: &mut Frame) -> [Slot; 2] {
     let cosine = frame.clamped("cos_gamma", keys.cosine.format(), 0, keys.cosine.one());
     [cosine, frame.operand("exponent", keys.exponent_format())]

@@ -1,8 +1,8 @@
 //! The accuracy contract of highlight devices, which multiply colours by a reflectance `f` from 0 to 1.
 //!
 //! Such a device computes f from its control operands, for example f = cⁿ from `cos_gamma` and `exponent`. Each colour output is
-//! K·f, rounded, where K is a colour operand. A device implements [`Reflectance`] for its f; [`Highlight`] makes the whole
-//! contract from it.
+//! K·f, rounded, where K is a colour operand. A device implements [`Reflectance`]; [`Highlight`] makes the whole contract from
+//! it.
 
 mod keys;
 mod multiplied;
@@ -18,83 +18,73 @@ use super::contract::{self, COSINE, ErrorShare};
 use super::{Bounds, Contract, Operand, Output, Sweep, nearer};
 use glint_base::fixed::{Format, exp2};
 
-/// The computation of the reflectance f of one highlight device, by its control operands. f is a number from 0 to 1.
+/// The reflectance f of one highlight device, from 0 to 1, as a function of its control operands.
 pub trait Reflectance: Send + Sync {
-    /// Returns the raw f that the device computes from the raw control operands.
+    /// Returns the raw f that the device computes.
     fn f(&self, control: &[i64]) -> i64;
 
-    /// Returns the exact f: the source's formula in f64, unrounded, at the values that the raw control operands represent.
+    /// Returns the exact f: the source's formula in f64, unrounded.
     fn reference(&self, control: &[i64]) -> f64;
 
-    /// Returns the two values that count as correct for `f` at the raw control operands. Normally both are the exact f. If the
-    /// formula jumps and rounding may lead to either side of the jump, they are the values on both sides. An error is measured
-    /// from the nearer value.
+    /// Returns the two values that count as correct for `f`, normally both the exact f. If the formula jumps and rounding may
+    /// lead to either side of the jump, they are the values on both sides. An error is measured from the nearer value.
     fn references(&self, control: &[i64]) -> [f64; 2] {
         [self.reference(control); 2]
     }
 
-    /// Returns the values of [`Reflectance::references`] as Python expressions, or nothing if nobody has written them. Test
-    /// benches use them as an independent second opinion.
+    /// Returns the values of [`Reflectance::references`] as Python expressions, if somebody has written them. Test benches use
+    /// them as an independent second opinion.
     ///
-    /// The expressions may use the names of control operands (as values, not raw), `index` (the number of the result, from 0),
-    /// the words of a ROM (as values, by the ROM's name), and the functions of `math`.
+    /// The expressions may use the names of control operands (as values, not raw), and `index` (the number of the result, from
+    /// 0). They may also use the words of a ROM (as values, by the ROM's name), and the functions of `math`.
     fn expressions(&self) -> Vec<String> {
         Vec::new()
     }
 
-    /// Changes the raw control operands of a computation to the control operands of its result number `index`, counted from 0.
-    ///
-    /// A device with one result for each `start` leaves them as they are. A device that computes a line of points, such as
-    /// `quad-cosine`, must set the angle of that point.
+    /// Changes the raw control operands of a computation to the operands of its result number `index`, counted from 0. A device
+    /// that computes a line of points, such as `quad-cosine`, must set the angle of that point.
     fn point(&self, control: &mut [i64], index: u64) {
         let _ = (control, index);
     }
 
-    /// Returns raw control operands at which the formula is largest, near `control`: for example, a cosine becomes 1, and an
-    /// angle or a vector becomes 0. Tests draw points between the peak and other operands, so the formula should not rise on
-    /// the straight line from the peak to `control`.
+    /// Returns raw control operands at which the formula is largest, near `control`: a cosine becomes 1, and an angle or a
+    /// vector becomes 0. Tests draw points between the peak and other operands, so the formula should not rise on the straight
+    /// line from the peak to `control`.
     ///
     /// With `None`, each operand with fraction bits is set to an end of its domain or to 0, whichever gives the largest value.
-    /// A device whose peak lies elsewhere must return it here.
     fn peak(&self, control: &[i64]) -> Option<Vec<i64>> {
         let _ = control;
         None
     }
 
-    /// Returns the control operands of a line that goes from a first point to a last point. `first` and `last` are the control
-    /// operands at these two points, and `first` also has the length of the line. For example, a line from the angle 0 to the
-    /// angle 300 in 3 steps gets the step 100. A step that is no integer is rounded toward 0, so the line may end before
-    /// `last`.
-    ///
-    /// [`Reflectance::point`] is the reverse: it gives a point of a line. A device with one result for each `start` returns
-    /// `first`.
+    /// Returns the control operands of a line from a first to a last point. `first` and `last` are the control operands there,
+    /// and `first` also has the length of the line. A line from the angle 0 to the angle 300 in 3 steps gets the step 100. A
+    /// step that is no integer is rounded toward 0, so the line may end before `last`. A device with one result for each `start`
+    /// returns `first`.
     fn line(&self, first: &[i64], last: &[i64]) -> Vec<i64> {
         let _ = last;
         first.to_vec()
     }
 
-    /// Returns the exact f at a cosine that is not rounded to the operand's format, and at a raw exponent. Returns `None` if
-    /// the device has other control operands, or if nobody has written this method for it.
+    /// Returns the exact f at a raw exponent and at a cosine that is not rounded to the operand's format. A device without these
+    /// operands, or without an own version of this method, returns `None`.
     fn at_cosine(&self, cosine: f64, exponent: i64) -> Option<f64> {
         let _ = (cosine, exponent);
         None
     }
 
-    /// Returns proven limits on how much the formula changes with the cosine over the domain, or `None` if nobody has stated
-    /// them.
+    /// Returns proven limits on how much the formula changes with the cosine, if somebody has stated them.
     fn variation(&self) -> Option<Variation> {
         None
     }
 
-    /// Returns the name of the operand that states how many results a computation has, as [`Contract::length`] does, or `None`
-    /// if a computation has one result.
+    /// See [`Contract::length`].
     fn length(&self) -> Option<&str> {
         None
     }
 
     /// Returns the control operands that come nearest to the angle `gamma`, in radians from 0 to π/2, and to the specular
-    /// exponent `n`. The operands are in the order that [`Reflectance::f`] expects. Returns `None` if no operand in the domain
-    /// represents that exponent. `operands` are the operands of the contract.
+    /// exponent `n`. The domain must represent this exponent. `operands` are the operands of the contract.
     ///
     /// By default the device must have the operands `cos_gamma` and `exponent`; any other operand gets the value of its domain
     /// that is nearest to 0. A device with other operands must override this.
@@ -103,7 +93,7 @@ pub trait Reflectance: Send + Sync {
     }
 
     /// Returns cos γ, as the raw control operands represent it, limited to 0 … 1. By default it is the value of the operand
-    /// `cos_gamma`; `None` if the device has no such operand. `operands` are the operands of the contract.
+    /// `cos_gamma`, if there is one. `operands` are the operands of the contract.
     fn cosine(&self, operands: &[Operand], control: &[i64]) -> Option<f64> {
         let (operand, raw) =
             operands.iter().zip(control).find(|(operand, _)| operand.name == COSINE)?;
@@ -115,48 +105,46 @@ pub trait Reflectance: Send + Sync {
         None
     }
 
-    /// Returns the absolute error of `f`, as a value, in one case of the check. `place` has the value on each axis of the
-    /// sweep. Returns `None` if a case is a set of control operands; the caller then computes the error itself.
+    /// Returns the absolute error of `f`, as a value, in one case of the check. `place` has the value on each axis of the sweep.
+    /// `None` if a case is a set of control operands; the caller then computes the error itself.
     #[inline]
     fn sweep_error(&self, place: &[i64]) -> Option<f64> {
         let _ = place;
         None
     }
 
-    /// Returns the contributions to the error of f, each a proven upper limit; an empty list if the bound is not known yet.
+    /// Returns the contributions to the error of f, each a proven upper limit; none if the bound is not known yet.
     fn shares(&self) -> Vec<ErrorShare> {
         Vec::new()
     }
 
-    /// Returns remarks about the formula for a user, as [`Contract::remarks`] does.
+    /// See [`Contract::remarks`].
     fn remarks(&self) -> Vec<String> {
         Vec::new()
     }
 }
 
-/// Proven limits on the difference of two values of a formula, at two cosines from −1 to 1. The difference is at most `slope`
-/// times the distance of the cosines, plus `jump`.
+/// Limits the difference of two values of a formula, at two cosines from −1 to 1, to `slope` times the distance of the cosines,
+/// plus `jump`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Variation {
-    /// The largest slope of the formula, apart from the jump.
+    /// The largest slope, apart from the jump.
     pub slope: f64,
-    /// The largest jump of the formula. Most jumps are at a right angle, where the formula falls from some value to 0.
+    /// The largest jump, mostly at a right angle, where the formula falls from some value to 0.
     pub jump: f64,
 }
 
-/// The accuracy contract of a device that multiplies colours by a reflectance f.
 pub struct Highlight {
     reflectance: Box<dyn Reflectance>,
-    /// Whether a computation has one result, at the point that the operands state. A device that computes a line of points has
-    /// several.
+    /// Whether a computation has one result, unlike a line of points.
     single: bool,
     products: Products,
     operands: Vec<Operand>,
-    /// The error bound, stored at the first request, because a search may be needed to compute it.
+    /// Stored at the first request, because a search may be needed to compute it.
     bounds: OnceLock<Bounds>,
 }
 
-/// A highlight gives access to the methods of its reflectance, which need only the control operands.
+/// The methods of the reflectance need only the control operands.
 impl Deref for Highlight {
     type Target = dyn Reflectance;
 
@@ -166,8 +154,8 @@ impl Deref for Highlight {
 }
 
 impl Highlight {
-    /// Makes the contract of a device from its `Reflectance`, from its control operands in the order in which the `Reflectance`
-    /// takes them, and from the products of f with the colour operands, which come after the control operands.
+    /// `control` are the operands in the order in which the `Reflectance` takes them. The colour operands of the products come
+    /// after them.
     pub fn new(
         reflectance: impl Reflectance + 'static,
         control: Vec<Operand>,
@@ -185,25 +173,21 @@ impl Highlight {
         self.operands.len() - self.products.operands.len()
     }
 
-    /// Returns the format of the reflectance f.
     pub fn f_format(&self) -> Format {
         self.products.f
     }
 
-    /// Returns the raw colour output for a raw reflectance f and a raw colour operand: the product, rounded to the output's
-    /// format.
+    /// Returns the raw colour output: the product, rounded to the output's format.
     #[inline]
     pub fn colour(&self, f: i64, colour: i64) -> i64 {
         self.products.narrow.apply(f * colour)
     }
 
-    /// Returns the Python expressions of [`Reflectance::expressions`].
     pub fn expressions(&self) -> Vec<String> {
         self.reflectance.expressions()
     }
 
-    /// Returns the control operands of result number `index`, as [`Reflectance::point`] gives them. If a computation has one
-    /// result, they are `control` itself.
+    /// Returns the control operands of result number `index`, as [`Reflectance::point`] gives them.
     #[inline]
     pub fn point<'c>(&self, control: &'c [i64], index: u64) -> Cow<'c, [i64]> {
         let mut point = Cow::Borrowed(control);
@@ -213,8 +197,8 @@ impl Highlight {
         point
     }
 
-    /// Returns the raw f of result number `index` (from 0) for raw operands. The function appends the exact values, as
-    /// [`Contract::exact`] gives them, to `exact`, and replaces the contents of `point` by the control operands of that result.
+    /// Returns the raw f of result number `index` (from 0). Appends the exact values, as [`Contract::exact`] gives them, to
+    /// `exact`, and replaces `point` by the control operands of that result.
     #[inline]
     pub fn measured(
         &self,
@@ -231,8 +215,7 @@ impl Highlight {
         self.f(point)
     }
 
-    /// Appends the values of [`Contract::exact`] for the control operands `point` of one result and the colour operands
-    /// `colours`.
+    /// Appends the values of [`Contract::exact`] for the control operands `point`.
     fn exact_at(&self, point: &[i64], colours: &[i64], exact: &mut Vec<[f64; 2]>) {
         let f = self.references(point);
         let pairs = self.products.operands.iter().zip(colours);
@@ -242,14 +225,12 @@ impl Highlight {
         }));
     }
 
-    /// Returns the control operands for an angle `gamma` in radians and an exponent `n`: [`Reflectance::at`] with the operands
-    /// of this contract. Returns `None` if no operand in the domain represents `n`.
+    /// See [`Reflectance::at`], with the operands of this contract.
     pub fn at(&self, gamma: f64, n: f64) -> Option<Vec<i64>> {
         self.reflectance.at(&self.operands, gamma, n)
     }
 
-    /// Returns the cosine that the raw control operands represent: [`Reflectance::cosine`] with the operands of this contract.
-    /// Returns `None` if the cosine cannot be computed from them.
+    /// See [`Reflectance::cosine`], with the operands of this contract.
     pub fn cosine(&self, control: &[i64]) -> Option<f64> {
         self.reflectance.cosine(&self.operands, control)
     }
@@ -283,13 +264,13 @@ impl Contract for Highlight {
         self.reflectance.length()
     }
 
-    /// Returns the cases of an exhaustive check of f alone. The products with colours are checked in addition.
+    /// The check is of f alone. The products with colours are checked in addition.
     fn sweep(&self) -> Sweep {
         let control = &self.operands[..self.control()];
         self.reflectance.sweep().unwrap_or_else(|| Sweep::all(control.iter()))
     }
 
-    /// Returns the absolute error of f, as a value, in one case of the sweep.
+    /// Returns the absolute error of f, as a value.
     #[inline]
     fn sweep_error(&self, place: &[i64]) -> f64 {
         self.reflectance.sweep_error(place).unwrap_or_else(|| {

@@ -1,17 +1,14 @@
 //! Multiplies the reflectance f by the colour operands, in the golden models and accuracy contracts of highlight devices.
-//!
-//! [`Products`] has the operands, the outputs and the rounding, and the order in which the hardware computes the products. It
-//! does not compute f.
 
 use crate::frame::{ClockedModel, Frame, FrameStep, Slot, State, idle, step};
 use crate::narrow::Narrow;
 use crate::{Operand, Output};
 use glint_base::fixed::{Format, Rounding};
 
-/// The products of the reflectance f with the operands that it multiplies: three colours, or one amplitude.
+/// The products of f with three colours or one amplitude: operands, outputs, rounding, and the order in which the hardware
+/// computes them.
 #[derive(Clone, Debug)]
 pub struct Products {
-    /// The format of f.
     pub(super) f: Format,
     pub(super) bits: u32,
     pub(super) rounding: Rounding,
@@ -21,20 +18,20 @@ pub struct Products {
     schedule: ProductOrder,
 }
 
-/// The clocks in which the hardware computes the products.
+/// When the hardware computes the products.
 #[derive(Clone, Copy, Debug)]
 enum ProductOrder {
-    /// All products are combinational logic behind f and the colours.
+    /// As combinational logic behind f and the colours.
     AtOnce,
-    /// One multiplier makes the products, each in a microinstruction of its own.
+    /// By one multiplier, each in a microinstruction of its own.
     InTurn,
-    /// Registers take the products at every rising edge.
+    /// At every rising edge, into registers.
     AtEdges,
 }
 
 impl Products {
-    /// Returns the products of the reflectance f with the three colour operands red, green and blue, each of `bits` bits. `f` is
-    /// the format of the reflectance, and `rounding` rounds the products. The contract covers all values of the colours.
+    /// Multiplies f by the operands red, green and blue of `bits` bits, rounded by `rounding`. The contract covers all values of
+    /// the colours.
     pub fn colours(f: Format, bits: u32, rounding: Rounding) -> Self {
         let colours = ["red", "green", "blue"];
         let doc =
@@ -43,16 +40,15 @@ impl Products {
         Self::new(f, bits, rounding, colours.map(|it| (it, doc(it))).into(), outputs.into())
     }
 
-    /// Returns the product of the reflectance f with the single operand `amplitude` of `bits` bits. `f` is the format of the
-    /// reflectance, and `rounding` rounds the product. The contract covers all values of the amplitude.
+    /// Multiplies f by the operand `amplitude` of `bits` bits, rounded by `rounding`. The contract covers all values of the
+    /// amplitude.
     pub fn amplitude(f: Format, bits: u32, rounding: Rounding) -> Self {
         let doc = "intensity of the light times the surface's specular coefficient, at the peak";
         let operand = vec![("amplitude", doc.to_owned())];
         Self::new(f, bits, rounding, operand, vec!["intensity_out".to_owned()])
     }
 
-    /// Returns an empty set of products, for a device that outputs the reflectance f itself. The accuracy contract then covers f
-    /// alone.
+    /// Makes no products, for a device that outputs f itself. The contract then covers f alone.
     pub fn none(f: Format) -> Self {
         Self::new(f, 1, Rounding::Nearest, Vec::new(), Vec::new())
     }
@@ -82,15 +78,14 @@ impl Products {
         }
     }
 
-    /// Sets how the hardware makes the products f · colour. If `in_turn`, one multiplier makes them one after the other, each in
-    /// a microinstruction of its own; otherwise they are combinational logic behind f and the colours.
+    /// If `in_turn`, one multiplier makes the products one after the other, each in a microinstruction of its own. Otherwise
+    /// they are combinational logic.
     #[must_use]
     pub fn in_turn(self, in_turn: bool) -> Self {
         Self { schedule: if in_turn { ProductOrder::InTurn } else { ProductOrder::AtOnce }, ..self }
     }
 
-    /// Sets how the hardware makes the products f · colour. If `at_edges`, registers take the products at every rising edge;
-    /// otherwise the products are combinational logic behind f and the colours.
+    /// If `at_edges`, registers take the products at every rising edge. Otherwise they are combinational logic.
     #[must_use]
     pub fn at_edges(self, at_edges: bool) -> Self {
         Self {
@@ -100,8 +95,7 @@ impl Products {
     }
 
     /// Adds the colour operands and the outputs to a golden model that has the raw f in the slot `f`. Returns the
-    /// microinstructions that compute the products before the microinstruction with the result. The list is empty unless the
-    /// products are computed one after the other.
+    /// microinstructions that compute the products one after the other, if any.
     pub fn slots(&self, frame: &mut Frame, f: Slot) -> Vec<FrameStep> {
         let mut program = Vec::new();
         for (operand, output) in self.operands.iter().zip(&self.outputs) {
@@ -125,8 +119,7 @@ impl Products {
         program
     }
 
-    /// Returns the golden model that executes `program` and then computes the products. `program` must leave f in the slot `f`;
-    /// the last microinstruction shows the products.
+    /// Returns the golden model that executes `program` and then computes the products. `program` must leave f in the slot `f`.
     pub fn behind(&self, mut frame: Frame, f: Slot, mut program: Vec<FrameStep>) -> ClockedModel {
         program.extend(self.slots(&mut frame, f));
         program.push(idle().valid().end());

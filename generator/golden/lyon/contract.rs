@@ -1,8 +1,5 @@
-//! The accuracy contract of the device `lyon`, which computes f = max(0, 1 − β·D²)^m from the difference D of surface normal and
-//! half vector. β = n/(2·m) with the specular exponent n.
-//!
-//! The contract states the exact formula, the terms of the error bound with the keys that govern them, and the operands that an
-//! exhaustive check visits.
+//! The accuracy contract of the device `lyon`: the exact formula, the terms of the error bound with the keys that govern them,
+//! and the operands that an exhaustive check visits.
 
 use super::{Derived as _, Keys, LyonArithmetic, Scale};
 use crate::contract::{self as shared, ErrorShare};
@@ -13,10 +10,10 @@ use crate::{Contract, Operand, Sweep};
 use glint_base::fixed::{Rounding, exp2};
 use glint_config::Config;
 
-/// The largest D², as a value: each of the three components is at least −2.0, so its square is at most 4.
+/// The largest D²: each of the three components is at least −2.0, so its square is at most 4.
 const FARTHEST: i64 = 12;
 
-/// Returns the accuracy contract of the device `lyon`. Its control operands are `dx`, `dy`, `dz`, and `shift` or `exponent`.
+/// The control operands are `dx`, `dy`, `dz`, and `shift` or `exponent`.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     Box::new(of_keys(Keys::of(config)))
 }
@@ -47,7 +44,7 @@ impl LyonArithmetic {
         squares.sum::<i64>() as f64 * exp2(-2 * self.keys.vector_fraction as i32)
     }
 
-    /// Returns the exact f for `distance`, a value of D². β follows from the raw operand `shift` or `exponent`.
+    /// Returns the exact f for a value of D² and the raw operand `shift` or `exponent`.
     #[inline]
     fn formula(&self, distance: f64, operand: i64) -> f64 {
         let power = self.keys.power;
@@ -78,8 +75,7 @@ impl Reflectance for LyonArithmetic {
         vec![format!("{} ** {power}", shared::clamped_at_0(&base))]
     }
 
-    /// Returns the operands for the normal (0, 0, 1) and the half vector (sin γ, 0, cos γ). Returns `None` if `n` is not an
-    /// integer in the domain.
+    /// Returns the operands for the normal (0, 0, 1) and the half vector (sin γ, 0, cos γ), if `n` is an integer in the domain.
     fn at(&self, operands: &[Operand], gamma: f64, n: f64) -> Option<Vec<i64>> {
         let (first, last) = self.keys.domain.exponents();
         let exponent = n as i64;
@@ -97,14 +93,13 @@ impl Reflectance for LyonArithmetic {
         ])
     }
 
-    /// Returns the cosine of the angle between two unit vectors at the distance D: 1 − D²/2, or 0 if that is negative. The
-    /// result is never `None`.
+    /// Returns the cosine of the angle between two unit vectors at the distance D: 1 − D²/2, or 0 if that is negative.
     fn cosine(&self, _: &[Operand], control: &[i64]) -> Option<f64> {
         Some((1.0 - self.exact_distance(control) / 2.0).max(0.0))
     }
 
-    /// Returns every raw D² in the register (a word of D²) with every operand `shift` or `exponent`. These two numbers
-    /// determine f, since adders 1 and 2 and multipliers 1 to 3 are exact. The result is never `None`.
+    /// Visits every word of D² with every operand `shift` or `exponent`. These two numbers determine f, since adders 1 and 2 and
+    /// multipliers 1 to 3 are exact.
     fn sweep(&self) -> Option<Sweep> {
         let most = FARTHEST << self.keys.distance_fraction;
         Some(Sweep::ranges([
@@ -114,7 +109,7 @@ impl Reflectance for LyonArithmetic {
     }
 
     /// Returns the largest error of f over every exact D² that is rounded to the word. The formula falls as D² grows, so the
-    /// error is largest at an end of this interval. The result is never `None`.
+    /// error is largest at an end of this interval.
     #[inline]
     fn sweep_error(&self, place: &[i64]) -> Option<f64> {
         let (operand, word) = (place[0], place[1]);
@@ -136,16 +131,16 @@ impl Reflectance for LyonArithmetic {
         Some((f - nearest).abs().max((f - formula(high)).abs()))
     }
 
-    /// Returns the contributions to the error of f, as values with their keys, and derives them. Base and powers lie in 0 … 1,
-    /// hardware's and formula's alike, so by the mean value theorem an error ε before a power p grows to at most p·ε.
+    /// Derives the contributions to the error of f. Base and powers lie in 0 … 1, hardware's and formula's alike. By the mean
+    /// value theorem, an error ε before a power p therefore grows to at most p·ε.
     ///
     /// - An error of D² is multiplied by β = n/(2·m), and by at most m when the base is raised to m: n/2 in all.
     /// - Base: as in `cosine-power`, the hardware uses the inverse, 1.0 − ulp − t, instead of 1.0 − t. If t is truncated, the
     ///   base is low by at most an ulp; if t is rounded to the nearest, by at most 3/2 ulp.
     /// - The result of squaring number i is rounded, and then raised to m/2^i. The factors of these errors add up to m − 1.
     ///
-    /// If every rounding truncates, the error of D² makes f too large, and the other errors make f too small. Only the larger
-    /// of these two sums counts then.
+    /// If every rounding truncates, the error of D² makes f too large, and the other errors make f too small. Only the larger of
+    /// these two sums counts then.
     fn shares(&self) -> Vec<ErrorShare> {
         let keys = &self.keys;
         let (f, power) = (keys.f.fraction, f64::from(keys.power));
@@ -175,8 +170,8 @@ impl Reflectance for LyonArithmetic {
         }
     }
 
-    /// Returns a remark if `scale = "shift"` makes the formula worse, because n is rounded to a power of two. Only the two n
-    /// next to the geometric mean of each two adjacent powers of two are compared; the remark states the worst of them.
+    /// Remarks that `scale = "shift"` makes the formula worse, because n is rounded to a power of two. Only the two n next to
+    /// the geometric mean of each two adjacent powers of two are compared; the remark states the worst of them.
     fn remarks(&self) -> Vec<String> {
         let (keys, (first, last)) = (&self.keys, self.keys.domain.exponents());
         if keys.scale == Scale::Multiplier {

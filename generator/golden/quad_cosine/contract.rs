@@ -1,8 +1,5 @@
-//! The accuracy contract of the device `quad-cosine`, which computes f = cosᵏ(√(n/k)·δ) for the angle δ at each point of a scan
-//! line. n is the specular exponent, which decides k.
-//!
-//! The contract states the exact formula, the terms of the error bound with the keys that govern them, and the operands that an
-//! exhaustive check visits.
+//! The accuracy contract of the device `quad-cosine`: the exact formula, the terms of the error bound with the keys that govern
+//! them, and the operands that an exhaustive check visits.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -15,9 +12,9 @@ use crate::{Contract, Operand, Sweep};
 use glint_base::fixed::{Format, exp2};
 use glint_config::Config;
 
-/// Returns the accuracy contract of the device `quad-cosine`. Its control operands are `delta_zeta` (the angle from a point to
-/// the next), `zeta_start` (the first angle), `exponent` and `length` (the number of intervals). To state a single point of a
-/// line, the contract sets `zeta_start` to the angle of that point.
+/// The control operands are `delta_zeta` (the angle from a point to the next), `zeta_start` (the first angle), `exponent` and
+/// `length` (the number of intervals). To state a single point of a line, the contract sets `zeta_start` to the angle of that
+/// point.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     let keys = Keys::of(config);
     let mut operands = line::angle_operands(keys.angle_format()).to_vec();
@@ -31,12 +28,12 @@ pub fn contract(config: &Config) -> Box<dyn Contract> {
 }
 
 impl QuadCosineArithmetic {
-    /// Returns two upper limits of the error of the stretched angle √(n/k)·δ for n, in right angles. The first error comes from
-    /// the low bits that multiplier 11 does not read. The second comes from the rounding of ROM 9.
+    /// Returns two upper limits of the error of the stretched angle √(n/k)·δ for n, in right angles. One is from the low bits
+    /// that multiplier 11 does not read, and one from the rounding of ROM 9.
     ///
-    /// The magnitude m denotes angles from m to m + u. With s = √(n/k) and s' = ROM 9's word, s'·m is less than s·(m + u) by at
-    /// most s·u + (s − s')·m, and more than s·m by at most (s' − s)·m. An angle beyond 1/s is in the table's last word anyway,
-    /// and so is an angle beyond 1/s'.
+    /// The magnitude m denotes angles from m to m + u. Let s = √(n/k), and s' be ROM 9's word. s'·m is less than s·(m + u) by
+    /// at most s·u + (s − s')·m, and more than s·m by at most (s' − s)·m. An angle beyond 1/s is in the table's last word
+    /// anyway, and so is an angle beyond 1/s'.
     fn stretching(&self, n: i64) -> (f64, f64) {
         let s = (n as f64 / POWERS[range_of(n)] as f64).sqrt();
         let word = self.root(n) as f64 * exp2(-(self.keys.root_fraction as i32));
@@ -53,8 +50,8 @@ impl Reflectance for QuadCosineArithmetic {
         self.cosine_of(n, self.magnitude(angle), self.root(n))
     }
 
-    /// Returns the exact f. The surface faces the viewer for angles from −90° to below 90°; the hardware treats these two ends
-    /// differently, as two's complement does.
+    /// The surface faces the viewer for angles from −90° to below 90°; the hardware treats these two ends differently, as two's
+    /// complement does.
     #[inline]
     fn reference(&self, control: &[i64]) -> f64 {
         let (angle, n) = (control[1], control[2]);
@@ -82,8 +79,7 @@ impl Reflectance for QuadCosineArithmetic {
         vec![line::interval(angle, last[1], length, first[0]), angle, first[2], length]
     }
 
-    /// Returns the operands of a line of one point, at the angle `gamma`. Returns `None` if no operand in the domain represents
-    /// `n`.
+    /// Returns the operands of a line of one point, at the angle `gamma`, if the domain represents `n`.
     fn at(&self, operands: &[Operand], gamma: f64, n: f64) -> Option<Vec<i64>> {
         let angle = line::raw_angle(&operands[1], gamma);
         Some(vec![0, angle, shared::exponent_at(&operands[2], n)?, 0])
@@ -98,8 +94,8 @@ impl Reflectance for QuadCosineArithmetic {
         Some("length")
     }
 
-    /// Returns every n with every magnitude that multiplier 11 can read, which covers every angle that a line can reach. If the
-    /// surface faces away, the word of ROM 12 and the formula are both 0 for every n. The result is never `None`.
+    /// Visits every n with every magnitude that multiplier 11 can read, which covers every angle that a line can reach. If the
+    /// surface faces away, the word of ROM 12 and the formula are both 0 for every n.
     fn sweep(&self) -> Option<Sweep> {
         let magnitudes = 1i64 << self.keys.angle_multiplied;
         Some(Sweep::ranges([
@@ -109,7 +105,7 @@ impl Reflectance for QuadCosineArithmetic {
     }
 
     /// Returns the largest error over all angles with this magnitude, of either sign. The formula falls from one end of these
-    /// angles to the other, so the error is largest at an end. The result is never `None`.
+    /// angles to the other, so the error is largest at an end.
     fn sweep_error(&self, place: &[i64]) -> Option<f64> {
         let (n, magnitude) = (place[0], place[1]);
         let word = self.cosine_of(n, Some(magnitude), self.root(n));
@@ -119,9 +115,8 @@ impl Reflectance for QuadCosineArithmetic {
         Some((end(magnitude) - f).max(f - end(magnitude + 1)))
     }
 
-    /// Returns the contributions to the error of f, for the n with the largest sum: the distance of ROM 12 from the formula
-    /// within a step, the rounding of ROM 12, and two errors of the stretched angle. These two errors are multiplied by the
-    /// steepest slope of the power.
+    /// Returns the contributions for the n with the largest sum. They are the distance of ROM 12 from the formula within a
+    /// step, the rounding of ROM 12, and two errors of the stretched angle, times the steepest slope of the power.
     fn shares(&self) -> Vec<ErrorShare> {
         let keys = &self.keys;
         let (low, high) = keys.domain.exponents();

@@ -1,13 +1,13 @@
 //! Computes the coefficients a(n) of the device `quadratic` (its table ROM(n)), independently of the hardware description.
 //!
 //! The device computes c + a·(c² − c), a parabola in c = cos γ that approximates cⁿ. With x = 1 − c, the parabola exceeds cⁿ by
-//! `h(x) = (1 − x)·(1 − a·x) − (1 − x)ⁿ` up to its zero at x = 1/a; beyond the zero the result is 0 and cⁿ exceeds it. The
+//! `h(x) = (1 − x)·(1 − a·x) − (1 − x)ⁿ` up to its zero at x = 1/a. Beyond the zero the result is 0 and cⁿ exceeds it. The
 //! minimax a makes the maximum of h equal to the error at the zero, (1 − 1/a)ⁿ.
 
 use glint_keys::quadratic::Scheme;
 
 /// Returns the exact a(n) for n = 0 … `count` − 1: n − 1 for the scheme `taylor`, and the minimax coefficient for `minimax`.
-/// The entry for n = 0 equals the entry for n = 1, which is 0.
+/// The entry for n = 0 is 0, as for n = 1.
 pub fn table(scheme: Scheme, count: u32) -> Vec<f64> {
     (0..count)
         .map(|n| match scheme {
@@ -36,8 +36,8 @@ fn minimax(n: f64) -> f64 {
     a
 }
 
-/// Returns the x at which h is largest, by Newton's iteration from x = 0. From 0 on, h′ falls and is convex, so the iteration
-/// approaches the zero of h′ from the left.
+/// Returns the x at which h is largest, by Newton's iteration from x = 0. From there on, h′ falls and is convex, so the
+/// iteration approaches the zero of h′ from the left.
 fn summit(n: f64, a: f64) -> f64 {
     let mut x = 0.0;
     for _ in 0..60 {

@@ -1,8 +1,7 @@
-//! Bounds the error of f of the device `rough` for every pair of bins of the angles γ and dγ. The device computes f =
-//! (n/2·(cos(γ ± dγ) − 1) + 1)².
+//! Bounds the error of f of the device `rough` for every pair of bins of the angles γ and dγ, for exact arithmetic.
 //!
-//! The quarter circle is divided into 512 bins of equal size; a bin is an interval of angles. [`super::bound`] takes the
-//! largest of these bounds, and explains the symbols. The analysis is for exact arithmetic, not for the patent's arithmetic.
+//! The quarter circle is divided into 512 bins, intervals of angles of equal size. [`super::bound`] takes the largest of these
+//! bounds, and explains the symbols.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -11,8 +10,7 @@ use crate::narrow::rounding_error;
 use crate::sine::{ErrorRange, Sine};
 use glint_base::fixed::{Rounding, exp2};
 
-/// The number of bins of the quarter circle. A bin is small compared with the narrowest highlight, which is 3.6° wide at n =
-/// 1000.
+/// A bin is small compared with the narrowest highlight, which is 3.6° wide at n = 1000.
 const BINS: usize = 512;
 /// The width of a bin, in radians.
 pub const BIN: f64 = FRAC_PI_2 / BINS as f64;
@@ -20,9 +18,9 @@ pub const BIN: f64 = FRAC_PI_2 / BINS as f64;
 /// A margin, in radians, that covers the rounding of angles in f64.
 pub const SLACK: f64 = 1e-9;
 
-/// The errors of the table of sines (ROM 18 of `rough`), for each bin of the angle.
+/// The errors of the table of sines (ROM 18), for each bin of the angle.
 pub struct Errors {
-    /// The largest error of the table in each bin, and the part of it that words of unlimited width would leave ([`ErrorRange`]).
+    /// The largest error of the table, and the part of it that words of unlimited width would leave ([`ErrorRange`]).
     errors: Vec<(f64, f64)>,
     /// The largest sine in each bin.
     sines: Vec<f64>,
@@ -45,14 +43,14 @@ impl Errors {
         Self { errors, sines }
     }
 
-    /// Returns the largest error that the table of sines causes in register 12, the product of both sines, for γ in bin `i` and
-    /// dγ in bin `j`, as a value.
+    /// Returns the largest error that the table causes in register 12, the product of both sines, for γ in bin `i` and dγ in bin
+    /// `j`.
     fn product(&self, i: usize, j: usize) -> f64 {
         self.part(i, j, |error, _| error)
     }
 
-    /// Returns the share of [`Self::product`] that comes from one part of every table entry's error. `part` gets the error of an
-    /// entry and its shape, and returns that part.
+    /// Returns the share of [`Self::product`] that comes from one part of every entry's error. `part` gets the error of an entry
+    /// and its shape.
     pub fn part(&self, i: usize, j: usize, part: impl Fn(f64, f64) -> f64) -> f64 {
         let (gamma, dgamma) = (self.errors[i], self.errors[j]);
         self.sines[i] * part(dgamma.0, dgamma.1)
@@ -60,19 +58,18 @@ impl Errors {
     }
 }
 
-/// The weight n·b: the factor by which an error of cos(γ ± dγ) changes f. Here n is the exponent and b the base of the square in
-/// the formula. The weight belongs to bins of γ and dγ that are a certain number of bins apart.
+/// The factor n·b by which an error of cos(γ ± dγ) changes f, for bins of γ and dγ that are a certain number of bins apart.
 pub struct Weight {
-    /// The largest weight n·b for any n of the domain, and any angles in the pairs of bins to which this weight belongs. The
-    /// base is b = n/2·(cos(γ ± dγ) − 1) + 1, and an error of cos(γ ± dγ) changes f = b² by at most this factor.
+    /// The largest weight n·b for any n of the domain and any angles in these bins. With the base b = n/2·(cos(γ ± dγ) − 1) + 1,
+    /// an error of cos(γ ± dγ) changes f = b² by at most this factor.
     pub linear: f64,
-    /// The largest n of the domain for which the square is not constant; 0 if there is no such n.
+    /// The largest n of the domain for which the square is not constant, or 0.
     exponent: f64,
 }
 
 impl Weight {
-    /// Makes the weight for pairs of bins that are `distance` bins apart. `anywhere` is the largest error of the base at any
-    /// angles. The weight is 0 if the square is constant for every n of the domain.
+    /// Makes the weight for pairs of bins that are `distance` bins apart: 0 if the square is constant for every n of the domain.
+    /// `anywhere` is the largest error of the base at any angles.
     fn new(keys: &Keys, distance: usize, anywhere: f64) -> Self {
         let (least, most) = exponents(keys);
         let sine = libm::sin((distance.saturating_sub(1)) as f64 * BIN / 2.0);
@@ -102,26 +99,24 @@ fn bin(angle: f64) -> usize {
     ((angle.max(0.0) / BIN) as usize).min(BINS - 1)
 }
 
-/// Bounds on the error of f for all pairs of bins of γ and dγ.
 pub struct Analysis {
     pub errors: Errors,
-    /// The weights of pairs of bins. For γ − dγ they are indexed by the distance of the two bins, for γ + dγ by the sum of their
-    /// numbers.
+    /// The weights, for γ − dγ by the distance of the two bins, and for γ + dγ by the sum of their numbers.
     pub weights: Vec<Weight>,
-    /// The number of the last bin that dγ can reach.
+    /// The last bin that dγ can reach.
     deviation: usize,
     /// The largest rounding error of registers 11 and 12 together: the products of the cosines and of the sines.
     pub products: f64,
     /// The largest rounding error of the base in register 13.
     pub base: f64,
-    /// One unit in the last place of the square in register 13.
+    /// The largest error of the square in register 13.
     pub ulp: f64,
-    /// The largest error of the base before it is rounded, among operands for which the square is not constant.
+    /// The largest error of the base before it is rounded, where the square is not constant.
     pub square: f64,
 }
 
 impl Analysis {
-    /// Returns the bounds for the configuration `keys` with the errors of the table `sine`.
+    /// `sine` is the table of the configuration `keys`.
     pub fn new(keys: &Keys, sine: &Sine) -> Self {
         let errors = Errors::new(sine);
         let deviation = bin(keys.deviation.to_radians() + SLACK);
@@ -156,13 +151,12 @@ impl Analysis {
         it
     }
 
-    /// Returns all pairs of a bin of γ and a bin of dγ. The bins of dγ end at the largest deviation of the domain.
+    /// Returns all pairs of a bin of γ and a bin of dγ, up to the largest deviation of the domain.
     pub fn pairs(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
         let deviation = self.deviation;
         (0..BINS).flat_map(move |i| (0..=deviation).map(move |j| (i, j)))
     }
 
-    /// Returns the largest sine in a bin.
     pub fn sine(&self, bin: usize) -> f64 {
         self.errors.sines[bin]
     }
@@ -172,15 +166,13 @@ impl Analysis {
         self.bound_of(i, j, negative, self.errors.product(i, j))
     }
 
-    /// Returns a bound on the error of f as [`Self::bound`] does. In place of the bins' own table errors, `error` is the amount
-    /// by which the table errors change the product of the sines in register 12.
+    /// Like [`Self::bound`], but `error` replaces the amount by which the bins' table errors change register 12.
     pub fn bound_of(&self, i: usize, j: usize, negative: bool, error: f64) -> f64 {
         let apart = if negative { i.abs_diff(j) } else { i + j };
         self.rounded(self.weights[apart].linear * (error + self.products))
     }
 
-    /// Returns the bound on the error of f with all roundings, for a given `linear`: the weight n·b times the error of cos(γ ±
-    /// dγ).
+    /// Adds all roundings to `linear`, the weight n·b times the error of cos(γ ± dγ).
     pub fn rounded(&self, linear: f64) -> f64 {
         let base = self.square + self.base;
         linear + 2.0 * self.base + self.ulp + base * base

@@ -1,8 +1,8 @@
-//! Computes the terms of the error bound of the device `rough`, which computes f = (n/2·(cos(γ ± dγ) − 1) + 1)². Each term has the
-//! configuration key that governs it. For the patent's arithmetic, which wraps modulo 1.0, the only term is 1.0.
+//! Computes the terms of the error bound of the device `rough`, each with the configuration key that governs it. For the patent's
+//! arithmetic, which wraps modulo 1.0, the only term is 1.0.
 //!
 //! The rest of this head proves the bound for exact arithmetic. Block numbers, such as register 11, are the numbers in the figure
-//! of the source, the patent UA 60139.
+//! of the patent UA 60139.
 //!
 //! **Notation.** b = n/2·(cos(γ ± dγ) − 1) + 1 is the base of the square in the formula, before any clamp. b′ is the base that the
 //! hardware computes (adder 16, in word 6 of the microprogram). E is a bound of |b′ − b|. Operands are exact, because the formula
@@ -34,7 +34,6 @@ use super::{Keys, Kind, RomLayout, RoughArithmetic, pairs};
 use crate::contract::ErrorShare;
 use glint_base::fixed::exp2;
 
-/// Returns the contributions to the error of f of the device `rough`, each with the key that governs it.
 pub fn shares(it: &RoughArithmetic) -> Vec<ErrorShare> {
     match it.keys.arithmetic {
         Kind::Patent => {
@@ -82,7 +81,7 @@ fn exact(it: &RoughArithmetic) -> Vec<ErrorShare> {
     shares
 }
 
-/// Returns the key and the description of each part into which [`split`] divides an error.
+/// Returns the key and the description of each part of [`split`].
 fn sine_terms(keys: &Keys) -> &'static [(&'static str, &'static str)] {
     match keys.scheme {
         RomLayout::Direct => &[
@@ -97,8 +96,8 @@ fn sine_terms(keys: &Keys) -> &'static [(&'static str, &'static str)] {
     }
 }
 
-/// Splits the error of an entry into parts that add up to it. The parts are in proportion to the largest possible errors of
-/// the rounding (with the floor after interpolation), the shape and the slope's rounding.
+/// Splits the error of an entry in proportion to the largest possible errors of three parts. They are the rounding (with the
+/// floor after interpolation), the shape and the slope's rounding.
 fn split(keys: &Keys, error: f64, shape: f64) -> [f64; 3] {
     let ulp = exp2(-(keys.sine_fraction as i32));
     let most = match keys.scheme {

@@ -1,5 +1,4 @@
-//! Builds the golden model of the device `rough`, which computes f = (n/2·(cos(γ ± dγ) − 1) + 1)². The model has the registers
-//! and microinstructions of the device, and predicts them clock by clock.
+//! Builds the golden model of the device `rough` from the registers and microinstructions of the device.
 
 use std::sync::Arc;
 
@@ -9,10 +8,8 @@ use crate::frame::{Frame, idle, step_by};
 use glint_base::fixed::Format;
 use glint_config::Config;
 
-/// Returns the golden model of the device `rough` for a configuration.
-///
 /// The model has no address register for a synchronous ROM 18 (the table of sines). The hardware sets the ROM's address one
-/// microinstruction before it uses the sine, and the operands do not change in between, so both kinds of ROM show the same sine.
+/// microinstruction before it uses the sine. The operands do not change in between, so both kinds of ROM show the same sine.
 pub fn model(config: &Config) -> Box<dyn Model> {
     let it = Arc::new(RoughArithmetic::new(keys_of(config)));
     let keys = &it.keys;

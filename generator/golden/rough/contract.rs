@@ -1,8 +1,5 @@
-//! The accuracy contract of the device `rough`, which computes f = (n/2·(cos(γ ± dγ) − 1) + 1)². γ is the angle between surface
-//! normal and half vector, and dγ the deviation of the normal on a rough surface.
-//!
-//! The contract states the exact formula, the operands at which f is largest, the error bound, and the operands that an
-//! exhaustive check visits.
+//! The accuracy contract of the device `rough`: the exact formula, the operands at which f is largest, the error bound, and the
+//! operands that an exhaustive check visits.
 
 use super::{Derived as _, Kind, RoughArithmetic, bound, keys_of};
 use crate::contract::{self as shared, ErrorShare};
@@ -11,12 +8,10 @@ use crate::highlight::{Highlight, Reflectance};
 use crate::{Axis, Contract, Operand, Sweep, Values};
 use glint_config::Config;
 
-/// The values of dγ, in degrees, that an exhaustive check visits in addition to the largest dγ of the domain. Values that are
-/// not below the largest dγ are left out.
+/// Deviations dγ in degrees. An exhaustive check visits the ones below the largest dγ of the domain, and this largest one.
 const SWEPT_DEVIATIONS: [f64; 4] = [0.0, 1.0, 5.0, 15.0];
 
-/// Returns the accuracy contract of the device `rough`. Its control operands are `cos_gamma`, `cos_dgamma`, `exponent` and
-/// `dgamma_negative`.
+/// The control operands are `cos_gamma`, `cos_dgamma`, `exponent` and `dgamma_negative`.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     let keys = keys_of(config);
     let (control, products) = (keys.control(), keys.products());
@@ -35,8 +30,7 @@ impl Reflectance for RoughArithmetic {
         it.f_of(it.squared(scaled, cos_gamma))
     }
 
-    /// Returns the exact f. The patent's arithmetic is compared with the clamped formula too, so that its error shows the cost
-    /// of that arithmetic.
+    /// The patent's arithmetic is compared with the clamped formula too, so that its error shows the cost of that arithmetic.
     #[inline]
     fn reference(&self, control: &[i64]) -> f64 {
         let cosine = |raw| self.keys.clamped(raw) as f64 * self.keys.ulp();
@@ -60,22 +54,20 @@ impl Reflectance for RoughArithmetic {
         })]
     }
 
-    /// Returns the operands of γ and n with dγ = 0; in the patent's arithmetic, which has no cosine 1.0, with the largest
-    /// cosine instead. Returns `None` if no operand in the domain represents `n`.
+    /// Returns the operands of γ and n with dγ = 0, if the domain represents `n`. The patent's arithmetic has no cosine 1.0,
+    /// and so has the largest cosine instead.
     fn at(&self, operands: &[Operand], gamma: f64, n: f64) -> Option<Vec<i64>> {
         let no_deviation = [("cos_dgamma", self.keys.largest_cosine())];
         shared::operands_at(operands, gamma, n, &no_deviation)
     }
 
-    /// Returns the raw operands at which cos(γ ± dγ) is largest. If dγ is subtracted, γ becomes dγ; if dγ is added, both become
-    /// 0. The result is never `None`.
+    /// cos(γ ± dγ) is largest if γ becomes dγ where dγ is subtracted, and if both become 0 where it is added.
     fn peak(&self, control: &[i64]) -> Option<Vec<i64>> {
         let deviation = if control[3] == 1 { control[1] } else { self.keys.largest_cosine() };
         Some(vec![deviation, deviation, control[2], control[3]])
     }
 
-    /// Returns every cos γ and every n, with a few values of dγ from the domain and both signs of dγ. The result is never
-    /// `None`.
+    /// Visits every cos γ and every n, with a few values of dγ and both signs of dγ.
     fn sweep(&self) -> Option<Sweep> {
         let (low, high) = self.keys.cos_dgamma_domain();
         let mut degrees = SWEPT_DEVIATIONS.to_vec();

@@ -1,12 +1,11 @@
-//! Finds a bound on the error of f of the device `rough` by branch and bound over pairs of angles γ and dγ. The device computes
-//! f = (n/2·(cos(γ ± dγ) − 1) + 1)².
+//! Finds a bound on the error of f of the device `rough` by branch and bound over pairs of angles γ and dγ.
 //!
 //! **Bounds.** A bin is a small interval of angles. The analysis in [`super::bound`] gives a bound for each pair of bins, one
-//! for γ and one for dγ. For a pair of operands in these bins, the same formula gives a smaller bound, because the errors of
-//! the table of sines are known at these operands. If the output of the hardware's adder 15 is computed too, its distance D
-//! from cos(γ ± dγ) − 1 is known, and the error of f is at most n·b·D plus the roundings of register 13. Here b is the base of
-//! the square, and n·b is largest at n = 1/(1 − cos(γ − dγ)) or at an end of the domain of n. For a pair of operands and one n,
-//! the error itself is computed, with the hardware's roundings.
+//! for γ and one for dγ. For a pair of operands in these bins, the same formula gives a smaller bound. The reason is that the
+//! errors of the table of sines are known at these operands. If the output of the hardware's adder 15 is computed too, its
+//! distance D from cos(γ ± dγ) − 1 is known. The error of f is then at most n·b·D plus the roundings of register 13. Here b is
+//! the base of the square. n·b is largest at n = 1/(1 − cos(γ − dγ)) or at an end of the domain of n. For a pair of operands
+//! and one n, the error itself is computed, with the hardware's roundings.
 //!
 //! **The search.** The search remembers the largest error that it has computed. It skips every pair whose bound is no larger,
 //! because such a pair has no larger error, and examines all other pairs. If that takes more than 2²¹ steps, the result is the
@@ -20,7 +19,7 @@ use super::{Derived as _, RoughArithmetic};
 use crate::highlight::Reflectance;
 use glint_base::fixed::exp2;
 
-/// The largest number of steps of the search. A step examines a pair of operands, or one exponent of a pair.
+/// A step examines a pair of operands, or one exponent of a pair.
 const STEPS: u64 = 1 << 21;
 
 /// The search ignores errors below this fraction of the first bound.
@@ -29,7 +28,6 @@ const LEAST: f64 = 0.5;
 /// An upper limit of the rounding of f64 in the error of a sine.
 const F64: f64 = 1e-15;
 
-/// A raw cosine, with its exact sine and the error of the table's sine.
 struct RawCosine {
     raw: i64,
     /// The exact sine of the operand, and the distance of the table's sine from it.
@@ -37,7 +35,7 @@ struct RawCosine {
     error: f64,
 }
 
-/// A pair of cosines with the sign of dγ, and a bound on the error of f for all exponents.
+/// Two cosines with the sign of dγ, and a bound on the error of f for all exponents.
 struct OperandPair {
     bound: f64,
     control: [i64; 4],
@@ -49,15 +47,14 @@ struct OperandPair {
 struct PairSearch<'a> {
     it: &'a RoughArithmetic,
     analysis: &'a Analysis,
-    /// The cosine operands in each bin of angles, ordered from the largest error of their sine to the smallest.
+    /// The cosine operands in each bin of angles, from the largest error of their sine to the smallest.
     cosines: BTreeMap<usize, Vec<RawCosine>>,
     /// The largest error found so far, or half of the first bound if that is larger.
     largest: f64,
     steps: u64,
 }
 
-/// Returns a proven bound on the error of the reflectance f, as a value, for all pairs of angles γ and dγ and all exponents of
-/// the domain.
+/// Returns a proven bound on the error of f, as a value, for all operands of the domain.
 pub fn largest_error(it: &RoughArithmetic, analysis: &Analysis) -> f64 {
     let mut bins: Vec<(f64, usize, usize, i64)> = Vec::new();
     let mut first = 0.0_f64;
@@ -97,8 +94,8 @@ pub fn largest_error(it: &RoughArithmetic, analysis: &Analysis) -> f64 {
 }
 
 impl PairSearch<'_> {
-    /// Examines all pairs of operands with γ in bin `i` and dγ in bin `j`; `negative` is the operand `dgamma_negative`. Appends
-    /// the pairs to `open` for which other exponents may give a larger error. Returns false if this takes too many steps.
+    /// Examines all pairs of operands with γ in bin `i` and dγ in bin `j`. Appends the pairs to `open` for which other
+    /// exponents may give a larger error. Returns false if this takes too many steps.
     fn look_into(
         &mut self,
         i: usize,
@@ -132,8 +129,8 @@ impl PairSearch<'_> {
         within
     }
 
-    /// Returns the pair if its bound is larger than the largest error found so far, and `None` otherwise. For such a pair, it
-    /// also computes the error at the exponent with the largest weight, and updates the largest error.
+    /// Returns the pair if its bound is larger than the largest error found so far. For such a pair, computes the error at the
+    /// exponent with the largest weight, and updates the largest error.
     fn pair(&mut self, x: &RawCosine, y: &RawCosine, negative: i64) -> Option<OperandPair> {
         let (it, keys) = (self.it, &self.it.keys);
         let ulp = exp2(-(keys.operands.cosine.fraction as i32));
@@ -154,8 +151,8 @@ impl PairSearch<'_> {
         Some(OperandPair { bound, control, distance, below })
     }
 
-    /// Computes the error of the pair for every n of the domain whose bound is above the largest error found so far, and
-    /// updates that error. Returns false if this takes too many steps.
+    /// Computes the error of the pair for every n of the domain whose bound is above the largest error so far, and updates that
+    /// error. Returns false if this takes too many steps.
     fn go_through_exponents(&mut self, pair: &OperandPair) -> bool {
         let (least, most) = self.it.keys.domain.exponents();
         let [x, y, _, negative] = pair.control;
@@ -177,8 +174,8 @@ impl PairSearch<'_> {
         (f - self.it.reference(control)).abs()
     }
 
-    /// Returns the raw cosines of the angles in a bin, and one or two more at each end, from the largest error of their sine to
-    /// the smallest.
+    /// Returns the cosines of the angles in a bin, and one or two more at each end, from the largest error of their sine to the
+    /// smallest.
     fn cosines_of(&self, bin: usize) -> Vec<RawCosine> {
         let keys = &self.it.keys;
         let one = 1_i64 << keys.operands.cosine.fraction;
@@ -196,8 +193,7 @@ impl PairSearch<'_> {
     }
 }
 
-/// Returns the weight n·b for the exponent `n`, if cos(γ ± dγ) is less than 1 by `below`: n·(1 − n·`below`/2), or 0 if that is
-/// negative.
+/// Returns the weight n·b for the exponent `n`, if cos(γ ± dγ) is less than 1 by `below`.
 fn weight(n: f64, below: f64) -> f64 {
     n * (1.0 - n * below / 2.0).max(0.0)
 }

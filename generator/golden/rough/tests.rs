@@ -5,8 +5,7 @@ use crate::highlight::Reflectance;
 use glint_base::fixed::Rounding;
 use glint_keys::common::{Domain, Intensity, Operands};
 
-/// Returns keys with few bits: 4 fraction bits for cosines and f, 6 for sines and products. The sine table is the one that a
-/// test in `sine.rs` works out by hand.
+/// Cosines and f have 4 fraction bits, sines and products 6. A test in `sine.rs` works out the sine table by hand.
 fn small() -> Keys {
     Keys {
         arithmetic: Kind::Exact,
@@ -26,8 +25,7 @@ fn small() -> Keys {
     }
 }
 
-/// The bound holds for every operand, one by one. It is never below the largest error, and equals the largest error if the
-/// search has found it.
+/// The bound is never below the largest error of all operands, and equals it if the search has found it.
 #[test]
 fn the_bound_is_the_largest_error_of_all_operands() {
     let mut wide = Keys {

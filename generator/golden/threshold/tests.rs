@@ -3,8 +3,7 @@
 use super::*;
 use glint_keys::common::{Domain, Intensity, Operands};
 
-/// Returns the arithmetic for cosines and an f with 4 fraction bits and colours of 4 bits, so that results can be worked out by
-/// hand.
+/// Cosines and f have 4 fraction bits and colours 4 bits, so that results can be worked out by hand.
 fn small(levels: &[u32]) -> ThresholdArithmetic {
     let (operands, f, domain) = (Operands::small(), Intensity::small(), Domain::small());
     ThresholdArithmetic::new(Keys { operands, f, levels: levels.to_vec(), domain })
@@ -24,8 +23,7 @@ fn either_side_of_the_level_is_right_and_no_other() {
     assert_eq!(contract.references(&[14, 8]), [0.0; 2]);
 }
 
-/// A level of half a unit hides only outputs that round to 0, so the contract has no remark. A level of 3.2 units hides visible
-/// outputs, so the contract has a remark.
+/// A level of half a unit hides only outputs that round to 0. A level of 3.2 units hides visible outputs.
 #[test]
 fn levels_that_are_seen_are_remarked_on() {
     let remarks = |levels: &[u32]| {

@@ -1,27 +1,26 @@
-//! Builds hardware for cosines of angles. The hardware takes the magnitude of a signed angle and addresses a table of cosᵏ. The
-//! devices of scan lines, such as `quad-cosine`, use this hardware.
+//! Builds hardware for cosines of angles: it takes the magnitude of a signed angle and addresses a table of cosᵏ. The devices of
+//! scan lines, such as `quad-cosine`, use it.
 //!
-//! Angles are in right angles, so 90° is 1.0. A signed angle is therefore in the range −90° ≤ angle < 90° exactly if all its
-//! integer bits equal its sign bit. The fraction bits of its magnitude address a table without any conversion.
+//! Angles are in right angles, so 90° is 1.0. A signed angle is in the range −90° ≤ angle < 90° exactly if all its integer bits
+//! equal its sign bit. The fraction bits of its magnitude address a table without any conversion.
 
 use crate::dsl::{Designer, Signal};
 use glint_base::fixed::{Format, Overflow, Rounding, exp2};
 
-/// The magnitude of a signed angle, and whether the angle is within a right angle of 0, as signals of the hardware.
+/// The result of [`fold`].
 #[derive(Clone, Copy)]
 pub struct Folded<'d> {
-    /// The magnitude of the angle, as a fraction of a right angle. The magnitude is meaningful only if `within` is 1.
+    /// A fraction of a right angle, meaningful only if `within` is 1.
     pub magnitude: Signal<'d>,
-    /// A bit that is 1 if the angle lies in −90° ≤ angle < 90°.
+    /// 1 if the angle lies in −90° ≤ angle < 90°.
     pub within: Signal<'d>,
 }
 
-/// Returns the magnitude of a signed `angle` with `fraction` fraction bits, and a bit that tells whether the magnitude is
-/// meaningful ([`Folded`]). The angle must have `fraction` fraction bits or more. For example, in `s1.4` the raw angles 5 and −6
-/// both have the magnitude 5.
+/// Returns the magnitude of a signed `angle` with `fraction` fraction bits, which the angle must have at least. For example, in
+/// `s1.4` the raw angles 5 and −6 both have the magnitude 5.
 ///
-/// The magnitude of a negative angle is the complement of its bits, which needs no adder. This complement is smaller than the
-/// exact magnitude by up to one unit in the last place, as truncation makes a positive angle smaller too.
+/// The magnitude of a negative angle is the complement of its bits, which needs no adder. It is smaller than the exact magnitude
+/// by up to one unit in the last place, as truncation makes a positive angle smaller too.
 #[track_caller]
 pub fn fold<'d>(d: &'d Designer, angle: Signal<'d>, fraction: i32) -> Folded<'d> {
     let Format { int, frac, .. } = angle.format();
@@ -46,8 +45,8 @@ pub fn fold<'d>(d: &'d Designer, angle: Signal<'d>, fraction: i32) -> Folded<'d>
 }
 
 /// Returns the address of a [`cosine_power_table`] for the unsigned angle `scaled`, in right angles: its first `bits` fraction
-/// bits. For example, 0.75 gives the address 3 with 2 bits. If the angle is a right angle or more, or `within` is 0, the function
-/// returns the address of the last word.
+/// bits. For example, 0.75 gives the address 3 with 2 bits. An angle of a right angle or more, or with `within` 0, gets the last
+/// word.
 #[track_caller]
 pub fn address<'d>(
     d: &'d Designer,
@@ -63,8 +62,8 @@ pub fn address<'d>(
     d.choose(name, within, [last, step])
 }
 
-/// Returns the words of a table of `cosᵏ` over a right angle, for the power k = `power`. The words are raw values in `u0.F` with
-/// F = `fraction`.
+/// Returns the words of a table of `cosᵏ` over a right angle, for the power k = `power`. They are raw values in `u0.F` with F =
+/// `fraction`.
 ///
 /// The table has 2^`bits` steps. A word is the mean of the values at the two ends of its step. The last word is 0, because it
 /// also serves all larger angles.
@@ -85,9 +84,8 @@ pub fn cosine_power_table(power: u32, bits: i32, fraction: i32) -> Vec<i128> {
     words
 }
 
-/// Returns the comments of a table from [`cosine_power_table`]: for each word, the angle at which its step begins. For example,
-/// word 1 of 2048 for the square has the comment `cos^2, 0.044 degrees`. The last comment ends with `and on`, because the last
-/// word also serves all larger angles.
+/// Returns the comments of a table from [`cosine_power_table`]: the angle at which each step begins. Word 1 of 2048 for the
+/// square has `cos^2, 0.044 degrees`. The last comment ends with `and on`.
 pub fn step_comments(power: u32, bits: i32) -> Vec<String> {
     let steps = 1u32 << bits;
     let mut comments = Vec::new();

@@ -1,27 +1,23 @@
-//! Builds the colour operands of a device, and the outputs of the device: the products of the colours with the reflectance f,
+//! Builds the colour operands and outputs of a device. The outputs are the products of the colours with the reflectance f,
 //! rounded to integers.
 //!
-//! Each colour has its own multiplier, or one multiplier makes all products one after the other. For example, `red_out` is f
-//! times the operand `red`, rounded and saturated to the width of `red`.
+//! Each colour has its own multiplier, or one multiplier makes all products one after the other.
 
 use crate::dsl::{Designer, InputOperand, Signal, Step, step};
 use glint_base::fixed::{Format, Overflow, Rounding};
 
-/// The numbers of the blocks of one colour in the block diagram of the document that describes the device.
+/// The numbers of the blocks of one colour in the source's block diagram.
 #[derive(Clone, Copy, Debug)]
 pub struct ChannelBlocks {
-    /// The numbers of the data input and of the write strobe of the colour operand in the block diagram.
+    /// The data input and the write strobe of the colour operand.
     pub inputs: (u16, u16),
-    /// The number of the operand register in the block diagram.
+    /// The operand register.
     pub register: u16,
-    /// The number of the multiplier for the colour output in the block diagram.
     pub multiplier: u16,
-    /// The number of the colour output in the block diagram.
     pub output: u16,
 }
 
-/// The colour operands of a device, integers. A colour is the intensity of the light times the material's specular coefficient
-/// k_s.
+/// The colour operands, integers: the intensity of the light times the material's specular coefficient k_s.
 pub struct Colours<'d> {
     designer: &'d Designer,
     format: Format,
@@ -29,15 +25,15 @@ pub struct Colours<'d> {
 }
 
 struct Channel<'d> {
-    /// The name of the output without `_out`, such as `red`.
+    /// The output without `_out`, such as `red`.
     name: &'static str,
     operand: InputOperand<'d>,
     blocks: Option<ChannelBlocks>,
 }
 
 impl<'d> Colours<'d> {
-    /// Adds the operands `red`, `green` and `blue` of `bits` bits, unsigned integers. `blocks` are the numbers of their blocks in
-    /// the block diagram of the document that describes the device; `None` if the diagram does not number these blocks.
+    /// Adds the operands `red`, `green` and `blue`, unsigned integers of `bits` bits. `blocks` are their numbers in the source's
+    /// block diagram, if it has numbers.
     #[track_caller]
     pub fn new(designer: &'d Designer, bits: i32, blocks: Option<[ChannelBlocks; 3]>) -> Self {
         let format = Format::unsigned(bits, 0);
@@ -55,9 +51,8 @@ impl<'d> Colours<'d> {
         Self { designer, format, channels }
     }
 
-    /// Adds a single operand `amplitude` of `bits` bits, an unsigned integer, for the output `intensity_out`. A device has this
-    /// operand if it computes one colour channel, or light without a colour. `blocks` are the numbers of the operand's blocks in
-    /// the block diagram, or `None`.
+    /// Adds a single operand `amplitude` of `bits` bits, an unsigned integer, for the output `intensity_out`. A device with one
+    /// colour channel, or light without a colour, has this operand.
     #[track_caller]
     pub fn amplitude(designer: &'d Designer, bits: i32, blocks: Option<ChannelBlocks>) -> Self {
         let format = Format::unsigned(bits, 0);
@@ -70,10 +65,10 @@ impl<'d> Colours<'d> {
         Self { designer, format, channels: vec![Channel { name: "intensity", operand, blocks }] }
     }
 
-    /// Adds outputs that one multiplier computes one after the other, and returns the microinstructions that compute them, one
-    /// for each output. Each output is a register with `f` times the operand, rounded by `rounding` and saturated to the
-    /// operand's width. The register is named `<colour>_intensity`, or `intensity_rounded` for the operand `amplitude`. `f` must
-    /// not change until the last output is loaded.
+    /// Adds outputs that one multiplier computes one after the other, and returns a microinstruction for each. An output is a
+    /// register with `f` times the operand, rounded by `rounding` and saturated to the operand's width. It is named
+    /// `<colour>_intensity`, or `intensity_rounded` for the operand `amplitude`. `f` must not change until the last output is
+    /// loaded.
     #[must_use]
     #[track_caller]
     pub fn outputs_in_turn(&self, f: Signal<'d>, rounding: Rounding) -> Vec<Step> {
@@ -98,15 +93,15 @@ impl<'d> Colours<'d> {
         steps
     }
 
-    /// Adds the outputs `<colour>_out` or `intensity_out`. Each output is `f` times its operand, rounded by `rounding` to an
-    /// integer and saturated to the operand's width.
+    /// Adds the outputs `<colour>_out` or `intensity_out`: `f` times the operand, rounded by `rounding` to an integer and
+    /// saturated to the operand's width.
     #[track_caller]
     pub fn outputs(&self, f: Signal<'d>, rounding: Rounding) {
         self.outputs_of(f, rounding, false);
     }
 
-    /// Adds the same outputs as [`Colours::outputs`], with a register behind each multiplier. The register loads on every clock,
-    /// so an output shows the product of the clock before.
+    /// Like [`Colours::outputs`], with a register behind each multiplier that loads on every clock. An output therefore shows the
+    /// product of the clock before.
     #[track_caller]
     pub fn outputs_staged(&self, f: Signal<'d>, rounding: Rounding) {
         self.outputs_of(f, rounding, true);
@@ -133,8 +128,7 @@ impl<'d> Colours<'d> {
     }
 }
 
-/// Returns the name of the rounded product on the output `<name>_out`: `red_intensity` for `red`, `intensity_rounded` for
-/// `intensity`.
+/// Returns the name of the rounded product behind the output `<name>_out`.
 fn intensity_name(name: &str) -> String {
     match name {
         "intensity" => "intensity_rounded".to_owned(),

@@ -1,8 +1,8 @@
 //! Builds an iterative divider, which computes one bit of the quotient a clock by trial subtraction (restoring division).
 //!
-//! The first remainder is the dividend. A step doubles the remainder and subtracts the divisor if the difference is not
-//! negative. Each step gives the next bit of the quotient, from the top bit down: 1 if the step subtracted. The last remainder
-//! is exact, so every bit of the quotient is correct. Only a quotient of 1.0 becomes the largest fraction below 1.
+//! The first remainder is the dividend. A step doubles the remainder and subtracts the divisor if the difference is not negative.
+//! Its bit of the quotient, from the top bit down, is 1 if it subtracted. The last remainder is exact, so every bit of the
+//! quotient is correct. Only a quotient of 1.0 becomes the largest fraction below 1.
 
 use crate::dsl::{Counter, Designer, Mux, Register, Signal, StepSetting};
 use glint_base::codes;
@@ -47,7 +47,7 @@ pub struct Divider<'d> {
 }
 
 impl<'d> Divider<'d> {
-    /// Makes a divider of `bits` quotient bits. The register of the quotient is `name`; the other registers are `<name>_divisor`,
+    /// Makes a divider of `bits` quotient bits. The quotient's register is `name`, the others are `<name>_divisor`,
     /// `<name>_remainder` and the counter `<name>_remaining`. Reports a mistake if `bits` is less than 2, or if an operand can be
     /// negative.
     #[track_caller]
@@ -124,12 +124,12 @@ impl<'d> Divider<'d> {
         }
     }
 
-    /// Returns the output of the quotient register in the format `u0.Q`. The register has the quotient after all Q steps.
+    /// Returns the quotient in the format `u0.Q`, which is complete after all Q steps.
     pub fn quotient(&self) -> Signal<'d> {
         self.quotient.q()
     }
 
-    /// Returns the settings with which a microinstruction loads dividend and divisor at the end of its clock.
+    /// Loads dividend and divisor at the end of the clock.
     #[track_caller]
     pub fn load(&self) -> [StepSetting; 4] {
         [
@@ -140,7 +140,7 @@ impl<'d> Divider<'d> {
         ]
     }
 
-    /// Returns the settings with which a microinstruction computes the next bit of the quotient at the end of its clock.
+    /// Computes the next bit of the quotient at the end of the clock.
     #[track_caller]
     pub fn step(&self) -> [StepSetting; 4] {
         [
@@ -151,8 +151,7 @@ impl<'d> Divider<'d> {
         ]
     }
 
-    /// Returns the loop condition of the division: a bit that is 1 as long as the microinstruction with the step must be executed
-    /// once more.
+    /// Returns the loop condition: 1 as long as another step must follow.
     pub fn more(&self) -> Signal<'d> {
         self.more
     }

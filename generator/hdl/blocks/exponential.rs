@@ -7,11 +7,9 @@ use super::shift;
 use crate::dsl::{Designer, Signal};
 use glint_base::fixed::{Format, Overflow, Rounding};
 
-/// Returns `power · 2^−halvings` in the format `u0.F` with F = `frac`, rounded by `rounding`. A result that rounds to 1.0
-/// becomes the largest fraction, 1 − 2^−F.
-///
-/// `power` must be at most 1.0, and `halvings` an unsigned integer. For example, `power` = 0.75 and `halvings` = 2
-/// give 0.1875.
+/// Returns `power · 2^−halvings` in the format `u0.F` with F = `frac`. `power` = 0.75 and `halvings` = 2 give 0.1875. A
+/// result that rounds to 1.0 becomes the largest fraction, 1 − 2^−F. `power` must be at most 1.0, and `halvings` an
+/// unsigned integer.
 #[track_caller]
 pub fn halved<'d>(
     d: &'d Designer,

@@ -1,53 +1,52 @@
-//! Builds the accumulator for the angles of the points along a scan line. The register `angle` starts at the operand
-//! `zeta_start`, and the operand `delta_zeta`, which may be negative, is added to it every clock.
+//! Builds the accumulator for the angles along a scan line, a row of neighbouring points that the device computes after one
+//! `start`. The register `angle` starts at the operand `zeta_start`, and the operand `delta_zeta`, which may be negative, is
+//! added to it every clock.
 //!
-//! A line is a row of neighbouring points that the device computes after one `start`. The devices `quad-cosine` and
-//! `cosine-squared` use the accumulator. [`Line`] makes the operands, the adder, the mux, the register and the counter of
-//! intervals, and writes the microprogram of such a device.
+//! [`Line`] makes the operands, the adder, the mux, the register and the counter of intervals, and writes the microprogram. The
+//! devices `quad-cosine` and `cosine-squared` use it.
 
 use crate::dsl::{Counter, Designer, Mux, Register, Signal, end, jump_if, loop_while, step};
 use glint_base::fixed::Format;
 
-/// The numbers of an operand's data input, write strobe and register in the block diagram of the document that describes the
-/// device.
+/// The numbers of an operand in the source's block diagram.
 #[derive(Clone, Copy, Debug)]
 pub struct OperandBlocks {
-    /// The numbers of the operand's data input and of its write strobe in the block diagram.
+    /// The data input and the write strobe.
     pub inputs: (u16, u16),
-    /// The number of the operand's register in the block diagram.
+    /// The operand's register.
     pub register: u16,
 }
 
-/// The numbers of the accumulator's blocks and control lines in the block diagram of the document that describes the device.
+/// The numbers of the accumulator in the source's block diagram.
 #[derive(Clone, Copy, Debug)]
 pub struct LineBlocks {
-    /// The numbers of the operand `delta_zeta`, the difference between the angles of neighbouring points.
+    /// The operand `delta_zeta`, the difference between the angles of neighbouring points.
     pub delta: OperandBlocks,
-    /// The numbers of the operand `zeta_start`, the angle of the first point.
+    /// The operand `zeta_start`, the angle of the first point.
     pub start: OperandBlocks,
-    /// The numbers of the data input and the write strobe of the operand `length`, the number of intervals between points.
+    /// The data input and the write strobe of the operand `length`, the number of intervals between points.
     pub length_inputs: (u16, u16),
-    /// The number of the counter of intervals in the block diagram.
+    /// The counter of intervals.
     pub counter: u16,
-    /// The number of the adder, which adds `delta_zeta` to the angle, in the block diagram.
+    /// The adder of `delta_zeta` to the angle.
     pub adder: u16,
-    /// The number of the mux in front of the register `angle` in the block diagram.
+    /// The mux in front of the register `angle`.
     pub mux: u16,
-    /// The number of the register `angle` in the block diagram.
+    /// The register `angle`.
     pub register: u16,
-    /// The number of the control line `count`, which makes the counter of intervals count.
+    /// The control line `count`, which makes the counter of intervals count.
     pub count: u16,
-    /// The number of the control line `accumulate`, which selects the adder instead of `zeta_start` as the next angle.
+    /// The control line `accumulate`, which selects the adder instead of `zeta_start` as the next angle.
     pub select: u16,
-    /// The number of the control line `write_angle`, which loads the register `angle`.
+    /// The control line `write_angle`, which loads the register `angle`.
     pub write: u16,
 }
 
 /// The accumulator of a scan line: the operands `delta_zeta`, `zeta_start` and `length`, and the register `angle`. Its outputs
 /// `count`, `accumulate` and `write_angle` show the control lines.
 ///
-/// A line of l = `length` intervals has l + 1 points, one a clock. The angle is a signed number that wraps around. Its format
-/// must therefore represent every angle of a line, or wrap at a full turn.
+/// A line of l = `length` intervals has l + 1 points, one a clock. The angle is a signed number that wraps around, so its format
+/// must represent every angle of a line, or wrap at a full turn.
 pub struct Line<'d> {
     designer: &'d Designer,
     start: Signal<'d>,
@@ -60,9 +59,8 @@ pub struct Line<'d> {
 }
 
 impl<'d> Line<'d> {
-    /// Makes a line with angles of `format`, which must be signed. The line may have up to 2^`length_bits` − 1 intervals. For
-    /// example, 12 bits allow 4095 intervals and 4096 points. `blocks` are the numbers in the block diagram of the document that
-    /// describes the device, if it has numbers.
+    /// Makes a line with angles of `format`, which must be signed, and up to 2^`length_bits` − 1 intervals: 12 bits allow 4096
+    /// points. `blocks` are the numbers in the source's block diagram, if it has numbers.
     #[track_caller]
     pub fn new(
         d: &'d Designer,
@@ -116,14 +114,14 @@ impl<'d> Line<'d> {
         Self { designer: d, start: start.q(), sum, next, angle, intervals, empty, more }
     }
 
-    /// Returns the angle of the current point: the output of the register `angle`.
+    /// Returns the angle of the current point.
     pub fn angle(&self) -> Signal<'d> {
         self.angle.q()
     }
 
-    /// Sets the microprogram of a device that only computes lines, and makes `valid` high `clocks` clocks after each load of an
-    /// angle. `clocks` is the number of clocks from a microinstruction that loads an angle to its results on the outputs. Count
-    /// one for the register of the angle, and one for every further register up to the outputs. A value of 0 counts as 1.
+    /// Sets the microprogram of a device that only computes lines. `clocks` is the number of clocks from a microinstruction that
+    /// loads an angle to its results on the outputs, where `valid` is high. Count one for the register of the angle, and one for
+    /// every further register up to the outputs. A value of 0 counts as 1.
     #[track_caller]
     pub fn microprogram(&self, clocks: u32) {
         let delay = clocks.max(1);
@@ -157,7 +155,7 @@ impl<'d> Line<'d> {
     }
 }
 
-/// Returns the name of the microinstruction in which the results of the last point reach the outputs after `left` clocks.
+/// Names the microinstruction in which the results of the last point reach the outputs after `left` clocks.
 fn drain(left: u32) -> String {
     match left {
         0 => "last point on the output".to_owned(),

@@ -1,5 +1,5 @@
-//! Hardware blocks that several devices share, such as a divider, shifters and tables. A device that a user describes can use
-//! these blocks too.
+//! Hardware blocks that several devices share, such as a divider, shifters and tables. Devices outside the library can use
+//! them too.
 
 pub mod angle;
 pub mod colour;

@@ -1,26 +1,23 @@
 //! Builds hardware that maps an angle in any quadrant to the first quadrant, so that a table of one quadrant gives every sine.
-//!
-//! The hardware computes the distance of the angle from the nearer zero of the sine, and the sign of the sine. For example, sin
-//! 200° = −sin 20°: the distance is 20°, and the sign is negative.
+//! For example, sin 200° = −sin 20°: the distance from the nearer zero of the sine is 20°, and the sign is negative.
 
 use crate::dsl::{Designer, Signal};
 use glint_base::fixed::Format;
 
-/// An angle, mapped to the first quadrant: |sin| of the angle is the sine of `way`, and the sine is negative if `negative` is 1.
+/// An angle, mapped to the first quadrant: |sin| of the angle is the sine of `way`.
 #[derive(Clone, Copy)]
 pub struct Quadrant<'d> {
-    /// The distance of the angle from the nearer zero of the sine, in steps of the angle's format. The distance is less than a
-    /// quarter turn.
+    /// The distance of the angle from the nearer zero of the sine, in steps of the angle's format, less than a quarter turn.
     pub way: Signal<'d>,
-    /// A bit that is 1 if the sine is negative.
+    /// 1 if the sine is negative.
     pub negative: Signal<'d>,
 }
 
 /// Maps the angle `turn` to the first quadrant. `turn` must be an unsigned integer whose range is one whole turn; for example, 64
-/// steps in `u6.0`. `ahead` quadrants (0 to 3) are added to the angle first, so that `ahead` = 1 gives the cosine.
+/// steps in `u6.0`. `ahead` quadrants (0 to 3) are added to the angle first, so that 1 gives the cosine.
 ///
-/// For example, step 20 of 64 is in the second quadrant, 12 steps before the next zero of the sine. A distance of a
-/// whole quarter turn becomes one step less, as in [`mirrored`].
+/// Step 20 of 64 is in the second quadrant, 12 steps before the next zero of the sine. A distance of a whole quarter turn becomes
+/// one step less, as in [`mirrored`].
 #[track_caller]
 pub fn quadrant<'d>(d: &'d Designer, name: &str, turn: Signal<'d>, ahead: u32) -> Quadrant<'d> {
     let steps = turn.format().width() - 2;
@@ -38,8 +35,8 @@ pub fn quadrant<'d>(d: &'d Designer, name: &str, turn: Signal<'d>, ahead: u32) -
     Quadrant { way, negative: number.bit(1) }
 }
 
-/// Returns 2^w − `way` for the w bits of the unsigned integer `way`. If `way` is 0, the function returns the largest number 2^w −
-/// 1. For example, with 4 bits 5 gives 11, and 0 gives 15.
+/// Returns 2^w − `way` for the w bits of the unsigned integer `way`, or the largest number for `way` 0. With 4 bits, 5 gives 11,
+/// and 0 gives 15.
 #[track_caller]
 pub fn mirrored<'d>(d: &'d Designer, name: &str, way: Signal<'d>) -> Signal<'d> {
     let format = way.format();

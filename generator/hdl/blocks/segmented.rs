@@ -1,48 +1,47 @@
 //! Builds a table that approximates a function of one operand by linear interpolation, in segments that become shorter toward 0.
 //! For example, `rough` has such a table of sines.
 //!
-//! The operand u is an integer of C bits, or exactly 2^C. Range j has the values of u in [2^(C−2j−2), 2^(C−2j)): range 0 is
-//! the upper three quarters of all values, range 1 the upper three quarters of the rest. In range j, the upper k_j of the
-//! C−2j bits of u select a segment; below the last range, every value of u has its own entry.
+//! The operand u is an integer of C bits, or exactly 2^C. Range j has the values of u in [2^(C−2j−2), 2^(C−2j)). Range 0 is the
+//! upper three quarters of all values, range 1 the upper three quarters of the rest. In range j, the upper k_j of the C−2j bits
+//! of u select a segment. Below the last range, every value of u has its own entry.
 
 use crate::dsl::{Designer, Signal};
 use glint_base::fixed::{Format, Overflow, Rounding, exp2};
 
-/// The division of a table's operand into ranges and segments.
+/// Divides a table's operand into ranges and segments.
 #[derive(Clone, Debug)]
 pub struct Segmentation {
-    /// The number C of bits of the operand.
+    /// The C of the module documentation.
     pub operand_bits: u32,
-    /// For each range j, the number k_j of bits that select a segment. This number must be from 2 to C−2j. A range with k_j = 6
-    /// has 48 segments: three quarters of 2^6, because the lowest quarter belongs to the next ranges.
+    /// For each range j, the number k_j of bits that select a segment, from 2 to C−2j. A range with k_j = 6 has 48 segments:
+    /// three quarters of 2^6, because the lowest quarter belongs to the next ranges.
     pub segments: Vec<u32>,
 }
 
-/// The block of table entries for a range, or for the values below the last range.
+/// The table entries of a range, or of the values below the last range.
 #[derive(Clone, Copy, Debug)]
 struct EntryBlock {
-    /// The number of bits of u in the range: C−2j for range j.
+    /// The number of bits of u: C−2j for range j.
     bits: u32,
     /// The number of address bits within the block, k_j for range j.
     prefix: u32,
-    /// The address of the first entry of the block in the table.
+    /// The address of the block's first entry.
     base: u32,
 }
 
-/// One entry of the table: the value at the start of its segment, and the rise over the segment. Both numbers are raw values in
-/// the formats of [`SegmentedFormats`]. For example, with 8 fraction bits a base of 128 is 0.5.
+/// An entry of the table, raw values in the formats of [`SegmentedFormats`]: with 8 fraction bits, a base of 128 is 0.5.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Entry {
-    /// The value at the start of the segment, as a raw value with S fraction bits.
+    /// The value at the start of the segment, with S fraction bits.
     pub base: i128,
-    /// The rise over the whole segment, which is not negative, as a raw value with D fraction bits.
+    /// The rise over the whole segment, not negative, with D fraction bits.
     pub slope: i128,
 }
 
 /// Returns the entry whose straight line approximates a concave, rising function with the smallest error over a segment. The
-/// slope is the slope of the chord, and the base makes the largest errors above and below equal. For a segment of one value, the
-/// base is the value of the function, and the slope is 0. The base is rounded to S fraction bits and saturated to `u0.S`.
-/// `function` maps a value of u to a result from 0 to 1.
+/// slope is the slope of the chord, and the base makes the largest errors above and below equal. A segment of one value has the
+/// function's value and the slope 0. The base is rounded to S fraction bits and saturated to `u0.S`. `function` maps a value of u
+/// to a result from 0 to 1.
 pub fn chord(segment: Segment, shape: SegmentedFormats, function: impl Fn(f64) -> f64) -> Entry {
     let value = Format::unsigned(0, shape.fraction);
     let (from, length) = (segment.from as f64, segment.length as f64);
@@ -52,7 +51,7 @@ pub fn chord(segment: Segment, shape: SegmentedFormats, function: impl Fn(f64) -
     let scale = exp2(shape.slope_fraction);
     let slope = ((function(from + length) - function(from)) * scale + 0.5).floor();
     let residual = |at: f64| slope / scale * at / length - function(from + at);
-    // The largest residual is at an end of the segment, and the smallest at the place where the curve is parallel to the line.
+    // The residual is largest at an end of the segment, and smallest where the curve is parallel to the line.
     let last = length - 1.0;
     let most = residual(0.0).max(residual(last));
     let (mut low, mut high) = (0.0, last);
@@ -71,30 +70,30 @@ pub fn chord(segment: Segment, shape: SegmentedFormats, function: impl Fn(f64) -
     Entry { base, slope: slope as i128 }
 }
 
-/// A segment: neighbouring values of u that one entry of the table serves.
+/// Neighbouring values of u that one entry of the table serves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Segment {
-    /// The first value of u in the segment.
+    /// The first value of u.
     pub from: u64,
-    /// The number of values of u in the segment.
+    /// The number of values of u.
     pub length: u64,
 }
 
-/// The formats of a table: values have the format `u0.S`, slopes have D fraction bits.
+/// The formats of a table.
 #[derive(Clone, Copy, Debug)]
 pub struct SegmentedFormats {
-    /// The number S of fraction bits of a value.
+    /// The number S of fraction bits of a value in `u0.S`.
     pub fraction: i32,
     /// The number D of fraction bits of a slope.
     pub slope_fraction: i32,
-    /// Whether the ROM of the table is synchronous, that is read at the rising edge.
+    /// Whether the ROM is read at the rising edge.
     pub synchronous: bool,
 }
 
 impl Segmentation {
-    /// Returns the blocks in the order of the ranges, with the block of the values below the last range at the end. In the ROM,
-    /// larger blocks come first. Each block is then aligned to its size, so that an address consists of constant upper bits and
-    /// the upper bits of u.
+    /// Returns the blocks in the order of the ranges, with the values below the last range at the end. In the ROM, larger blocks
+    /// come first. Each block is then aligned to its size, so that an address consists of constant upper bits and the upper bits
+    /// of u.
     fn blocks(&self) -> Vec<EntryBlock> {
         let ranges = self.segments.len() as u32;
         let rest = self.operand_bits - 2 * ranges;
@@ -113,14 +112,13 @@ impl Segmentation {
         blocks
     }
 
-    /// Returns the number of lower bits of u that the slope multiplies, in the range with the most such bits. Returns at least 1,
-    /// even if every segment has one value.
+    /// Returns the largest number of lower bits of u that a slope multiplies, at least 1.
     fn rest_bits(&self) -> u32 {
         self.blocks().iter().map(|block| block.bits - block.prefix).max().unwrap_or(0).max(1)
     }
 
-    /// Returns the number of words of the table. For example, C = 20 and the numbers k_j = 6, 8, 7, 6, 5, 4, 3, 3, 2 give the 584
-    /// words of ROM 18 in `rough`.
+    /// Returns the number of words of the table. C = 20 and the numbers k_j = 6, 8, 7, 6, 5, 4, 3, 3, 2 give the 584 words of ROM
+    /// 18 (numbered by the patent) in `rough`.
     pub fn entries(&self) -> usize {
         self.blocks()
             .iter()
@@ -129,8 +127,7 @@ impl Segmentation {
             .unwrap_or(0)
     }
 
-    /// Returns the segment of each word of the table, by address, or `None` for a word that no value of u reads. The word for u =
-    /// 2^C has only this value.
+    /// Returns the segment of each word by address, or `None` for a word that no value of u reads. One word serves u = 2^C alone.
     pub fn segment_of_words(&self) -> Vec<Option<Segment>> {
         let mut words = vec![None; self.entries()];
         let blocks = self.blocks();
@@ -149,11 +146,11 @@ impl Segmentation {
     }
 }
 
-/// Makes the table and its interpolation as hardware, and returns the interpolated value in `u0.S`, truncated. `u` must be an
-/// integer from 0 to 2^C. `cut` divides the values of `u` into segments, and `entry` gives the table's entry for a segment.
-/// `block` is the number of the ROM in the block diagram of the document that describes the device.
+/// Makes the table and its interpolation, and returns the interpolated value in `u0.S`, truncated. `u` must be an integer from 0
+/// to 2^C. `cut` divides the values of `u` into segments, and `entry` gives a segment's entry. `block` is the ROM's number in the
+/// source's block diagram.
 ///
-/// With `shape.synchronous` the ROM reads at the rising edge, so that the result belongs to the `u` of the clock before.
+/// With `shape.synchronous`, the result belongs to the `u` of the clock before.
 #[track_caller]
 pub fn interpolate<'d>(
     d: &'d Designer,
@@ -208,7 +205,7 @@ pub fn interpolate<'d>(
     d.narrow(&format!("{name}_value"), sum, value, Rounding::Truncate, Overflow::Saturate)
 }
 
-/// Returns the address of the table's word for `u`, and the position of `u` within its segment, a fraction below 1.
+/// Returns the address of the word for `u`, and the position of `u` within its segment, a fraction below 1.
 #[track_caller]
 fn address_and_rest<'d>(
     d: &'d Designer,
@@ -253,7 +250,7 @@ fn address_and_rest<'d>(
 /// The address of a word, and the position within its segment.
 type Arm<'d> = (Signal<'d>, Signal<'d>);
 
-/// Selects among the addresses and positions of the blocks, by a tree of two-input muxes.
+/// Selects among the blocks by a tree of two-input muxes.
 struct Picker<'a, 'd> {
     d: &'d Designer,
     name: &'a str,
@@ -263,7 +260,7 @@ struct Picker<'a, 'd> {
 }
 
 impl<'d> Picker<'_, 'd> {
-    /// Selects among the blocks with the numbers from `from` to `to` − 1.
+    /// Selects among the blocks from `from` to `to` − 1.
     #[track_caller]
     fn pick(&self, from: usize, to: usize) -> Arm<'d> {
         if to - from == 1 {

@@ -1,18 +1,14 @@
 //! Builds shifters whose shift amount is known only at run time, from rows of muxes.
-//!
-//! [`right_by`] shifts to the right by an operand. [`normalise`] shifts the bits of a signal to the left until the top bit is 1.
 
 use crate::dsl::{Designer, Signal};
 use glint_base::fixed::Format;
 
-/// Divides `x` by 2^`places`, and rounds down to the fraction bits that `x` has. The hardware is a barrel shifter, with one row
-/// of muxes for each bit of `places`.
-///
-/// `x` must be unsigned, and `places` an unsigned integer. For example, 13 in `u4.0` by 2 places gives 3.
+/// Divides `x` by 2^`places`, and rounds down to the fraction bits that `x` has: 13 in `u4.0` by 2 places gives 3. `x` must be
+/// unsigned, and `places` an unsigned integer. The barrel shifter has a row of muxes for each bit of `places`.
 #[track_caller]
 pub fn right_by<'d>(d: &'d Designer, name: &str, x: Signal<'d>, places: Signal<'d>) -> Signal<'d> {
     let format = x.format();
-    // The largest shift comes first. A value that a large shift has made narrow stays narrow in the rows that follow.
+    // The largest shift comes first, so that a value that it has made narrow stays narrow in the rows that follow.
     (0..places.format().width()).rev().fold(x, |row, bit| {
         let step = 1u32.checked_shl(bit).unwrap_or(u32::MAX);
         let width = row.format().width();
@@ -26,29 +22,25 @@ pub fn right_by<'d>(d: &'d Designer, name: &str, x: Signal<'d>, places: Signal<'
     })
 }
 
-/// The bits of a signal, shifted to the left until a top bit is 1, and the length of this shift.
 #[derive(Clone, Copy)]
 pub struct Normalised<'d> {
-    /// The shifted bits, as an unsigned integer of the same width.
+    /// The shifted bits, an unsigned integer of the same width.
     pub word: Signal<'d>,
-    /// The length of the shift as an unsigned integer: the number of leading zeros, or of pairs of leading zeros for
-    /// [`normalise_by_pairs`].
+    /// The number of leading zeros, or of pairs of them for [`normalise_by_pairs`], as an unsigned integer.
     pub zeros: Signal<'d>,
 }
 
-/// Shifts `x` to the left until its top bit is 1, and returns the shifted bits and the number of places.
+/// Shifts `x` to the left until its top bit is 1: 22 in 8 bits has 3 leading zeros and becomes 176.
 ///
-/// Each row of muxes gives one bit of the number, so the number needs no encoder. If `x` is 0, the shifted bits are zeros, and
-/// all bits of the number are 1. A signal of one bit is not shifted, and the number is always 0. For example, 22 in 8 bits has 3
-/// leading zeros and becomes 176.
+/// Each row of muxes gives one bit of the number, so the number needs no encoder. If `x` is 0, all bits of the number are 1. A
+/// signal of one bit is not shifted, and the number is always 0.
 #[track_caller]
 pub fn normalise<'d>(d: &'d Designer, name: &str, x: Signal<'d>) -> Normalised<'d> {
     normalise_in_steps(d, name, x, 1)
 }
 
-/// Shifts `x` to the left by pairs of places until one of its two top bits is 1. Returns the shifted bits and the number of
-/// pairs. For example, 22 in 8 bits has one pair of leading zeros and becomes 88. If `x` is 0, all bits of the number are 1. A
-/// signal of one or two bits is not shifted, and the number is always 0.
+/// Shifts `x` to the left by pairs of places until one of its two top bits is 1: 22 in 8 bits has one pair of leading zeros and
+/// becomes 88. If `x` is 0, all bits of the number are 1. A signal of one or two bits is not shifted, and the number is always 0.
 #[track_caller]
 pub fn normalise_by_pairs<'d>(d: &'d Designer, name: &str, x: Signal<'d>) -> Normalised<'d> {
     normalise_in_steps(d, name, x, 2)
@@ -61,9 +53,7 @@ pub fn left_justified<'d>(d: &'d Designer, name: &str, x: Signal<'d>, least: u32
     shift_rows(d, name, x, least, None)
 }
 
-/// Shifts `x` to the left by multiples of `least` places until one of its `least` top bits is 1. `least` must be a power of two.
-/// Returns the shifted bits and the number of places, in units of `least`. If `x` is 0, all bits of the number are 1. A signal of
-/// at most `least` bits is not shifted, and the number is 0.
+/// Shifts as [`left_justified`], and returns the number of places in units of `least` too.
 #[track_caller]
 fn normalise_in_steps<'d>(
     d: &'d Designer,
@@ -82,8 +72,8 @@ fn normalise_in_steps<'d>(
     Normalised { word, zeros }
 }
 
-/// Builds the rows of muxes that shift `x` to the left until one of its `least` top bits is 1, and returns the shifted bits.
-/// With `count`, each row also appends a bit to `count` that is 1 if the row shifts, the largest shift first.
+/// Builds the rows of muxes of [`left_justified`]. With `count`, each row appends a bit that is 1 if the row shifts, the largest
+/// shift first.
 #[track_caller]
 fn shift_rows<'d>(
     d: &'d Designer,

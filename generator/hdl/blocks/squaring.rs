@@ -1,26 +1,23 @@
-//! Writes the microinstructions that raise a register to a power of two by repeated squaring. The devices `lyon` and
-//! `cosine-power` use these microinstructions.
+//! Writes the microinstructions that raise a register to a power of two by repeated squaring, for `lyon` and `cosine-power`.
 //!
-//! The first squaring has its own microinstruction, since its operand is the base and not the register. If there is more than one
-//! squaring, another microinstruction squares the register itself, and a counter repeats this microinstruction. The device
-//! provides the multiplier, and the muxes in front of the multiplier.
+//! The first squaring has its own microinstruction, since its operand is the base and not the register. Another microinstruction,
+//! which a counter repeats, squares the register itself. The device provides the multiplier, and the muxes in front of it.
 
 use crate::dsl::{Counter, Designer, Mux, Register, Signal, Step, StepSetting, loop_while, step};
 use glint_base::fixed::Format;
 
-/// The squarings that raise a base to a power of two. If there is more than one squaring, the counter `remaining` counts the
-/// squarings that still follow.
+/// The squarings that raise a base to a power of two. If there are several, the counter `remaining` has the number that still
+/// follow.
 pub struct Squarings<'d> {
     designer: &'d Designer,
     counter: Option<Counter<'d>>,
-    /// The mux for the start value of the counter, and its input for the squarings; `None` if the counter counts only squarings,
-    /// or if there is only one squaring.
+    /// The mux for the start value of the counter, and its input for the squarings. It is `None` if the counter counts only
+    /// squarings, or if there is only one squaring.
     start: Option<(Mux<'d>, Signal<'d>)>,
 }
 
 impl<'d> Squarings<'d> {
-    /// Makes `count` squarings, which must be 1 to 4: the result is the base to the power 2^count. For example, 3 squarings give
-    /// the eighth power.
+    /// Makes 1 to 4 squarings: 3 give the eighth power.
     #[track_caller]
     pub fn new(designer: &'d Designer, count: u32) -> Self {
         let counter = (count > 1).then(|| {
@@ -29,9 +26,8 @@ impl<'d> Squarings<'d> {
         Self { designer, counter, start: None }
     }
 
-    /// Makes `count` squarings (1 to 4) whose counter also counts another loop before them, so that one counter serves both.
-    /// `other` is the start value for that loop. Returns the squarings, the counter, and the settings that load `other` into the
-    /// counter.
+    /// Makes 1 to 4 squarings whose counter also counts another loop before them, so that one counter serves both. `other` is the
+    /// start value for that loop; the returned settings load it.
     #[track_caller]
     pub fn sharing(
         designer: &'d Designer,
@@ -51,8 +47,8 @@ impl<'d> Squarings<'d> {
         (squarings, counter, load_other)
     }
 
-    /// Returns the settings that load the number of squarings after the first squaring into the counter. A microinstruction
-    /// before the second squaring must have these settings. The list is empty for a single squaring.
+    /// Loads the number of squarings after the first one into the counter, which a microinstruction before the second squaring
+    /// must do.
     #[track_caller]
     pub fn load(&self) -> Vec<StepSetting> {
         let pick = self.start.map(|(mux, squarings)| mux.pick(squarings));
@@ -60,10 +56,8 @@ impl<'d> Squarings<'d> {
         pick.into_iter().chain(load).collect()
     }
 
-    /// Returns the microinstructions, one or two: `register` loads the square of the base, and then its own square until all
-    /// squarings are done.
-    ///
-    /// The settings `first` must bring the square of the base to the input of `register`, and the settings `again` the square of
+    /// Returns one or two microinstructions: `register` loads the square of the base, and then its own square until all squarings
+    /// are done. The settings `first` must bring the square of the base to the input of `register`, and `again` the square of
     /// `register`.
     #[track_caller]
     pub fn steps(
@@ -93,7 +87,7 @@ impl<'d> Squarings<'d> {
     }
 }
 
-/// Returns a constant with the number of squarings after the first squaring.
+/// Returns the number of squarings after the first one.
 #[track_caller]
 fn start(designer: &Designer, count: u32) -> Signal<'_> {
     designer.raw_constant("squarings", i128::from(count) - 1, Format::unsigned(2, 0))

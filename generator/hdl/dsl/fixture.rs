@@ -3,11 +3,8 @@
 use super::{Designer, Step, end, step, valid};
 use crate::netlist::Design;
 
-/// Returns a design whose microprogram consists of an idle microinstruction, the microinstructions that `describe` returns, and a
-/// last microinstruction that raises `valid`.
-///
-/// # Panics
-/// Panics if the description has a mistake.
+/// Puts the microinstructions of `describe` between an idle one and one that raises `valid`. Panics if the description has a
+/// mistake.
 pub fn design(describe: impl FnOnce(&Designer) -> Vec<Step>) -> Design {
     let d = Designer::new("device");
     let mut steps = vec![step("idle", [])];

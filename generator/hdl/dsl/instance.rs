@@ -1,8 +1,8 @@
-//! Instantiates a hardware description within another description, as a *part* whose operands are signals of the surrounding
-//! description. For example, `shading` instantiates `dot-product`.
+//! Instantiates a hardware description within another one, as a *part* whose operands are signals of the surrounding description.
+//! For example, `shading` instantiates `dot-product`.
 //!
-//! The nets, registers and memories of the part are added to the surrounding design, with the name of the instance in front. The
-//! parts run one after the other, in the order of their instances. A part has no ports, sequencer or handshake of its own.
+//! The nets, registers and memories of the part join the surrounding design, with the name of the instance in front. The parts
+//! run one after the other. A part has no ports, sequencer or handshake of its own.
 
 use std::collections::HashMap;
 use std::panic::Location;
@@ -19,10 +19,10 @@ use glint_base::cone;
 use glint_base::diagnostic::{Diagnostic, Diagnostics, SourceLocation};
 use glint_base::fixed::Format;
 
-/// The largest depth of parts inside parts. A description that instantiates itself, which would never end, exceeds this limit.
+/// The largest depth of parts inside parts, so that a description that instantiates itself is a mistake and no endless recursion.
 const DEEPEST: u32 = 8;
 
-/// A part: an instance of another hardware description, as a handle for the results of the part.
+/// An instance of another hardware description; [`Instance::out`] gives its results.
 pub struct Instance<'d> {
     designer: &'d Designer,
     name: String,
@@ -31,9 +31,8 @@ pub struct Instance<'d> {
 }
 
 impl<'d> Instance<'d> {
-    /// Returns the result of the part with the name `output`. A register stores the result until the part computes again. If the
-    /// part has no such result, reports a mistake and returns a constant 0 of one bit. Returns the same constant if the part
-    /// itself had mistakes, which have been reported already.
+    /// Returns the result of the part with the name `output`. A register stores it until the part computes again. If the part has
+    /// no such result, reports a mistake. Then, and if the part itself had mistakes, returns a constant 0 of one bit.
     #[track_caller]
     pub fn out(&self, output: &str) -> Signal<'d> {
         let outputs = self.outputs.as_deref().unwrap_or_default();
@@ -54,14 +53,13 @@ impl<'d> Instance<'d> {
 }
 
 impl Designer {
-    /// Instantiates the description `describe` as a part called `name`, with a signal for each of its operands. The part's
-    /// operand registers are loaded in the microinstruction before the part's first microinstruction. The results of the part are
-    /// in registers. A description with parts calls [`Designer::dataflow`] instead of writing a microprogram.
+    /// Instantiates `describe` as a part called `name`, with a signal for each of its operands. The microinstruction before the
+    /// part's first one loads its operand registers. A description with parts calls [`Designer::dataflow`] instead of writing a
+    /// microprogram.
     ///
-    /// Reports a mistake if the names in `operands` differ from the part's operands, or if a signal does not fit its operand's
-    /// format. Reports a mistake if another part has the same name, or if parts are nested more than 8 deep. Reports the mistakes
-    /// of the part itself. A part must raise `valid` by a microinstruction, for one result, and must not wait for `start`;
-    /// otherwise this function reports a mistake.
+    /// Reports a mistake if the names in `operands` differ from the part's operands, or a signal does not fit its operand's
+    /// format. It is also a mistake if another part has the same name, or parts are nested more than 8 deep. A part must raise
+    /// `valid` by a microinstruction, for one result, and must not wait for `start`. The part's own mistakes are reported too.
     ///
     /// ```
     /// use glint_rtl::dsl::{Designer, end, step, valid};
@@ -162,17 +160,17 @@ impl Designer {
         )
     }
 
-    /// Makes the microprogram from the parts. The microprogram executes the parts in the order of their instances, and then
-    /// loads each output that is no register yet into a register. All logic between the parts must be combinational:
-    /// [`Designer::finish`] reports a mistake for a register or a synchronous ROM outside the parts that loads on every clock.
+    /// Makes the microprogram from the parts. It executes them in the order of their instances, and then loads each output that
+    /// is no register yet into a register. All logic between the parts must be combinational. [`Designer::finish`] reports a
+    /// mistake for a register or a synchronous ROM outside the parts that loads on every clock.
     #[track_caller]
     pub fn dataflow(&self) {
         self.register_outputs();
         self.program(Vec::new(), true);
     }
 
-    /// Makes the microinstructions of the parts the microprogram, if the description calls [`Designer::dataflow`]. Otherwise
-    /// reports a mistake if the description has parts.
+    /// Replaces `program` by the parts' microinstructions if the description calls [`Designer::dataflow`]. Otherwise reports a
+    /// mistake if there are parts.
     pub(super) fn with_parts(&self, program: &mut MicroprogramSource) {
         let mut parts = self.with(|inner| std::mem::take(&mut inner.parts));
         if program.of_parts {
@@ -191,8 +189,8 @@ impl Designer {
     }
 }
 
-/// Returns a mistake for each synchronous memory outside the parts, and for each register outside the parts that loads on every
-/// clock. The microprogram of a dataflow does not wait for the clock that such a register or memory takes.
+/// Returns a mistake for each register and synchronous memory outside the parts that loads on every clock. The microprogram of a
+/// dataflow does not wait for this clock.
 fn delayed(inner: &mut Inner) -> Vec<Diagnostic> {
     let Inner { design, placed, .. } = inner;
     let mut delayed: Vec<NetId> = Vec::new();
@@ -222,7 +220,7 @@ fn delayed(inner: &mut Inner) -> Vec<Diagnostic> {
     found
 }
 
-/// Returns the reason why a design cannot be a part, or `None` if it can.
+/// Returns the reason why a design cannot be a part.
 fn unfit(design: &Design) -> Option<String> {
     let control = &design.control;
     let Some(valid) = control.fields.iter().position(|field| field.name == "valid_word") else {
@@ -243,7 +241,6 @@ fn unfit(design: &Design) -> Option<String> {
     None
 }
 
-/// Adds a finished design to another design as a part.
 struct InstanceBuilder<'d, 'p> {
     designer: &'d Designer,
     name: &'p str,
@@ -253,8 +250,8 @@ struct InstanceBuilder<'d, 'p> {
 }
 
 impl<'d> InstanceBuilder<'d, '_> {
-    /// Adds the nets, registers, memories and microinstructions of the part to the surrounding design. `operands` has the signal
-    /// for each operand port, and the field `load` loads the part's operand registers.
+    /// Adds the part to the surrounding design. `operands` has the signal for each operand port, and the field `load` loads the
+    /// operand registers.
     fn place(
         mut self,
         operands: &HashMap<NetId, NetId>,
@@ -305,8 +302,7 @@ impl<'d> InstanceBuilder<'d, '_> {
         Instance { designer: d, name: self.name.to_owned(), outputs: Some(outputs.collect()) }
     }
 
-    /// Returns the driver of a net in the surrounding design, given its driver in the part (the instantiated design). Nets of
-    /// registers and memories get their drivers when the registers and memories are added.
+    /// Translates a driver to the surrounding design. [`Self::place`] connects registers and memories later, when they exist.
     fn placed_driver(&self, driver: &Driver) -> Driver {
         match driver {
             Driver::Op(op) => Driver::Op(op.map(|id| self.nets[id])),
@@ -320,7 +316,6 @@ impl<'d> InstanceBuilder<'d, '_> {
         format!("{}_{name}", self.name)
     }
 
-    /// Adds a net of the part to the surrounding design, and the field that drives it, if any.
     fn net(&mut self, id: NetId) {
         let (d, net) = (self.designer, self.design.net(id).clone());
         let name = self.named(&net.name);
@@ -345,8 +340,8 @@ impl<'d> InstanceBuilder<'d, '_> {
         }
     }
 
-    /// Appends the microinstructions of this part. The last microinstruction of the previous part gets the setting that loads
-    /// this part's operands. For the first part, this is the microinstruction `operands`, which follows `idle`.
+    /// Appends the microinstructions of this part. The last microinstruction of the previous part (for the first part `operands`,
+    /// which follows `idle`) loads this part's operands.
     fn program(&self, load: FieldId, location: SourceLocation) {
         let (d, control) = (self.designer, &self.design.control);
         let named = |at: usize| format!("{}: {}", self.name, control.microprogram[at].name);
@@ -387,8 +382,8 @@ impl<'d> InstanceBuilder<'d, '_> {
     }
 }
 
-/// Returns the nets on which the results `shown` and the conditions of the microprogram depend, in the order of the design. The
-/// nets of strobes, sequencer and handshake are not among them.
+/// Returns the nets on which the results `shown` and the conditions of the microprogram depend, in the order of the design.
+/// Strobes, sequencer and handshake are not among them, because the surrounding design has its own.
 fn kept(design: &Design, shown: &[(String, NetId)]) -> Vec<NetId> {
     let mut roots: Vec<NetId> = shown.iter().map(|(_, id)| *id).collect();
     for microinstruction in &design.control.microprogram {

@@ -1,11 +1,10 @@
 //! The description language: datapath, microprogram and ports of a device, in Rust.
 //!
-//! A description is a function that builds with a [`Designer`], by handles such as [`Signal`], [`Register`] and [`Mux`]. Every
+//! A description is a function that calls a [`Designer`] and gets handles such as [`Signal`], [`Register`] and [`Mux`]. Every
 //! signal has a fixed-point format *and* the interval of values that it can take. The sums and products of [`Designer::add`] and
-//! [`Designer::mul`] are exact, so that they cannot overflow. Only [`Designer::narrow`] rounds, in a stated way. Only
-//! [`Designer::narrow`] and [`Designer::operand_clamped`] saturate. [`Signal::bits`] takes some bits of a signal, and
-//! [`Designer::add_modulo`] drops the carry. A microinstruction ([`step`]) is a list of settings, such as [`Register::load`] and
-//! [`Mux::pick`].
+//! [`Designer::mul`] are exact, so that they cannot overflow. Only [`Designer::narrow`] rounds, and only it and
+//! [`Designer::operand_clamped`] saturate. [`Signal::bits`] takes some bits of a signal, and [`Designer::add_modulo`] drops the
+//! carry. A microinstruction ([`step`]) is a list of settings, such as [`Register::load`] and [`Mux::pick`].
 //!
 //! ```
 //! use glint_rtl::dsl::{Designer, end, step, valid};
@@ -26,28 +25,27 @@
 //! assert_eq!(design.control.microprogram.len(), 3);
 //! ```
 //!
-//! A function that finds a mistake in a description stores the mistake, and continues with a substitute value.
+//! A function that *reports a mistake* stores it, and continues with a substitute value, so that one run finds several mistakes.
 //! [`Designer::finish`] returns all stored mistakes, each with the names of the signals and the Rust source line.
 
-/// Adds methods to a handle by which a description documents the net of the handle.
 macro_rules! described {
     ($handle:ident, $net:ident) => {
         impl $handle<'_> {
-            /// Sets the number of this block in the block diagram of the document that describes the device.
+            /// Sets the number of this block in the source's block diagram.
             #[must_use]
             pub fn block(self, number: u16) -> Self {
                 let _ = self.$net.block(number);
                 self
             }
 
-            /// Sets a comment of one line, which the Verilog shows.
+            /// Sets a comment of one line for the Verilog.
             #[must_use]
             pub fn doc(self, line: &str) -> Self {
                 let _ = self.$net.doc(line);
                 self
             }
 
-            /// Sets a comment that belongs to `topic`. A pipeline shows a comment only if its topic is
+            /// Like `doc`, for a comment that belongs to `topic`. A pipeline shows only comments of the topic
             /// [`Topic::Device`](crate::netlist::Topic::Device).
             #[must_use]
             pub fn doc_on(self, topic: crate::netlist::Topic, line: &str) -> Self {
@@ -110,7 +108,6 @@ use glint_base::diagnostic::{Diagnostic, Diagnostics};
 use glint_base::fixed::Format;
 use glint_base::interval;
 
-/// The note on writes and results of a device whose operands have buffers.
 const BUFFERED_NOTE: &str = "Operands have buffers. A write at any time is for the next computation, and start \
                              loads the buffers into the operand registers, also in the clock of done. The \
                              outputs keep their values from valid at least until the next computation starts.";
@@ -118,9 +115,9 @@ const BUFFERED_NOTE: &str = "Operands have buffers. A write at any time is for t
 /// Builds a [`Design`] from a hardware description; the [module documentation](self) has an example.
 pub struct Designer {
     inner: RefCell<Inner>,
-    /// The number of this designer, which distinguishes its handles from the handles of another designer.
+    /// Distinguishes this designer's handles from another designer's.
     serial: u64,
-    /// The number of descriptions that contain this description as a part, one inside the other; 0 for a whole device.
+    /// The number of descriptions around this one, which is a part of the innermost; 0 for a whole device.
     depth: u32,
     start: NetId,
     idle: NetId,
@@ -130,7 +127,7 @@ pub struct Designer {
 /// A net that carries the product of a shared multiplier under one selection of its operands.
 #[derive(Clone, Debug)]
 pub(crate) struct SelectedProduct {
-    /// The field of the control word that selects the operands of the shared multiplier.
+    /// Selects the operands of the shared multiplier.
     pub field: FieldId,
     /// The values of this field for which the net has the product in its format.
     pub values: Vec<u64>,
@@ -142,9 +139,7 @@ pub(crate) struct Inner {
     design: Design,
     views: HashMap<NetId, SelectedProduct>,
     program: Option<MicroprogramSource>,
-    /// The microinstructions of the parts (instances), in the order of execution.
     parts: Vec<Step>,
-    /// The nets that belong to parts.
     placed: HashSet<NetId>,
     /// The fields to which a microinstruction gives a value.
     picked: HashSet<FieldId>,
@@ -152,18 +147,17 @@ pub(crate) struct Inner {
     partly_used: HashSet<FieldId>,
     /// The signal that `valid` follows, and after how many clocks; `None` if microinstructions raise `valid`.
     valid: Option<(NetId, u32)>,
-    /// Whether results that are combinational logic get registers.
+    /// Whether combinational results get registers.
     registers_outputs: bool,
     /// Whether logic that depends on operands alone may get registers.
     registers_operand_logic: bool,
     /// The net that loads the operand registers from their buffers; `None` without buffers.
     taken: Option<NetId>,
-    /// The numbers of the lines `valid_word` and `go_on` in the block diagram of the document that describes the device.
+    /// The numbers of the lines `valid_word` and `go_on` in the source's block diagram.
     sequencer_lines: Option<[u16; 2]>,
     diagnostics: Vec<Diagnostic>,
-    /// The names of all nets.
     names: HashSet<String>,
-    /// For each name that several added nets would have, the number that the last of them got.
+    /// For each name that several added nets would have, the number in the latest net's name.
     counts: HashMap<String, u32>,
     partition: Partition,
 }
@@ -217,13 +211,12 @@ impl Designer {
         designer
     }
 
-    /// Sets the texts about the device for the header of the Verilog, the manifest and the documentation.
+    /// Sets the texts about the device for the Verilog header, the manifest and the documentation.
     pub fn about(&self, about: About) {
         self.inner.borrow_mut().design.about = about;
     }
 
-    /// Returns a constant in the given format. Reports a mistake if the format cannot represent `value` exactly. For example,
-    /// `u0.8` can represent 0.75 but not 0.1.
+    /// Adds a constant. Reports a mistake if `format` cannot represent `value` exactly: `u0.8` can represent 0.75 but not 0.1.
     #[track_caller]
     pub fn constant(&self, name: &str, value: f64, format: Format) -> Signal<'_> {
         let format = self.sound(name, format);
@@ -236,8 +229,8 @@ impl Designer {
         self.signal(id)
     }
 
-    /// Returns the constant with the raw value `raw` in the given format. For example, 192 in `u0.8` is 0.75. If `raw` does not
-    /// fit, reports a mistake and returns the constant 0.
+    /// Adds the constant with the raw value `raw`: 192 in `u0.8` is 0.75. If `raw` does not fit, reports a mistake and returns
+    /// the constant 0.
     #[track_caller]
     pub fn raw_constant(&self, name: &str, mut raw: i128, format: Format) -> Signal<'_> {
         let format = self.sound(name, format);
@@ -249,15 +242,15 @@ impl Designer {
         self.signal(id)
     }
 
-    /// Returns a wire that is used before its driver exists, as in a feedback path. [`Designer::drive`] must connect the driver
-    /// later.
+    /// Returns a wire that is used before its driver exists, as in a feedback path. Connect the driver later by
+    /// [`Designer::drive`].
     #[track_caller]
     pub fn wire(&self, name: &str, format: Format) -> Signal<'_> {
         self.signal(self.add_named(name, format, Driver::Undriven))
     }
 
-    /// Connects the driver of a wire that [`Designer::wire`] made. Reports a mistake if the wire already has a driver, or if
-    /// `source` does not fit its format.
+    /// Connects the driver of a [`Designer::wire`]. Reports a mistake if the wire already has one, or if `source` does not fit
+    /// its format.
     #[track_caller]
     pub fn drive(&self, wire: Signal<'_>, source: Signal<'_>) {
         let wire = self.own(wire);
@@ -276,9 +269,9 @@ impl Designer {
 
     /// Adds a read-only memory. Its words are raw values of `format`; `address` selects the word that it reads.
     ///
-    /// The address must be an integer whose range lies within the words. Reports a mistake if the address has fraction bits or
-    /// can exceed the words, or if a word does not fit `format`. A `synchronous` ROM reads on the rising edge, as block RAM does:
-    /// its output is the word at the address of the clock before, and 0 at power-up.
+    /// Reports a mistake if the address has fraction bits or can exceed the words, or if a word does not fit `format`. A
+    /// `synchronous` ROM reads on the rising edge, as block RAM does. Its output is the word at the address of the clock before,
+    /// and 0 at power-up.
     #[track_caller]
     pub fn rom(
         &self,
@@ -314,13 +307,13 @@ impl Designer {
         Rom { designer: self, id }
     }
 
-    /// Adds an output port that carries a result, in the format of `source`, and returns its signal.
+    /// Adds an output port for a result, in the format of `source`.
     #[track_caller]
     pub fn output<'d>(&'d self, name: &str, source: Signal<'d>) -> Signal<'d> {
         self.output_as(name, source, Role::Result)
     }
 
-    /// Adds an output port that shows a signal of the control unit, and no result, and returns its signal.
+    /// Adds an output port for a signal of the control unit that is no result.
     #[track_caller]
     pub fn status<'d>(&'d self, name: &str, source: Signal<'d>) -> Signal<'d> {
         self.output_as(name, source, Role::Status)
@@ -353,10 +346,10 @@ impl Designer {
 
     /// Makes `valid` follow the one-bit `signal` with a delay of `clocks` clocks.
     ///
-    /// This method serves a datapath with registers between the operation that a microinstruction starts and the outputs, so that
-    /// a result may come in every clock. No microinstruction may raise [`valid`] in this case. The microprogram must end with
-    /// enough microinstructions that the device is busy until the last result is on the outputs. A reset drops the results on
-    /// their way. Reports a mistake if `signal` has several bits, or if `valid` already follows a signal.
+    /// This serves a datapath with registers between the operation that a microinstruction starts and the outputs: a result may
+    /// come in every clock. No microinstruction may raise [`valid`] then. The microprogram must keep the device busy until the
+    /// last result is on the outputs. A reset drops the results on their way. Reports a mistake if `signal` has several bits, or
+    /// if `valid` already follows a signal.
     #[track_caller]
     pub fn valid_after(&self, signal: Signal<'_>, clocks: u32) {
         let signal = self.own(signal);
@@ -370,29 +363,28 @@ impl Designer {
         }
     }
 
-    /// Sets the numbers of two control lines in the block diagram of the document that describes the device. By the line `valid`
-    /// a microinstruction raises `valid`, and by the line `go_on` it lets the program continue.
+    /// Sets the numbers of two control lines in the source's block diagram. By the line `valid` a microinstruction raises
+    /// `valid`, and by the line `go_on` it lets the program continue.
     pub fn sequencer_lines(&self, valid: u16, go_on: u16) {
         self.inner.borrow_mut().sequencer_lines = Some([valid, go_on]);
     }
 
     /// Requests a register behind every output that is combinational logic. A microinstruction that raises `valid` in the
-    /// description loads these registers instead, and [`Designer::finish`] adds a microinstruction after it that raises `valid`.
-    /// If `valid` follows a signal, these registers load on every clock instead, and `valid` comes one clock later. Outputs that
-    /// already are registers do not change.
+    /// description loads these registers instead, and an additional one after it raises `valid`. If `valid` follows a signal,
+    /// these registers load on every clock instead, and `valid` comes one clock later.
     pub fn register_outputs(&self) {
         self.inner.borrow_mut().registers_outputs = true;
     }
 
-    /// Forbids [`Designer::finish`] to insert registers into logic that depends on operands alone. Without this call,
-    /// [`Designer::finish`] inserts registers where a value is first used some clocks after `start`.
+    /// Forbids [`Designer::finish`] to insert registers into logic that depends on operands alone. Without this call it inserts
+    /// registers where a value is first used some clocks after `start`.
     pub fn keep_operand_logic(&self) {
         self.inner.borrow_mut().registers_operand_logic = false;
     }
 
-    /// Adds a buffer in front of every operand register. A user may write the buffers at any time; `start` copies them into the
-    /// registers. The device accepts `start` in the last clock of a computation too, so that no clock is lost between two
-    /// computations. Reports a mistake if an operand is already declared.
+    /// Adds a buffer in front of every operand register, so that no clock is lost between two computations. A user may write the
+    /// buffers at any time. `start`, which the device accepts in the last clock of a computation too, copies them into the
+    /// registers. Reports a mistake if an operand is already declared.
     #[track_caller]
     pub fn buffer_operands(&self) {
         if self.with(|inner| inner.design.ports.iter().any(|it| it.role == Role::Strobe)) {
@@ -411,7 +403,7 @@ impl Designer {
         self.inner.borrow_mut().taken = Some(taken);
     }
 
-    /// Replaces the note about writes while the device is busy by `note`.
+    /// Replaces the note about writes while the device is busy.
     fn replace_note(&self, note: &str) {
         self.with(|inner| {
             let notes = &mut inner.design.about.notes;
@@ -423,9 +415,7 @@ impl Designer {
     /// Returns the finished and checked design. [`Design::warnings`] lists the logic on which no output depends.
     ///
     /// # Errors
-    /// Fails if the description has mistakes. The error lists the mistakes that the functions of the description have reported.
-    /// Only if there are no such mistakes, the whole design is checked, and the error lists the mistakes of this check. Each
-    /// mistake has the names of the signals and the Rust source line.
+    /// Fails if the description has mistakes. The whole design is checked only if its functions have reported none.
     pub fn finish(self) -> Result<Design, Diagnostics> {
         let program = self.inner.borrow_mut().program.take();
         if let Some(mut program) = program {

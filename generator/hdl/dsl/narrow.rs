@@ -1,5 +1,4 @@
-//! Converts a signal to a narrower format, with stated rounding and overflow. No other operation of the description language
-//! rounds. Only operands with limits (`operand_clamped`) saturate as well.
+//! Converts a signal to a narrower format, with stated rounding and overflow.
 
 use std::panic::Location;
 
@@ -9,12 +8,12 @@ use glint_base::fixed::{Format, Overflow, Rounding};
 use glint_base::interval;
 
 impl Designer {
-    /// Converts `a` to `format`. For example, a product in `u0.16` is rounded to `u0.8`. `rounding` treats the dropped fraction
-    /// bits, `overflow` the values outside `format`.
+    /// Converts `a` to `format`: `rounding` treats the dropped fraction bits, `overflow` the values outside `format`. For
+    /// example, a product in `u0.16` is rounded to `u0.8`.
     ///
-    /// Only necessary logic is made. Truncation is wiring. Rounding to nearest is an incrementer. Saturation tests only those
-    /// upper bits that can differ within the range of `a`. With [`Overflow::Wrap`] the upper bits are dropped. If `format` has
-    /// more fraction bits than `a`, zeros are appended.
+    /// Only necessary logic is made. Truncation is wiring, and rounding to nearest an incrementer. Saturation tests only those
+    /// upper bits that can differ within the range of `a`, and [`Overflow::Wrap`] drops the upper bits. Missing fraction bits are
+    /// zeros.
     #[track_caller]
     pub fn narrow<'d>(
         &'d self,
@@ -39,7 +38,7 @@ impl Designer {
         self.signal(self.add_net(name, format, range, Driver::Op(op), true))
     }
 
-    /// Returns `a` with `frac` fraction bits, rounded by `rounding`. The integer part grows if rounding up requires it.
+    /// Rounds `a` to `frac` fraction bits. The integer part grows if rounding up requires it.
     #[track_caller]
     fn rounded<'d>(
         &'d self,
@@ -95,7 +94,6 @@ impl Designer {
         }
     }
 
-    /// Returns the cell with the low bits of `a` in `format`.
     #[track_caller]
     fn low_bits(&self, a: Signal<'_>, format: Format) -> Op {
         if a.format().width() > format.width() {
@@ -106,7 +104,7 @@ impl Designer {
         Op::Relabel(a.resized_as("wide", same, a.range()).id())
     }
 
-    /// Returns the cell with the saturation of `v` to `format`. The range of `v` must exceed `format`.
+    /// Saturates `v`, whose range exceeds `format`.
     #[track_caller]
     fn saturated<'d>(&'d self, name: &str, v: Signal<'d>, format: Format) -> Op {
         let (low, high) = v.range();
@@ -122,7 +120,7 @@ impl Designer {
                 self.add_wiring(&format!("{name}_{suffix}"), Format::BIT, (0, 1), Driver::Op(op));
             self.signal(id)
         };
-        // The low bits, which carry the value if it lies inside `format`. A shorter value is extended first.
+        // A value that is shorter than `format` is extended first.
         let wide = if width < kept {
             self.resized(v, Format { int: have.int + (kept - width) as i32, ..have })
         } else {
@@ -189,7 +187,7 @@ impl Designer {
     }
 }
 
-/// Returns a format of the same width and fraction as `format`, with a sign bit if `signed`. For example, `u8.0` becomes `s7.0`.
+/// Changes the signedness and keeps width and fraction bits: `u8.0` becomes `s7.0`.
 fn with_sign(format: Format, signed: bool) -> Format {
     let int = format.int + i32::from(format.signed) - i32::from(signed);
     Format { signed, int, frac: format.frac }

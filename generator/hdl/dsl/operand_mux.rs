@@ -1,9 +1,8 @@
 //! Builds a multiplier that several products share, and the muxes that select its operands.
 //!
-//! The operands have different formats, so an [`OperandMux`] carries bits without a binary point, as many as its widest input
-//! has. [`SharedProduct::of`] returns the product for a certain selection, exact and with its format and interval.
-//! [`Designer::finish`] proves that a register loads such a product only in microinstructions that select the operands of this
-//! product.
+//! The operands have different formats, so an [`OperandMux`] carries bits without a binary point. [`SharedProduct::of`] returns
+//! the product for a certain selection, exact and with its format and interval. [`Designer::finish`] proves that a register loads
+//! such a product only while the microprogram selects its operands.
 
 use super::{Designer, Select, SelectedProduct, Signal, StepSetting};
 use crate::netlist::{Driver, FieldId, Op};
@@ -26,8 +25,8 @@ pub struct OperandMux<'d> {
 described!(OperandMux, out);
 
 impl Designer {
-    /// Returns a mux whose inputs may have different formats, controlled by the select lines `select`. Reports a mistake unless
-    /// the mux has one input for each choice of the select lines.
+    /// Returns a mux whose inputs may have different formats. Reports a mistake unless it has one input for each choice of
+    /// `select`.
     #[track_caller]
     pub fn bus<'d>(
         &'d self,
@@ -64,7 +63,7 @@ impl Designer {
     /// If only one of the muxes has negative inputs, the multiplier takes the bits of that mux below its sign as an unsigned
     /// number. Each factor then has one bit less than in a product of signed numbers, which may save DSP blocks. For example, a
     /// factor of 18 bits fits a DSP block of ECP5, and a factor of 19 bits does not. For a negative operand, this product is too
-    /// large by the other operand at the weight of the sign. [`SharedProduct::of`] subtracts that amount.
+    /// large by the other operand at the weight of the sign; [`SharedProduct::of`] subtracts this.
     #[track_caller]
     pub fn shared_mul<'d>(
         &'d self,
@@ -100,7 +99,7 @@ impl Designer {
         }
     }
 
-    /// Returns the product of `other` and the bits of `signed` below its sign, and the amount to subtract if the sign is set.
+    /// Multiplies `other` by the bits of `signed` below its sign. Returns the amount to subtract if the sign is set as well.
     /// `ordered` puts the factors into the order of the multiplier.
     #[track_caller]
     fn unsigned_core<'d>(
@@ -112,7 +111,7 @@ impl Designer {
         let low = signed.out.format().width() - 1;
         let (first, second) = ordered(signed.out.bits(0, Format::unsigned(low as i32, 0)));
         let out = self.mul(name, first, second);
-        // The amount has only as many bits as the largest input of the other mux that is multiplied by a negative input.
+        // The amount needs only the bits of the largest input of the other mux that is multiplied by a negative input.
         let mut most = 0;
         let mut is_corrected = false;
         for (input, opposite) in signed.inputs.iter().zip(&other.inputs) {
@@ -138,19 +137,17 @@ impl Designer {
 }
 
 impl<'d> OperandMux<'d> {
-    /// Returns the setting with which a microinstruction selects `input`. Reports a mistake unless `input` is exactly one
-    /// input of the mux.
+    /// Selects `input`. Reports a mistake unless `input` is exactly one input of the mux.
     #[track_caller]
     pub fn pick(&self, input: Signal<'d>) -> StepSetting {
         StepSetting::pick_of(self.designer, self.field, &self.name, input, &self.inputs)
     }
 
-    /// Adds a register `<name>_held` behind the mux, which loads on every clock. The register contains the operand that the
-    /// previous microinstruction selected.
+    /// Adds a register `<name>_held` behind the mux. It loads on every clock, and so contains the operand that the previous
+    /// microinstruction selected.
     ///
-    /// A microprogram selects the operands in one microinstruction, and loads the product in the next one under the same
-    /// selection ([`hold`](super::hold)). The mux then takes time of the first clock, and the multiplier has the second clock to
-    /// itself.
+    /// The mux then takes time of one clock, and the multiplier has the next clock to itself. A microprogram selects the operands
+    /// in one microinstruction, and loads the product in the next one under the same selection ([`hold`](super::hold)).
     #[must_use]
     #[track_caller]
     pub fn held(self) -> Self {
@@ -170,8 +167,7 @@ struct Excess<'d> {
     low: u32,
 }
 
-/// The product of a multiplier whose two factors come from muxes. Each microinstruction selects the factors, and with them the
-/// product.
+/// The product of a multiplier whose two factors come from muxes under the same selection.
 #[derive(Clone)]
 pub struct SharedProduct<'d> {
     out: Signal<'d>,
@@ -185,17 +181,16 @@ pub struct SharedProduct<'d> {
 described!(SharedProduct, out);
 
 impl<'d> SharedProduct<'d> {
-    /// Returns the product of `first` and `second`, exact, in a format that its interval determines. Reports a mistake unless
-    /// `first` and `second` are inputs of the two muxes under the same selection.
+    /// Returns the exact product of `first` and `second`. Reports a mistake unless they are inputs of the two muxes under the
+    /// same selection.
     #[track_caller]
     pub fn of(&self, first: Signal<'d>, second: Signal<'d>) -> Signal<'d> {
         self.of_any(&[(first, second)])
     }
 
-    /// Returns the product of any of the `pairs`, in one format that can represent all of these products. For example, a register
-    /// that loads a different product in each of several microinstructions loads this signal. Reports a mistake if the products
-    /// have different binary points, or if a pair is never multiplied. Without any multiplied pair, returns the output of the
-    /// multiplier unchanged.
+    /// Returns a product of any of the `pairs`, in one format that can represent all of them. A register that loads different
+    /// products in different microinstructions takes this signal. Reports a mistake if the products have different binary points,
+    /// or if a pair is never multiplied.
     #[track_caller]
     pub fn of_any(&self, pairs: &[(Signal<'d>, Signal<'d>)]) -> Signal<'d> {
         let d = self.out.designer();
@@ -239,7 +234,7 @@ impl<'d> SharedProduct<'d> {
         view
     }
 
-    /// Returns the product in `format` after subtraction of the excess.
+    /// Subtracts the excess from the upper bits of the product.
     #[track_caller]
     fn corrected(&self, format: Format, range: Interval, excess: Excess<'d>) -> Signal<'d> {
         let d = self.out.designer();

@@ -1,8 +1,5 @@
-//! Adds registers behind outputs that are combinational logic. A description requests this by [`Designer::register_outputs`].
-//!
-//! The microinstruction that raises `valid` in the description loads these registers instead, and an additional microinstruction
-//! after it raises `valid`. A result therefore comes one clock later. If `valid` follows a signal, the registers load on every
-//! clock.
+//! Adds registers behind outputs that are combinational logic, on request by [`Designer::register_outputs`]. A result comes one
+//! clock later.
 
 use super::program::{MicroprogramSource, SettingKind, Step};
 use super::{Designer, StepSetting, hold, step, valid};
@@ -10,7 +7,7 @@ use crate::netlist::{Design, Driver, FieldKind, NetId, Op, RegisterKind, Role};
 use glint_base::codes;
 use glint_base::diagnostic::Diagnostic;
 
-/// Inserts the registers and the additional microinstructions. Nothing changes if every result is already a register.
+/// Inserts the registers and the microinstructions. Nothing changes if every result is already a register.
 pub(super) fn insert(d: &Designer, program: &mut MicroprogramSource) {
     let results = d.with(|inner| logic(&inner.design));
     if results.is_empty() {
@@ -43,7 +40,7 @@ pub(super) fn insert(d: &Designer, program: &mut MicroprogramSource) {
     d.replace_note(note);
 }
 
-/// Returns the ports of results that a register does not drive directly.
+/// Returns the result ports that no register drives directly.
 fn logic(design: &Design) -> Vec<NetId> {
     let results = design.ports.iter().filter(|port| port.role == Role::Result);
     let is_register =
@@ -51,8 +48,7 @@ fn logic(design: &Design) -> Vec<NetId> {
     results.map(|port| port.net).filter(|&port| !is_register(port)).collect()
 }
 
-/// Inserts the register `<port>_reg` between a port and its driver. `enable` is its load enable; without it the register loads on
-/// every clock.
+/// Inserts the register `<port>_reg` between a port and its driver. Without `enable` it loads on every clock.
 fn behind(d: &Designer, port: NetId, kind: RegisterKind, enable: Option<NetId>) {
     let net = d.net(port);
     let Driver::Op(Op::Relabel(source)) = net.driver else {
@@ -72,8 +68,8 @@ fn behind(d: &Designer, port: NetId, kind: RegisterKind, enable: Option<NetId>) 
     });
 }
 
-/// Changes every microinstruction that raises `valid`. The microinstruction gets the setting `load` instead, and a new
-/// microinstruction behind it raises `valid`. Reports a mistake if such a microinstruction has a loop or a jump.
+/// Lets every microinstruction that raises `valid` load the registers by `load` instead, and a new one behind it raise `valid`.
+/// Reports a mistake if such a microinstruction has a loop or a jump.
 fn loaded(d: &Designer, steps: &mut Vec<Step>, load: &StepSetting) {
     let mut at = 0;
     while at < steps.len() {
@@ -96,7 +92,7 @@ fn loaded(d: &Designer, steps: &mut Vec<Step>, load: &StepSetting) {
     }
 }
 
-/// Adds a microinstruction at the end, so that the device is busy while the last result passes the registers.
+/// Appends a microinstruction, so that the device is busy while the last result passes the registers.
 fn followed(steps: &mut Vec<Step>) {
     let after = steps.last_mut().map(Step::divided);
     steps.extend(after);
@@ -112,10 +108,10 @@ impl Step {
         self
     }
 
-    /// Moves the settings that determine the next microinstruction into a new microinstruction, and returns it. All other
-    /// settings stay, except that `valid` is dropped. The new microinstruction keeps the selections.
+    /// Moves the settings that determine the next microinstruction into a new one, which keeps the selections, and returns it.
+    /// Drops `valid`.
     fn divided(&mut self) -> Self {
-        // With `hold`, the new microinstruction has the same selections, so that a microinstruction behind it may hold them too.
+        // With `hold`, a microinstruction behind the new one may hold the selections too.
         let mut after = step(&format!("{}, in output registers", self.name), [hold()]);
         after.location = self.location;
         for setting in std::mem::take(&mut self.settings) {

@@ -1,5 +1,4 @@
-//! Defines microinstructions as lists of settings, and translates a microprogram to the values of the fields of its control
-//! words.
+//! Defines microinstructions as lists of settings, and translates a microprogram to control words.
 
 use std::collections::{BTreeSet, HashSet};
 use std::panic::Location;
@@ -60,8 +59,8 @@ impl StepSetting {
         Self { kind, of: None, location: Location::caller() }
     }
 
-    /// Returns the setting with which the mux named `mux` passes `input`. The value of `field` is the position of `input` among
-    /// the inputs of the mux's net. Reports a mistake unless `input` is exactly one input.
+    /// Lets the mux named `mux` pass `input`: the value of `field` is the position of `input`. Reports a mistake unless `input`
+    /// is exactly one input.
     #[track_caller]
     pub(crate) fn pick(d: &Designer, field: FieldId, mux: &str, input: Signal<'_>) -> Self {
         let inputs = match d.with(|inner| inner.design.find(mux)).map(|id| d.net(id).driver) {
@@ -106,54 +105,50 @@ impl StepSetting {
     }
 }
 
-/// Returns the setting that keeps all selections (values of select lines) of the previous microinstruction, except those which
-/// this microinstruction states itself. In microinstruction 0 this setting has no effect.
+/// Keeps all selections (values of select lines) of the previous microinstruction that this one does not state itself. In
+/// microinstruction 0 this setting has no effect.
 #[track_caller]
 pub fn hold() -> StepSetting {
     StepSetting::sequence(SettingKind::Hold)
 }
 
-/// Returns the setting that raises `valid`, which means that the results are on the outputs. A microinstruction that loads a
-/// result register must not raise `valid`, unless every path to this microinstruction has loaded the register before; the next
-/// microinstruction may raise `valid`.
+/// Raises `valid`, which means that the results are on the outputs. A microinstruction that loads a result register must leave
+/// this to the next one, unless every path to it has loaded the register before.
 #[track_caller]
 pub fn valid() -> StepSetting {
     StepSetting::sequence(SettingKind::Valid)
 }
 
-/// Returns the setting that continues with the microinstruction at the next address. Every microinstruction except
-/// microinstruction 0, which waits for `start`, continues in this way without such a setting.
+/// Continues with the next address. Every microinstruction except number 0, which waits for `start`, does so without a setting.
 #[track_caller]
 pub fn next() -> StepSetting {
     StepSetting::sequence(SettingKind::Next)
 }
 
-/// Returns the setting that repeats this microinstruction until `start` is high. The device is not busy meanwhile.
-/// Microinstruction 0 always waits, with or without this setting. [`Designer::finish`] reports a mistake if another
-/// microinstruction has this setting and the operands have buffers.
+/// Repeats this microinstruction until `start` is high; the device is not busy meanwhile. Microinstruction 0 always waits.
+/// [`Designer::finish`] reports a mistake if another microinstruction has this setting and the operands have buffers.
 #[track_caller]
 pub fn wait_for_start() -> StepSetting {
     StepSetting::sequence(SettingKind::WaitForStart)
 }
 
-/// Returns the setting that jumps back to the microinstruction named `to` while the bit `condition` is 1, and otherwise continues
-/// with the next microinstruction. A microinstruction of the loop must be able to change the condition, so that the loop ends.
+/// Jumps back to the microinstruction named `to` while the bit `condition` is 1. A microinstruction of the loop must be able to
+/// change the condition, so that the loop ends.
 #[track_caller]
 pub fn loop_while(condition: Signal<'_>, to: &str) -> StepSetting {
     let kind = SettingKind::LoopWhile { condition: condition.id(), to: to.to_owned() };
     StepSetting { of: Some(origin(condition.designer())), ..StepSetting::sequence(kind) }
 }
 
-/// Returns the setting that jumps ahead to the microinstruction named `to` if the bit `condition` is 1, and otherwise continues
-/// with the next microinstruction. For example, a jump skips a loop that may run zero times.
+/// Jumps ahead to the microinstruction named `to` if the bit `condition` is 1, for example over a loop that may run zero times.
 #[track_caller]
 pub fn jump_if(condition: Signal<'_>, to: &str) -> StepSetting {
     // The sequencer treats a jump ahead like a jump back.
     loop_while(condition, to)
 }
 
-/// Returns the setting that ends the computation. The device raises `done` in this microinstruction, and is idle after it. If the
-/// operands have buffers and `start` is high in this clock, the next computation begins at once instead.
+/// Ends the computation: the device raises `done` in this microinstruction, and is idle after it. If the operands have buffers
+/// and `start` is high in this clock, the next computation begins at once.
 #[track_caller]
 pub fn end() -> StepSetting {
     StepSetting::sequence(SettingKind::End)
@@ -167,9 +162,8 @@ pub struct Step {
     pub(super) location: SourceLocation,
 }
 
-/// Makes a microinstruction with a name and settings. Muxes without a setting pass their first input, or with [`hold`] the input
-/// that the previous microinstruction selected. Registers without a setting keep their value. For example, `step("load",
-/// [y.load()])` loads the register `y`.
+/// Makes a microinstruction: `step("load", [y.load()])` loads the register `y`. Muxes without a setting pass their first input,
+/// or with [`hold`] the previous one. Registers without a setting keep their value.
 #[track_caller]
 pub fn step(name: &str, settings: impl IntoIterator<Item = StepSetting>) -> Step {
     Step {
@@ -187,8 +181,7 @@ pub struct MicroprogramSource {
     pub(crate) location: SourceLocation,
 }
 
-/// Translates a microprogram to hardware: the values of the fields, the control ROM, the sequencer, and the outputs of the
-/// handshake. Reports a mistake if the microprogram has fewer than two microinstructions.
+/// Builds the hardware of a microprogram: control ROM, sequencer and handshake. A program needs at least two microinstructions.
 pub(crate) fn assemble(d: &Designer, program: &MicroprogramSource) {
     let steps = &program.steps;
     if steps.len() < 2 {
@@ -253,8 +246,8 @@ pub(crate) fn assemble(d: &Designer, program: &MicroprogramSource) {
     sequencer.build(d, microinstructions, program.location);
 }
 
-/// Returns whether a setting belongs to another designer, and reports each such setting. The numbers of nets and fields in such a
-/// setting would mean other nets and fields in this designer.
+/// Reports each setting that belongs to another designer, and returns whether there are any. Its numbers of nets and fields would
+/// mean other nets and fields in this designer.
 fn foreign(d: &Designer, steps: &[Step]) -> bool {
     let own = origin(d);
     let settings = steps.iter().flat_map(|step| step.settings.iter().map(move |it| (step, it)));
@@ -279,9 +272,8 @@ fn foreign(d: &Designer, steps: &[Step]) -> bool {
     any
 }
 
-/// Returns the rule for the microinstruction after `step`. Reports a mistake if the settings of `step` state two different rules.
-/// Reports a mistake if a jump leads to an unknown name or has a condition of several bits, or if `step` waits for `start`
-/// although the operands have buffers.
+/// Returns the rule for the microinstruction after `step`. Reports a mistake if two settings contradict each other, or if a jump
+/// leads to an unknown name or has a condition of several bits. `step` must not wait for `start` if the operands have buffers.
 fn sequence(d: &Designer, steps: &[Step], step: &Step) -> Sequence {
     let mut found: Option<(Sequence, SourceLocation)> = None;
     let own = &step.name;
@@ -335,8 +327,7 @@ fn sequence(d: &Designer, steps: &[Step], step: &Step) -> Sequence {
     found.map_or(Sequence::Next, |(sequence, _)| sequence)
 }
 
-/// Returns the microinstructions with a value for each field of the control word. Reports a mistake if two microinstructions have
-/// the same name, or if two settings give a field different values.
+/// Gives each field of each microinstruction its value. Reports two microinstructions of one name, and two values for a field.
 fn microinstructions(
     d: &Designer,
     steps: &[Step],

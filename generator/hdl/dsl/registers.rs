@@ -1,5 +1,4 @@
-//! Adds registers, operands, flags, counters and select lines to a description. A method such as [`Register::load`] returns the
-//! setting by which a microinstruction controls the register.
+//! Adds registers, operands, flags, counters and select lines to a description.
 
 use super::{Designer, Signal, StepSetting};
 use crate::netlist::{self, Driver, FieldId, FieldKind, NetId, Op, RegisterKind, Role};
@@ -8,16 +7,15 @@ use glint_base::fixed::Format;
 use glint_base::interval::Interval;
 
 impl Designer {
-    /// Adds an operand: the input port `name`, its write strobe `<name>_write` and the register `<name>_reg`. A write while the
-    /// device is busy is ignored. After [`Designer::buffer_operands`], a write at any time loads a buffer `<name>_buffer`
-    /// instead.
+    /// Adds an operand: the input port `name`, its write strobe `<name>_write` and the register `<name>_reg`. A busy device
+    /// ignores writes, unless [`Designer::buffer_operands`] adds a buffer `<name>_buffer` that takes them at any time.
     #[track_caller]
     pub fn operand(&self, name: &str, format: Format) -> InputOperand<'_> {
         self.operand_port(name, format, |port| port)
     }
 
-    /// Adds an operand whose register is limited to the values from `low` to `high`, rounded to `format`. A write of a smaller or
-    /// larger value loads the limit. For example, with limits 0 and 1 in `u1.20`, a write of 1.5 loads 1.
+    /// Adds an operand that saturates to the values from `low` to `high`, rounded to `format`. For example, with limits 0 and 1
+    /// in `u1.20`, a write of 1.5 loads 1.
     #[track_caller]
     pub fn operand_clamped(
         &self,
@@ -45,7 +43,7 @@ impl Designer {
                 let range = (value.range().0, most);
                 let one_bit = most > 0 && range.0 >= 0 && most.count_ones() == 1 && to < 2 * most;
                 let over = if one_bit {
-                    // At the limit itself, the value and the limit are equal, so that one bit suffices as the condition.
+                    // The value equals the limit at the limit itself, so that one bit suffices as the condition.
                     value.bit(most.trailing_zeros()).named(&format!("{name}_over"))
                 } else {
                     self.less(&format!("{name}_over"), limit("most", most), value)
@@ -57,7 +55,7 @@ impl Designer {
         })
     }
 
-    /// Makes a two-input mux whose result is declared to stay within `range`. The caller must guarantee this.
+    /// Makes a two-input mux; the caller must guarantee that its result stays within `range`.
     #[track_caller]
     fn chosen_within<'d>(
         &'d self,
@@ -107,10 +105,8 @@ impl Designer {
         InputOperand { port: self.signal(port), strobe: self.signal(strobe), q: self.signal(q) }
     }
 
-    /// Adds a register that certain microinstructions load; its field is `<name>_load`. For example, the register `reg11_cos_cos`
-    /// of `rough` has the field `reg11_cos_cos_load`. The description must connect its input by [`Register::takes`].
-    ///
-    /// The register has no reset. The register must not have the name of an operand, because both would have a net `<name>_load`.
+    /// Adds a register without reset that certain microinstructions load; its field is `<name>_load`. Connect its input by
+    /// [`Register::takes`]. The name must differ from all operands, because both would have a net `<name>_load`.
     #[track_caller]
     pub fn register(&self, name: &str, format: Format) -> Register<'_> {
         let field = self.add_field(&format!("{name}_load"), 1, FieldKind::Enable);
@@ -121,7 +117,7 @@ impl Designer {
         Register { q: self.signal(q), field }
     }
 
-    /// Adds a register that loads on every clock, and returns its output: `source`, delayed by one clock.
+    /// Adds a register that loads on every clock, and so delays `source` by one clock.
     #[track_caller]
     pub fn pipeline<'d>(&'d self, name: &str, source: Signal<'d>) -> Signal<'d> {
         let source = self.own(source);
@@ -133,9 +129,9 @@ impl Designer {
         self.signal(q)
     }
 
-    /// Adds select lines that several muxes share. `choices` names each value of the lines, from 0 on; a value selects the input
-    /// with this number in every such mux. For example, `select("operand_select", &["cosines", "sines", "half_n", "square"])` has
-    /// two lines.
+    /// Adds select lines that several muxes share. `choices` names the values of the lines from 0 on; each selects the input with
+    /// this number in every such mux. For example, `select("operand_select", &["cosines", "sines", "half_n", "square"])` has two
+    /// lines.
     #[track_caller]
     pub fn select(&self, name: &str, choices: &[&str]) -> Select<'_> {
         let width = usize::BITS - choices.len().saturating_sub(1).leading_zeros();
@@ -144,7 +140,7 @@ impl Designer {
         Select { designer: self, field }
     }
 
-    /// Returns `select`. If `select` belongs to another designer, reports a mistake and returns new lines with the same choices.
+    /// Replaces `select` by new lines with the same choices, and reports a mistake, if it belongs to another designer.
     #[track_caller]
     pub(crate) fn own_select<'d>(&'d self, select: Select<'d>) -> Select<'d> {
         if self.serial == select.designer.serial {
@@ -156,7 +152,7 @@ impl Designer {
         self.select(&format!("{line}_own"), &choices)
     }
 
-    /// Adds an output port `name` of one bit that is 1 in the microinstructions with the setting [`Flag::raise`].
+    /// Adds an output port of one bit that is 1 in the microinstructions with the setting [`Flag::raise`].
     #[track_caller]
     pub fn flag(&self, name: &str) -> Flag<'_> {
         let field = self.add_field(&format!("{name}_flag"), 1, FieldKind::Flag);
@@ -165,10 +161,8 @@ impl Designer {
         Flag { designer: self, field }
     }
 
-    /// Adds a counter that counts down, with the fields `<name>_load` and `<name>_count`. Its format is the format of `start`.
-    ///
-    /// A microinstruction that sets `<name>_load` loads the value of `start`; a microinstruction that sets `<name>_count`
-    /// subtracts one. If a microinstruction sets both fields, the counter is loaded. Below 0 the counter wraps around.
+    /// Adds a counter in the format of `start`. A microinstruction that sets `<name>_load` loads the value of `start`; one that
+    /// sets only `<name>_count` subtracts one. Below 0 the counter wraps around.
     #[track_caller]
     pub fn down_counter<'d>(&'d self, name: &str, start: Signal<'d>) -> Counter<'d> {
         let start = self.own(start);
@@ -192,7 +186,6 @@ impl Designer {
         self.change(q, |it| (it.data, it.enable) = (Some(data), enable));
     }
 
-    /// Calls `change` with the register that drives the net `q`. Does nothing if no register drives the net.
     pub(crate) fn change(&self, q: NetId, change: impl FnOnce(&mut netlist::NetlistRegister)) {
         self.with(|inner| {
             if let Driver::Register(id) = inner.design.net(q).driver {
@@ -202,8 +195,7 @@ impl Designer {
     }
 }
 
-/// An operand of a device: a value that the user writes before a computation. An operand consists of an input port, a write
-/// strobe and a register.
+/// A value that the user writes before a computation: an input port, a write strobe and a register.
 #[derive(Clone, Copy)]
 pub struct InputOperand<'d> {
     port: Signal<'d>,
@@ -212,20 +204,20 @@ pub struct InputOperand<'d> {
 }
 
 impl<'d> InputOperand<'d> {
-    /// Returns the output of the operand register: the value that the user has written, limited if [`Designer::operand_clamped`]
-    /// made the operand. If the operands have buffers, the output is the value at the latest accepted `start`.
+    /// Returns the output of the operand register: the written value, limited if [`Designer::operand_clamped`] made the operand.
+    /// With buffers, it is the value at the latest accepted `start`.
     pub fn q(self) -> Signal<'d> {
         self.q
     }
 
-    /// Sets the number of the register in the block diagram of the document that describes the device.
+    /// Sets the number of the register in the source's block diagram.
     #[must_use]
     pub fn block(self, number: u16) -> Self {
         let _ = self.q.block(number);
         self
     }
 
-    /// Sets the numbers of the data input and of the write strobe in the block diagram of the document that describes the device.
+    /// Sets the numbers of the data input and of the write strobe in the source's block diagram.
     #[must_use]
     pub fn inputs(self, data: u16, strobe: u16) -> Self {
         let _ = self.port.block(data);
@@ -242,8 +234,7 @@ impl<'d> InputOperand<'d> {
     }
 }
 
-/// A register that loads its data input in the microinstructions with the setting [`Register::load`], and otherwise keeps its
-/// value.
+/// A register that loads in the microinstructions with [`Register::load`], and otherwise keeps its value.
 #[derive(Clone, Copy)]
 pub struct Register<'d> {
     q: Signal<'d>,
@@ -253,24 +244,21 @@ pub struct Register<'d> {
 described!(Register, q, "load": field);
 
 impl<'d> Register<'d> {
-    /// Returns the signal of the register's output.
     pub fn q(self) -> Signal<'d> {
         self.q
     }
 
-    /// Returns the fixed-point format of the register.
     pub fn format(self) -> Format {
         self.q.format()
     }
 
-    /// Returns the load enable, a bit that is 1 in the microinstructions that load the register.
+    /// Returns the load enable, which is 1 in the microinstructions that load the register.
     pub fn loading(self) -> Signal<'d> {
         self.q.designer().field_net(self.field)
     }
 
-    /// Connects the data input. The format of the register must have the binary point of `data` and represent its range;
-    /// [`Designer::narrow`] converts a signal first. Reports a mistake if the format does not fit `data`, or if the input is
-    /// already connected.
+    /// Connects the data input. The register's format must have the binary point of `data` and represent its range, or a mistake
+    /// is reported; [`Designer::narrow`] converts a signal first. A second connection is a mistake too.
     #[track_caller]
     pub fn takes(self, data: Signal<'d>) {
         let d = self.q.designer();
@@ -287,14 +275,13 @@ impl<'d> Register<'d> {
         }
     }
 
-    /// Returns the setting with which a microinstruction loads the register at the end of its clock.
+    /// Loads the register at the end of the clock.
     #[track_caller]
     pub fn load(self) -> StepSetting {
         StepSetting::field(self.q.designer(), self.field, 1, format!("{}.load", self.q.name()))
     }
 }
 
-/// Select lines that several muxes share. Each value of the lines has a name, and selects one input of every such mux.
 #[derive(Clone, Copy)]
 pub struct Select<'d> {
     designer: &'d Designer,
@@ -311,22 +298,21 @@ impl<'d> Select<'d> {
         self.field
     }
 
-    /// Sets the numbers of the lines in the block diagram of the document that describes the device, the most significant first.
+    /// Sets the numbers of the lines in the source's block diagram, the most significant first.
     #[must_use]
     pub fn lines(self, numbers: &[u16]) -> Self {
         self.designer.set_lines(self.field, numbers);
         self
     }
 
-    /// Allows the microprogram to leave some choices of these lines unused, for example choices for other configurations. Without
-    /// this call, [`Designer::finish`] warns of unused choices.
+    /// Allows choices of these lines that the microprogram never makes, for example for other configurations.
+    /// [`Designer::finish`] otherwise warns of them.
     #[must_use]
     pub fn partly_used(self) -> Self {
         self.designer.with(|inner| inner.partly_used.insert(self.field));
         self
     }
 
-    /// Returns the names of the choices, from the value 0 on.
     fn choices(self) -> Vec<String> {
         self.designer.with(|inner| match &inner.design.control.fields[self.field.index()].kind {
             FieldKind::Select(choices) => choices.clone(),
@@ -334,7 +320,6 @@ impl<'d> Select<'d> {
         })
     }
 
-    /// Reports a mistake unless the mux `name` has as many `inputs` as the select lines have choices.
     #[track_caller]
     pub(crate) fn check_inputs(self, name: &str, inputs: usize) {
         let choices = self.choices().len();
@@ -349,7 +334,6 @@ impl<'d> Select<'d> {
     }
 }
 
-/// An output of one bit that is 1 in the microinstructions that raise it, and otherwise 0.
 #[derive(Clone, Copy)]
 pub struct Flag<'d> {
     designer: &'d Designer,
@@ -357,7 +341,7 @@ pub struct Flag<'d> {
 }
 
 impl Flag<'_> {
-    /// Returns the setting with which a microinstruction raises the output.
+    /// Makes the output 1 in this microinstruction.
     #[track_caller]
     pub fn raise(self) -> StepSetting {
         let name = self.designer.field_net(self.field).name();
@@ -365,8 +349,7 @@ impl Flag<'_> {
     }
 }
 
-/// A counter that a microinstruction loads with a start value ([`Counter::load`]), and from which a microinstruction subtracts
-/// one ([`Counter::count`]).
+/// A counter that [`Counter::load`] loads with its start value, and from which [`Counter::count`] subtracts one.
 #[derive(Clone, Copy)]
 pub struct Counter<'d> {
     q: Signal<'d>,
@@ -377,23 +360,22 @@ pub struct Counter<'d> {
 described!(Counter, q, "count": count);
 
 impl<'d> Counter<'d> {
-    /// Returns the signal with the current count.
     pub fn q(self) -> Signal<'d> {
         self.q
     }
 
-    /// Returns the count enable, a bit that is 1 in the microinstructions that count.
+    /// Returns the count enable, which is 1 in the microinstructions that count.
     pub fn counting(self) -> Signal<'d> {
         self.q.designer().field_net(self.count)
     }
 
-    /// Returns the setting with which a microinstruction loads the start value into the counter at the end of its clock.
+    /// Loads the start value at the end of the clock.
     #[track_caller]
     pub fn load(self) -> StepSetting {
         StepSetting::field(self.q.designer(), self.load, 1, format!("{}.load", self.q.name()))
     }
 
-    /// Returns the setting with which a microinstruction subtracts one from the counter at the end of its clock.
+    /// Subtracts one at the end of the clock.
     #[track_caller]
     pub fn count(self) -> StepSetting {
         StepSetting::field(self.q.designer(), self.count, 1, format!("{}.count", self.q.name()))

@@ -1,10 +1,9 @@
-//! Defines the handle of a read-only memory (ROM) in a hardware description. The handle returns the word that the ROM reads, and
-//! sets comments.
+//! Defines the handle of a read-only memory (ROM) in a hardware description.
 
 use super::{Designer, Signal};
 use crate::netlist::RomId;
 
-/// A read-only memory in a hardware description. [`Designer::rom`](super::Designer::rom) makes one.
+/// A read-only memory, made by [`Designer::rom`](super::Designer::rom).
 #[derive(Clone, Copy)]
 pub struct Rom<'d> {
     pub(super) designer: &'d Designer,
@@ -12,13 +11,13 @@ pub struct Rom<'d> {
 }
 
 impl<'d> Rom<'d> {
-    /// Returns the signal with the word at the current address; for a synchronous ROM, at the address of the clock before.
+    /// Returns the word at the current address, or in a synchronous ROM at the address of the clock before.
     pub fn out(self) -> Signal<'d> {
         let data = self.designer.with(|inner| inner.design.rom(self.id).data);
         self.designer.signal(data)
     }
 
-    /// Sets the number of the ROM in the block diagram of the document that describes the device.
+    /// Sets the number of the ROM in the source's block diagram.
     #[must_use]
     pub fn block(self, number: u16) -> Self {
         self.designer.with(|inner| inner.design.roms[self.id.index()].block = Some(number));
@@ -32,8 +31,8 @@ impl<'d> Rom<'d> {
         self
     }
 
-    /// Sets a comment for each word of the ROM, from address 0. The memory file shows these comments.
-    /// [`Designer::finish`](super::Designer::finish) reports a mistake if there are comments, but not as many as words.
+    /// Sets a comment for each word, from address 0, for the memory file. [`Designer::finish`](super::Designer::finish) reports
+    /// a mistake unless there are as many comments as words.
     #[must_use]
     pub fn comments(self, comments: Vec<String>) -> Self {
         self.designer.with(|inner| inner.design.roms[self.id.index()].comments = comments);

@@ -12,7 +12,7 @@ use crate::netlist::{
 use glint_base::diagnostic::SourceLocation;
 use glint_base::fixed::{Format, MAX_WIDTH};
 
-/// The fields of the control word that the sequencer itself uses. A field is `None` if the microprogram does not need it.
+/// The fields of the control word that the sequencer itself uses; `None` if the microprogram does not need one.
 pub struct SequenceFields {
     /// The field that raises `valid`; `None` if `valid` follows a signal instead.
     pub valid: Option<FieldId>,
@@ -23,20 +23,16 @@ pub struct SequenceFields {
     pub go_on: FieldId,
 }
 
-/// The properties of a sequencer, from which [`Sequencer::build`] makes the hardware.
 pub struct Sequencer {
-    /// The fields that the sequencer uses.
     pub fields: SequenceFields,
-    /// The one-bit conditions of loops and jumps. A condition that several microinstructions use is listed once.
+    /// The one-bit conditions of loops and jumps, each once.
     pub conditions: Vec<NetId>,
-    /// The addresses of the microinstructions to which loops and jumps lead. Each address is listed once.
+    /// The addresses to which loops and jumps lead, each once.
     pub targets: Vec<usize>,
-    /// The number of bits of the microinstruction address.
     pub address_width: u32,
 }
 
 impl Sequencer {
-    /// Builds the hardware of the sequencer: address counter, run flag, control ROM, and the outputs of the handshake.
     pub fn build(
         &self,
         d: &Designer,
@@ -79,7 +75,7 @@ impl Sequencer {
             onward = op("onward_word", wide, Op::Mux { select: again, inputs });
         }
         let next = op("next_word", wide, Op::Mux { select: go_on, inputs: vec![zero, onward] });
-        // The address moves while a program runs and does not wait.
+        // The address changes while a program runs and does not wait.
         let (busy, advance) = match fields.wait {
             None => (bit("busy", Op::Relabel(run)), run),
             Some(wait) => {
@@ -94,7 +90,7 @@ impl Sequencer {
         d.connect(address, next, Some(advance));
         let overlaps = d.with(|inner| inner.taken.is_some());
         let (next_run, idle) = if overlaps {
-            // In its last clock a computation gives way to the next one.
+            // In its last clock, a computation lets the next one begin.
             let goes_on = bit("goes_on", Op::And(run, go_on));
             (bit("next_run", Op::Or(goes_on, start)), Op::Not(goes_on))
         } else {
@@ -132,8 +128,8 @@ impl Sequencer {
     }
 }
 
-/// Returns the net that drives `valid`: the signal of [`Designer::valid_after`], delayed by its number of clocks. A reset clears
-/// the registers of this delay, and so drops the results on their way.
+/// Returns the net that drives `valid`: the signal of [`Designer::valid_after`] behind its registers. A reset clears them, and
+/// so drops the results on their way.
 fn valid_line(d: &Designer) -> NetId {
     let Some((mut source, clocks)) = d.with(|inner| inner.valid) else {
         return d.run;
@@ -155,9 +151,8 @@ fn valid_line(d: &Designer) -> NetId {
     source
 }
 
-/// Limits the control word to 64 bits. While the fields are wider, moves fields of parts (instances of other descriptions), the
-/// last field first, into additional ROMs with the same address. Fields of the description itself stay in the control word, even
-/// if these fields alone have more than 64 bits.
+/// Limits the control word to 64 bits: moves fields of parts, the last field first,
+/// into ROMs of their own with the same address. Fields of the description itself always stay.
 fn moved_beside(d: &Designer, microinstructions: &mut [Microinstruction], address: NetId) {
     let width_of = |field: &Field| d.net(field.net).format.width();
     let mut fields = d.with(|inner| inner.design.control.fields.clone());

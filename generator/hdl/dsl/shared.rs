@@ -1,5 +1,5 @@
-//! Gives the other modules of the description language access to the state of a [`Designer`], the builder of a
-//! netlist. The state has the nets, registers, fields and ports so far, and the mistakes that were found in the description.
+//! Gives the other modules of the description language access to the state of a [`Designer`]: nets, registers, fields, ports and
+//! mistakes.
 
 use std::panic::Location;
 
@@ -12,7 +12,6 @@ use glint_base::diagnostic::{Diagnostic, SourceLocation};
 use glint_base::fixed::{Format, MAX_POINT, MAX_WIDTH};
 use glint_base::interval::Interval;
 
-/// Access to the state of a designer, for the other modules of the description language.
 impl Designer {
     pub(crate) fn signal(&self, id: NetId) -> Signal<'_> {
         Signal::new(self, id)
@@ -26,15 +25,14 @@ impl Designer {
         act(&mut self.inner.borrow_mut())
     }
 
-    /// Adds a net that the author named, with the whole range of its format, and returns it.
+    /// Adds a net that the author named, with the whole range of its format.
     #[track_caller]
     pub(crate) fn add_named(&self, name: &str, format: Format, driver: Driver) -> NetId {
         let format = self.sound(name, format);
         self.add_net(name, format, format.range(), driver, true)
     }
 
-    /// Adds an unnamed net, such as an extension, that the description language makes itself, and returns it. If another net has
-    /// the name, a number is added: a second `sum_wide` becomes `sum_wide_2`.
+    /// Adds an unnamed net, such as an extension. A second `sum_wide` becomes `sum_wide_2`.
     #[track_caller]
     pub(crate) fn add_wiring(
         &self,
@@ -59,7 +57,7 @@ impl Designer {
         self.add_net(&name, format, range, driver, false)
     }
 
-    /// Runs `act`, and gives all nets and ROMs that `act` adds the source location `location`. Returns the result of `act`.
+    /// Runs `act`, and gives all nets and ROMs that it adds the source location `location`.
     pub(crate) fn located<T>(&self, location: SourceLocation, act: impl FnOnce() -> T) -> T {
         let own = self.with(|inner| (inner.design.nets.len(), inner.design.roms.len()));
         let made = act();
@@ -74,8 +72,8 @@ impl Designer {
         made
     }
 
-    /// Returns `format` if a net can have it. Otherwise reports a mistake and returns a format of one bit, so that the rest of
-    /// the description can be checked too. A net has 1 to [`MAX_WIDTH`] bits and −[`MAX_POINT`] to [`MAX_POINT`] fraction bits.
+    /// Returns `format` if a net can have it: 1 to [`MAX_WIDTH`] bits and −[`MAX_POINT`] to [`MAX_POINT`] fraction bits.
+    /// Otherwise reports a mistake and returns a format of one bit, so that the rest of the description is checked too.
     #[track_caller]
     pub(crate) fn sound(&self, name: &str, format: Format) -> Format {
         let width = i64::from(format.int) + i64::from(format.frac) + i64::from(format.signed);
@@ -109,7 +107,7 @@ impl Designer {
         let sound = self.sound(name, format);
         let range = if sound == format { range } else { (0, 1) };
         let format = sound;
-        // Inside the closure the caller would be this file.
+        // Inside the closure, the caller would be this file.
         let location = Location::caller();
         self.with(|inner| {
             let net = Net::new(name.to_owned(), format, driver, location);
@@ -118,7 +116,6 @@ impl Designer {
         })
     }
 
-    /// Adds a register and returns the net that it drives.
     #[track_caller]
     pub(crate) fn add_register(
         &self,
@@ -165,8 +162,7 @@ impl Designer {
         self.signal(net)
     }
 
-    /// Returns `signal`. If `signal` belongs to another designer, reports a mistake and returns a constant with the same format.
-    /// The rest of the description can then be checked too.
+    /// Replaces a signal of another designer by a constant of the same format, and reports the mistake.
     #[track_caller]
     pub(crate) fn own(&self, signal: Signal<'_>) -> Signal<'_> {
         let other = signal.designer();
@@ -187,8 +183,7 @@ impl Designer {
         self.signal(self.add_wiring(&signal.name(), signal.format(), signal.range(), driver))
     }
 
-    /// Returns several signals, each replaced by a constant if it belongs to another designer ([`Designer::own`]). A loop
-    /// replaces a closure, because in a closure the reported source line would be in this file.
+    /// Applies [`Designer::own`] to each signal, in a loop, because a closure would report a source line of this file.
     #[track_caller]
     pub(crate) fn own_all(&self, signals: &[Signal<'_>]) -> Vec<Signal<'_>> {
         let mut own = Vec::with_capacity(signals.len());
@@ -198,8 +193,8 @@ impl Designer {
         own
     }
 
-    /// Returns `source` as a net of exactly `format`. If `format` has another binary point or cannot represent the range of
-    /// `source`, reports a mistake and returns `None`. `what` names the purpose of the net in the message.
+    /// Returns `source` as a net of exactly `format`, or reports a mistake if the binary points differ or the range does not
+    /// fit. The message says by `what` for which purpose.
     #[track_caller]
     pub(crate) fn fitted(&self, source: Signal<'_>, format: Format, what: &str) -> Option<NetId> {
         let (low, high) = source.range();

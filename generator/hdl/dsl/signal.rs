@@ -1,4 +1,4 @@
-//! Defines signals, and the operations on them: wiring that takes and joins bits, arithmetic, comparisons and muxes.
+//! Defines signals, and the operations on them: wiring, arithmetic, comparisons and muxes.
 
 use std::cmp::Ordering;
 
@@ -8,7 +8,7 @@ use glint_base::codes;
 use glint_base::fixed::Format;
 use glint_base::interval::{self, Interval, hull};
 
-/// A signal in a hardware description: the handle of a net.
+/// A signal of a hardware description: the handle of a net.
 #[derive(Clone, Copy)]
 pub struct Signal<'d> {
     designer: &'d Designer,
@@ -28,22 +28,20 @@ impl<'d> Signal<'d> {
         self.designer
     }
 
-    /// Returns the name of the net.
     pub fn name(self) -> String {
         self.designer.net(self.id).name
     }
 
-    /// Returns the fixed-point format of the signal.
     pub fn format(self) -> Format {
         self.designer.with(|inner| inner.design.net(self.id).format)
     }
 
-    /// Returns the interval of raw values that the signal can have: the smallest and the largest.
+    /// Returns the smallest and the largest raw value that the signal can have.
     pub fn range(self) -> Interval {
         self.designer.with(|inner| inner.design.net(self.id).range)
     }
 
-    /// Sets the number of this block in the block diagram of the document that describes the device.
+    /// Sets the number of this block in the source's block diagram.
     #[must_use]
     pub fn block(self, number: u16) -> Self {
         self.designer.with(|inner| inner.design.nets[self.id.index()].block = Some(number));
@@ -57,15 +55,15 @@ impl<'d> Signal<'d> {
         self
     }
 
-    /// Sets a comment that belongs to `topic`. A pipeline shows a comment only if its topic is [`Topic::Device`].
+    /// Like [`Signal::doc`], for a comment that belongs to `topic`. A pipeline shows only comments of the topic
+    /// [`Topic::Device`].
     #[must_use]
     pub fn doc_on(self, topic: Topic, line: &str) -> Self {
         self.designer.with(|inner| inner.design.nets[self.id.index()].doc_topic = topic);
         self.doc(line)
     }
 
-    /// Gives the signal a name. A net that the description language made as wiring is then shown under this name in Verilog and
-    /// waveforms.
+    /// Names a net that the description language made as wiring, so that Verilog and waveforms show it under this name.
     #[must_use]
     pub fn named(self, name: &str) -> Self {
         self.designer.with(|inner| {
@@ -95,8 +93,8 @@ impl<'d> Signal<'d> {
         self.shift_right(places.saturating_neg())
     }
 
-    /// Appends zeros up to `frac` fraction bits. For example, `with_fraction(12)` turns `u0.8` into `u0.12`. Reports a mistake if
-    /// the signal has more than `frac` fraction bits.
+    /// Appends zeros up to `frac` fraction bits: `with_fraction(12)` turns `u0.8` into `u0.12`. Reports a mistake if the signal
+    /// has more.
     #[must_use]
     #[track_caller]
     pub fn with_fraction(self, frac: i32) -> Self {
@@ -123,9 +121,8 @@ impl<'d> Signal<'d> {
         self.wiring("scaled", scaled, range, Op::Concat(vec![self.id, zeros.id]))
     }
 
-    /// Returns as many bits as `format` is wide, from bit `low` up, as a number of `format`. For example,
-    /// `x.bits(4, Format::unsigned(4, 0))` is the upper half of a `u8.0` signal `x`. Reports a mistake if the signal has too few
-    /// bits.
+    /// Reads the bits from bit `low` up as a number of `format`. For example, `x.bits(4, Format::unsigned(4, 0))` is the upper
+    /// half of a `u8.0` signal `x`. Reports a mistake if the signal has too few bits.
     #[must_use]
     #[track_caller]
     pub fn bits(self, low: u32, format: Format) -> Self {
@@ -139,23 +136,22 @@ impl<'d> Signal<'d> {
             self.designer.error(codes::WIDTH, message);
             return self.designer.raw_constant("zeros", 0, format);
         }
-        // If the top bits of a value that is never negative are taken, their interval follows from the interval of the value.
+        // The top bits of a value that is never negative are monotonic in it, so that their interval follows.
         let (from, to) = self.range();
         let top = low + format.width() == have && !format.signed && from >= 0;
         let range = if top { (from >> low, to >> low) } else { format.range() };
         self.wiring("bits", format, range, Op::Slice { of: self.id, low })
     }
 
-    /// Returns bit number `at` of the signal as a signal of one bit. Bit 0 is the lowest. Reports a mistake if the signal has no
-    /// such bit.
+    /// Returns bit number `at`, counted from the lowest, 0. Reports a mistake if the signal has no such bit.
     #[must_use]
     #[track_caller]
     pub fn bit(self, at: u32) -> Self {
         self.bits(at, Format::BIT)
     }
 
-    /// Appends the bits of `low` below the bits of this signal, and reads the result in `format`. For example, a shift register
-    /// loads its own bits above the bit that enters. Reports a mistake unless `format` is as wide as both together.
+    /// Appends the bits of `low` below this signal, and reads the result in `format`, as a shift register does with the bit that
+    /// enters. Reports a mistake unless `format` is as wide as both together.
     #[must_use]
     #[track_caller]
     pub fn above(self, low: Signal<'d>, format: Format) -> Self {
@@ -174,7 +170,7 @@ impl<'d> Signal<'d> {
         self.wiring("above", format, format.range(), op)
     }
 
-    /// Returns the same value as a signed signal. An unsigned signal becomes one bit wider. For example, `u0.8` becomes `s0.8`.
+    /// Returns the same value as a signed signal: `u0.8` becomes `s0.8`, one bit wider.
     #[must_use]
     #[track_caller]
     pub fn as_signed(self) -> Self {
@@ -186,8 +182,8 @@ impl<'d> Signal<'d> {
         self.designer.signal(self.designer.resized(self, signed))
     }
 
-    /// Reads the low bits in another format, without conversion. For example, 255 in `u8.0` is read as −1 in `s7.0`. Reports a
-    /// mistake if `format` is wider than the signal.
+    /// Reads the low bits in another format, without conversion: 255 in `u8.0` is read as −1 in `s7.0`. Reports a mistake if
+    /// `format` is wider than the signal.
     #[must_use]
     #[track_caller]
     pub fn read_as(self, format: Format) -> Self {
@@ -200,7 +196,6 @@ impl<'d> Signal<'d> {
         self.wiring("shifted", format, range, Op::Relabel(self.id))
     }
 
-    /// Makes a wiring net whose name consists of the name of this signal and `suffix`.
     #[track_caller]
     pub(crate) fn wiring(self, suffix: &str, format: Format, range: Interval, op: Op) -> Self {
         let name = format!("{}_{suffix}", self.name());
@@ -208,8 +203,7 @@ impl<'d> Signal<'d> {
         self.designer.signal(id)
     }
 
-    /// Returns the low bits of this signal, or all its bits extended by sign or zeros, as a net of `format`. The name consists of
-    /// the name of this signal and `suffix`.
+    /// Truncates or extends this signal to `format`. The name consists of its name and `suffix`.
     #[track_caller]
     pub(crate) fn resized_as(self, suffix: &str, format: Format, range: Interval) -> Self {
         let op = match format.width().cmp(&self.format().width()) {
@@ -221,17 +215,15 @@ impl<'d> Signal<'d> {
     }
 }
 
-/// The arithmetic blocks. Results are exact: their formats can represent every value that the operands can give.
+/// Arithmetic blocks. Results are exact: their formats can represent every value that the operands can give.
 impl Designer {
-    /// Returns `a + b`, exact. Signals with different binary points are aligned first. For example, two `u0.8` signals that may
-    /// have any value give `u1.8`.
+    /// Aligns the binary points and adds: two `u0.8` signals that may have any value give `u1.8`.
     #[track_caller]
     pub fn add<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
         self.sum(name, a, b, None)
     }
 
-    /// Returns `a + b`, plus one unit in the last place (of the operand with more fraction bits) if the bit `carry` is 1. The sum
-    /// is exact.
+    /// Returns `a + b`, plus the bit `carry` in the last place of the operand with more fraction bits.
     #[track_caller]
     pub fn add_carry<'d>(
         &'d self,
@@ -265,8 +257,8 @@ impl Designer {
         self.signal(self.add_net(name, format, range, Driver::Op(op), true))
     }
 
-    /// Returns `a + b` modulo 2^width, plus the bit `carry` in the last place if there is one. For example, 200 + 100 in `u8.0`
-    /// gives 44. Reports a mistake unless both signals have the same format. The patent's arithmetic of `rough` uses this sum.
+    /// Returns `a + b` modulo 2^width, plus `carry` in the last place: 200 + 100 in `u8.0` gives 44. Reports a mistake unless
+    /// both signals have the same format. The patent's arithmetic of `rough` uses this sum.
     #[track_caller]
     pub fn add_modulo<'d>(
         &'d self,
@@ -290,8 +282,8 @@ impl Designer {
         self.signal(self.add_net(name, format, format.range(), Driver::Op(op), true))
     }
 
-    /// Returns `a − b`, exact. Signals with different binary points are aligned first. The result is unsigned if the ranges
-    /// show that it is never negative. For example, two operands `u0.8` that may have any value give `s0.8`.
+    /// Aligns the binary points and subtracts: two operands `u0.8` that may have any value give `s0.8`. The result is unsigned if
+    /// the ranges show that it is never negative.
     #[track_caller]
     pub fn sub<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
         let (a, b) = aligned(self.own(a), self.own(b));
@@ -302,8 +294,8 @@ impl Designer {
         self.signal(self.add_net(name, format, range, Driver::Op(op), true))
     }
 
-    /// Returns `a · b`, exact. For example, two `u0.8` signals give `u0.16`. If only one of the signals is signed, the other one
-    /// becomes signed first, one bit wider.
+    /// Multiplies: two `u0.8` signals give `u0.16`. If only one signal is signed, the other one becomes signed first, one bit
+    /// wider.
     #[track_caller]
     pub fn mul<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
         let (a, b) = (self.own(a), self.own(b));
@@ -320,8 +312,7 @@ impl Designer {
         self.signal(self.add_net(name, format, range, Driver::Op(Op::Mul(a.id(), b.id())), true))
     }
 
-    /// Returns every bit inverted. In raw values, this is `−a − 1` for a signed signal, and `largest − a` for an unsigned
-    /// one.
+    /// Inverts every bit. The raw value is `−a − 1` for a signed signal, and `largest − a` for an unsigned one.
     #[track_caller]
     pub fn not<'d>(&'d self, name: &str, a: Signal<'d>) -> Signal<'d> {
         let a = self.own(a);
@@ -333,9 +324,8 @@ impl Designer {
         self.signal(net)
     }
 
-    /// Joins the bits of `high` and `low` by wiring, for example an address that consists of two parts. For example, 2 in `u2.0`
-    /// and 5 in `u3.0` give 21 in `u5.0`. Reports a mistake if a part is signed, because its bits would be read as another
-    /// number.
+    /// Joins the bits of `high` and `low` by wiring: 2 in `u2.0` and 5 in `u3.0` give 21 in `u5.0`. Reports a mistake if a part
+    /// is signed, because its bits would be read as another number.
     #[track_caller]
     pub fn concat<'d>(&'d self, name: &str, high: Signal<'d>, low: Signal<'d>) -> Signal<'d> {
         let (mut high, mut low) = (self.own(high), self.own(low));
@@ -358,9 +348,9 @@ impl Designer {
         self.signal(self.add_net(name, format, range, Driver::Op(op), true))
     }
 
-    /// Returns the constant `high` whose low bits are replaced by `low`, in `format`. These low bits of `high` must be 0. For
-    /// example, `high` = 0b1000 and a `low` of three bits give the addresses 8 to 15, without logic. `low` must not be wider than
-    /// `format`. If `low` is as wide, the function returns `low` itself.
+    /// Replaces the low bits of the constant `high`, which must be 0, by `low`, without logic. For example, `high` = 0b1000 and a
+    /// `low` of three bits give the addresses 8 to 15. If `low` is as wide as `format`, returns `low` itself; it must not be
+    /// wider.
     #[track_caller]
     pub fn beside<'d>(&'d self, high: Signal<'d>, low: Signal<'d>, format: Format) -> Signal<'d> {
         let low_bits = low.format().width();
@@ -372,8 +362,8 @@ impl Designer {
         low.wiring("beside", format, (from, to), Op::Concat(vec![top.id(), low.id()]))
     }
 
-    /// Joins the bits of all parts by wiring, the first part in the top bits, and reads the result in `format`. Reports a mistake
-    /// unless `format` is as wide as all parts together.
+    /// Joins the bits of all parts by wiring, the first part in the top bits. Reports a mistake unless `format` is as wide as all
+    /// parts together.
     #[track_caller]
     pub fn join<'d>(&'d self, name: &str, parts: &[Signal<'d>], format: Format) -> Signal<'d> {
         let parts = self.own_all(parts);
@@ -387,8 +377,7 @@ impl Designer {
             self.error(codes::WIDTH, message);
             return self.raw_constant("zeros", 0, format);
         }
-        // If no part can be negative, the smallest values of all parts give the smallest result, and the largest values the
-        // largest.
+        // If no part can be negative, the result is monotonic in every part.
         let ends = parts.iter().try_fold((0, 0), |(low, high), part| {
             let (from, to) = part.range();
             let width = part.format().width();
@@ -402,35 +391,35 @@ impl Designer {
         self.signal(self.add_wiring(name, format, range, Driver::Op(Op::Concat(nets))))
     }
 
-    /// Returns a bit that is 1 if both `a` and `b` are 1. Reports a mistake unless both have one bit.
+    /// Reports a mistake unless `a` and `b` have one bit.
     #[track_caller]
     pub fn and<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
         let (a, b) = (self.one_bit(a), self.one_bit(b));
         self.signal(self.add_named(name, Format::BIT, Driver::Op(Op::And(a, b))))
     }
 
-    /// Returns a bit that is 1 if `a` or `b` is 1. Reports a mistake unless both have one bit.
+    /// Reports a mistake unless `a` and `b` have one bit.
     #[track_caller]
     pub fn or<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
         let (a, b) = (self.one_bit(a), self.one_bit(b));
         self.signal(self.add_named(name, Format::BIT, Driver::Op(Op::Or(a, b))))
     }
 
-    /// Returns a bit that is 1 if exactly one of `a` and `b` is 1. Reports a mistake unless both have one bit.
+    /// Reports a mistake unless `a` and `b` have one bit.
     #[track_caller]
     pub fn xor<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
         let (a, b) = (self.one_bit(a), self.one_bit(b));
         self.signal(self.add_named(name, Format::BIT, Driver::Op(Op::Xor(a, b))))
     }
 
-    /// Returns a bit that is 1 if `a` is less than `b`. The values are compared, so binary points and signs may differ.
+    /// Compares the values, so binary points and signs may differ.
     #[track_caller]
     pub fn less<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
         let (a, b) = self.comparable(a, b);
         self.signal(self.add_named(name, Format::BIT, Driver::Op(Op::Less(a, b))))
     }
 
-    /// Returns a bit that is 1 if `a` equals `b`. The values are compared, so binary points and signs may differ.
+    /// Compares the values, so binary points and signs may differ.
     #[track_caller]
     pub fn equal<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
         let (a, b) = self.comparable(a, b);
@@ -449,9 +438,8 @@ impl Designer {
         self.signal(self.add_named(name, Format::BIT, Driver::Op(Op::All(self.own(a).id()))))
     }
 
-    /// Returns input 0 if the bit `select` is 0, and input 1 if the bit is 1. `select` is a signal of the datapath. Reports a
-    /// mistake if `select` has several bits, or if the inputs have different binary points. The format of the result can
-    /// represent both inputs.
+    /// Returns input 0 or 1 by the bit `select` of the datapath, in a format that can represent both. Reports a mistake if
+    /// `select` has several bits, or if the inputs have different binary points.
     #[track_caller]
     pub fn choose<'d>(
         &'d self,
@@ -463,10 +451,10 @@ impl Designer {
         self.mux_of(name, select, &inputs)
     }
 
-    /// Returns a mux that the microprogram controls by its own select field, `<name>_select`.
+    /// Returns a mux that the microprogram controls by its own field, `<name>_select`.
     ///
-    /// Integer bits and signs of the inputs may differ. Reports a mistake if there is no input, or if the inputs have different
-    /// binary points; [`Signal::with_fraction`] aligns them, and [`Designer::bus`] takes inputs with different binary points.
+    /// Reports a mistake if there is no input, or if the inputs have different binary points. [`Signal::with_fraction`] aligns
+    /// them, and [`Designer::bus`] takes any inputs.
     #[track_caller]
     pub fn mux<'d>(&'d self, name: &str, inputs: impl IntoIterator<Item = Signal<'d>>) -> Mux<'d> {
         let inputs: Vec<_> = inputs.into_iter().collect();
@@ -476,8 +464,8 @@ impl Designer {
         self.mux_on(name, select, inputs)
     }
 
-    /// Returns a mux that shared select lines control. Reports a mistake unless the mux has one input for each choice of the
-    /// lines, and all inputs have the same binary point.
+    /// Returns a mux that shared select lines control. Reports a mistake unless the mux has one input for each choice, and all
+    /// inputs have the same binary point.
     #[track_caller]
     pub fn mux_on<'d>(
         &'d self,
@@ -536,9 +524,8 @@ impl Designer {
         (self.resized(a, format), self.resized(b, format))
     }
 
-    /// Returns `a` as a net of exactly `format`, which must have the same binary point. If the format cannot represent the range
-    /// of `a`, the upper bits are dropped. The loss of these bits is harmless for an operand of a sum whose result fits the
-    /// format.
+    /// Returns `a` as a net of exactly `format`, which must have the same binary point. Upper bits that do not fit are dropped,
+    /// which is harmless for an operand of a sum whose result fits the format.
     #[track_caller]
     pub(crate) fn resized(&self, a: Signal<'_>, format: Format) -> NetId {
         let a = self.own(a);
@@ -558,14 +545,13 @@ impl Designer {
     }
 }
 
-/// Returns `a` and `b` with the same number of fraction bits, the larger of both.
 #[track_caller]
 fn aligned<'d>(a: Signal<'d>, b: Signal<'d>) -> (Signal<'d>, Signal<'d>) {
     let frac = a.format().frac.max(b.format().frac);
     (a.with_fraction(frac), b.with_fraction(frac))
 }
 
-/// A mux that the microprogram controls through a field of the control word.
+/// A mux that a field of the microprogram controls.
 #[derive(Clone, Copy)]
 pub struct Mux<'d> {
     out: Signal<'d>,
@@ -575,13 +561,11 @@ pub struct Mux<'d> {
 described!(Mux, out, "select": field);
 
 impl<'d> Mux<'d> {
-    /// Returns the output of the mux.
     pub fn out(self) -> Signal<'d> {
         self.out
     }
 
-    /// Returns the setting with which a microinstruction selects `input`. Reports a mistake unless `input` is exactly one
-    /// input of the mux.
+    /// Selects `input`. Reports a mistake unless `input` is exactly one input of the mux.
     #[track_caller]
     pub fn pick(self, input: Signal<'d>) -> StepSetting {
         StepSetting::pick(self.out.designer(), self.field, &self.out.name(), input)

@@ -1,4 +1,4 @@
-//! Adds nets, registers and ROMs to a design. The description language and the pipeline builder call these functions.
+//! Adds nets, registers and ROMs to a design, for the description language and the pipeline builder.
 
 use super::{
     About, Control, Design, Driver, Net, NetId, NetlistRegister, NetlistRom, Partition, RegId,
@@ -8,7 +8,6 @@ use glint_base::diagnostic::SourceLocation;
 use glint_base::fixed::Format;
 
 impl Design {
-    /// Returns a design without nets, registers, ROMs and ports. `name` becomes the name of its top module.
     pub fn empty(name: &str) -> Self {
         Self {
             name: name.to_owned(),
@@ -23,14 +22,13 @@ impl Design {
         }
     }
 
-    /// Adds a net, whose name must be unique in the design, and returns its identifier.
+    /// Adds a net, whose name must be unique in the design.
     pub fn add_net(&mut self, net: Net) -> NetId {
         self.nets.push(net);
         NetId(self.nets.len() as u32 - 1)
     }
 
-    /// Makes a new register the driver of the net `q`, and returns the register. The register has no data input yet; the caller
-    /// must connect a data input.
+    /// Makes a new register the driver of the net `q`. The caller must connect its data input.
     pub fn add_register(&mut self, q: NetId, kind: RegisterKind) -> &mut NetlistRegister {
         let at = self.registers.len();
         self.nets[q.index()].driver = Driver::Register(RegId(at as u32));
@@ -38,7 +36,7 @@ impl Design {
         &mut self.registers[at]
     }
 
-    /// Adds a ROM, makes it the driver of its data net, and returns its identifier.
+    /// Adds a ROM and makes it the driver of its data net.
     pub fn add_rom(&mut self, rom: NetlistRom) -> RomId {
         let id = RomId(self.roms.len() as u32);
         self.nets[rom.data.index()].driver = Driver::Rom(id);
@@ -48,7 +46,7 @@ impl Design {
 }
 
 impl Net {
-    /// Makes a named net of the datapath whose interval is the whole range of its format, without a comment and a block number.
+    /// Makes a named net of the datapath whose interval is the whole range of its format.
     pub fn new(name: String, format: Format, driver: Driver, location: SourceLocation) -> Self {
         Self {
             name,
@@ -66,7 +64,7 @@ impl Net {
 }
 
 impl NetlistRom {
-    /// Makes a ROM that is read without a clock, without comments and a block number. `words` are bit patterns, from address 0.
+    /// Makes a ROM that is read without a clock. `words` are bit patterns, from address 0.
     pub fn new(
         name: &str,
         address: NetId,

@@ -1,10 +1,9 @@
-//! Defines the combinational cells of a netlist, with their operands and widths. For example, a cell is a sum, a mux or a slice
-//! of bits.
+//! Defines the combinational cells of a netlist, with their operands and widths.
 
 use super::NetId;
 
-/// A combinational cell, the driver of one net. "Same width" means that the operands and the result have equal widths. Operands
-/// are nets of a design, or other values of type `N`.
+/// A combinational cell, such as a sum or a mux. It drives one net. "Same width" means that the operands and the result have
+/// equal widths. Operands are nets of a design, or other values of type `N`.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Op<N = NetId> {
     /// The bits of the operand, under another name or format; same width.
@@ -12,10 +11,9 @@ pub enum Op<N = NetId> {
     /// The operand with copies of its sign bit (signed operand) or zeros (unsigned operand) above it; the result is wider. For
     /// example, `10` extended to 4 bits is `1110` if signed, and `0010` if unsigned.
     Extend(N),
-    /// The bits of the operand from `low` up, as many as the result is wide. For example, `low` 2 and a result of 3 bits give the
-    /// bits 2, 3 and 4.
+    /// The bits of the operand from `low` up, as many as the result is wide: `low` 2 and a result of 3 bits give the bits 2, 3
+    /// and 4.
     Slice {
-        /// The operand whose bits are taken.
         of: N,
         /// The number of the lowest bit that is taken.
         low: u32,
@@ -33,9 +31,7 @@ pub enum Op<N = NetId> {
     Xor(N, N),
     /// Sum modulo 2^width; operands and result of the same width, the carry one bit.
     Add {
-        /// The first operand of the sum.
         a: N,
-        /// The second operand of the sum.
         b: N,
         /// The carry into the adder, one bit; `None` is a carry of 0.
         carry: Option<N>,
@@ -44,7 +40,7 @@ pub enum Op<N = NetId> {
     Sub(N, N),
     /// The exact product; the operands are both signed or both unsigned, and the result is as wide as both together.
     Mul(N, N),
-    /// A bit that is 1 if the operands are equal. Both operands have the same width.
+    /// A bit that is 1 if the operands, which have the same width, are equal.
     Equal(N, N),
     /// A bit that is 1 if the first operand is less than the second. The operands have the same width, and both are signed or
     /// both unsigned.
@@ -53,19 +49,18 @@ pub enum Op<N = NetId> {
     Any(N),
     /// A bit that is 1 if every bit of the operand is 1.
     All(N),
-    /// The input with the number `select`; all inputs and the result have the same width. A number beyond the last input selects
-    /// the last input.
+    /// The input with the number `select`, or the last input for a larger number. All inputs and the result have the same width.
     Mux {
-        /// The number of the input that passes. For example, four inputs need a select of at least 2 bits.
+        /// A net of enough bits to number all inputs.
         select: N,
-        /// The inputs of the mux, two or more.
+        /// Two or more nets.
         inputs: Vec<N>,
     },
 }
 
 impl<N> Op<N> {
-    /// Returns the same kind of cell with other operands, such as `x + y` for `a + b`. `of` returns the new operand for each
-    /// operand, in the order of the variant's fields.
+    /// Returns the same kind of cell with other operands, such as `x + y` for `a + b`. Calls `of` in the order of the variant's
+    /// fields.
     pub fn map<M>(&self, mut of: impl FnMut(&N) -> M) -> Op<M> {
         match self {
             Self::Relabel(a) => Op::Relabel(of(a)),
@@ -91,7 +86,7 @@ impl<N> Op<N> {
         }
     }
 
-    /// Returns the operands in the order of the variant's fields. For example, a mux has its select first, and then its inputs.
+    /// Returns the operands in the order of the variant's fields, in a mux the select first.
     pub fn operands(&self) -> Vec<N>
     where
         N: Copy,

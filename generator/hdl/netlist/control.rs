@@ -5,79 +5,70 @@ use glint_base::diagnostic::SourceLocation;
 
 /// The control unit of a device: an address counter, a run flag and a ROM of microinstructions.
 ///
-/// An idle device has the address 0 and the run flag 0. `start` sets the flag. From then on the device executes one
-/// microinstruction a clock, and the [`Sequence`] of a microinstruction determines its successor.
+/// An idle device has the address 0 and the run flag 0, which `start` sets. From then on the device executes one microinstruction
+/// a clock, whose [`Sequence`] determines its successor.
 #[derive(Clone, Debug)]
 pub struct Control {
     /// The fields of the control word, the most significant first.
     pub fields: Vec<Field>,
     /// The microinstructions, in the order of their addresses.
     pub microprogram: Vec<Microinstruction>,
-    /// The ROM that stores the control words.
     pub rom: RomId,
     /// The counter that addresses the control ROM.
     pub address: RegId,
-    /// The register with the run flag, which is 1 during a computation.
+    /// The run flag, which is 1 during a computation.
     pub run: RegId,
-    /// Whether the device accepts `start` in the last clock of a computation too, because the operand registers have buffers.
+    /// Whether the device accepts `start` in the last clock of a computation too, because the operands have buffers.
     pub overlaps: bool,
 }
 
-/// A field of the control word: bits of a microinstruction that control one thing in the device. For example, `rough` has the
-/// field `operand_select` of two bits, which chooses among four pairs of factors.
+/// Bits of a microinstruction that control one thing in the device. For example, `rough` has the field `operand_select` of two
+/// bits, which chooses among four pairs of factors.
 #[derive(Clone, Debug)]
 pub struct Field {
-    /// The name of this field of the control word, such as `operand_select`. The name must be a legal Verilog identifier.
+    /// A legal Verilog identifier, such as `operand_select`.
     pub name: String,
-    /// The net that the field drives.
     pub net: NetId,
-    /// Whether the field selects inputs of muxes, loads registers, drives an output, or controls the sequencer.
     pub kind: FieldKind,
-    /// The numbers of the field's bits (its lines) in the block diagram of the document that describes the device, the most
-    /// significant first. The list is empty if the diagram does not show them.
+    /// The numbers of the field's bits (its lines) in the source's block diagram, the most significant first. The list is empty
+    /// if the diagram does not show them.
     pub lines: Vec<u16>,
 }
 
 /// The purpose of a field of the control word.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum FieldKind {
-    /// The field drives select lines of muxes. The texts are the names of the choices, from the value 0 on.
+    /// Select lines of muxes, with the names of the choices from the value 0 on.
     Select(Vec<String>),
-    /// The field is the load enable of registers.
+    /// The load enable of registers.
     Enable,
-    /// The field is an output of the device.
+    /// An output of the device.
     Flag,
-    /// The field is a control line of the sequencer itself. For example, `go_on` of `rough` lets the program continue.
+    /// A control line of the sequencer itself: `go_on` of `rough` lets the program continue.
     Sequence,
 }
 
 /// A microinstruction: the values of all fields of the control word for one clock, and the rule for the next microinstruction.
 #[derive(Clone, Debug)]
 pub struct Microinstruction {
-    /// The name that the device's description gives to the microinstruction.
     pub name: String,
-    /// The value of each field, in the order of [`Control::fields`].
+    /// The values of the fields, in the order of [`Control::fields`].
     pub values: Vec<u64>,
-    /// The rule for the next microinstruction.
     pub sequence: Sequence,
-    /// The place of the microinstruction in the Rust source.
     pub location: SourceLocation,
 }
 
 /// The rule that determines which microinstruction follows.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Sequence {
-    /// The microinstruction at the next address follows.
     Next,
-    /// The same microinstruction follows until `start` is high, and then the next microinstruction follows. The device is not
-    /// busy in this microinstruction.
+    /// The same microinstruction is repeated until `start` is high, while the device is not busy. Then the next one follows.
     WaitStart,
-    /// Microinstruction `to` follows if `condition` is 1, otherwise the microinstruction at the next address. `to` may be a lower
-    /// or the same address (a loop), or a higher address (a jump).
+    /// Microinstruction `to` follows if `condition` is 1, and otherwise the next one. `to` may be a lower or the same address (a
+    /// loop), or a higher one (a jump).
     LoopWhile {
-        /// The condition of the jump, a net of one bit in the datapath.
+        /// A net of one bit in the datapath.
         condition: NetId,
-        /// The address of the microinstruction to which control jumps.
         to: usize,
     },
     /// The computation ends, and the device is idle.
@@ -85,8 +76,7 @@ pub enum Sequence {
 }
 
 impl Control {
-    /// Returns the control unit of a pipeline, which has no microinstructions, fields or sequencer. Its identifiers of ROM and
-    /// registers are invalid.
+    /// Returns the control unit of a pipeline, which has none: its identifiers of ROM and registers are invalid.
     pub fn none() -> Self {
         Self {
             fields: Vec::new(),
@@ -98,9 +88,9 @@ impl Control {
         }
     }
 
-    /// Returns the addresses of the microinstructions that can follow microinstruction `at`, in ascending order. If the last
-    /// microinstruction does not end the computation, its successor is the number of microinstructions. An idle device stays in
-    /// microinstruction 0. For example, microinstruction 0 has the successors 0 and 1.
+    /// Returns the addresses that can follow address `at`, in ascending order. An idle device stays at address 0, so that 0 has
+    /// the successors 0 and 1. A last microinstruction that does not end the computation has an invalid successor, the number of
+    /// microinstructions.
     pub fn successors(&self, at: usize) -> Vec<usize> {
         let next = at + 1;
         let mut successors = match self.microprogram[at].sequence {
@@ -116,8 +106,7 @@ impl Control {
         successors
     }
 
-    /// Returns the addresses of the microinstructions from which control reaches microinstruction `at` in exactly `clocks`
-    /// clocks, in ascending order. With 0 clocks, this is `at` itself.
+    /// Returns the addresses from which control reaches microinstruction `at` in exactly `clocks` clocks, in ascending order.
     pub fn predecessors(&self, at: usize, clocks: u32) -> Vec<usize> {
         let mut after = vec![at];
         for _ in 0..clocks {
@@ -134,8 +123,8 @@ impl Control {
 }
 
 impl Design {
-    /// Returns the position of the lowest bit of each field in the control word, in the order of the fields. The list is empty
-    /// for a pipeline, which has no control word. For example, `rough` has 7 for `operand_select` and 0 for `go_on`.
+    /// Returns the position of the lowest bit of each field in the control word; none for a pipeline. For example, `rough` has 7
+    /// for `operand_select` and 0 for `go_on`.
     pub fn field_positions(&self) -> Vec<u32> {
         if self.control.fields.is_empty() {
             return Vec::new();

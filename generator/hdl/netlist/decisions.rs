@@ -1,17 +1,16 @@
 //! Finds the microinstructions whose successor depends on an operand, and the delay from the control word to `valid`.
 //!
 //! Up to the first such microinstruction, every computation executes the same microinstructions in the same clocks, whatever the
-//! operands are. The proof is an induction over the clocks. The module assumes that a computation loads a register before the
-//! register affects a successor. For example, the operand `shift` of `lyon` determines how often a loop runs.
+//! operands are. The module assumes that a computation loads a register before the register affects a successor. For example,
+//! the operand `shift` of `lyon` determines how often a loop runs.
 
 use std::collections::HashSet;
 
 use super::{Design, Driver, NetId, Role, Sequence};
 use glint_base::cone;
 
-/// Returns the addresses of the microinstructions whose successor may depend on an operand, in ascending order: an operand or
-/// an undriven net affects the condition of their loop or jump. For example, the condition of a loop may be that a value
-/// computed from an operand is not 0.
+/// Returns the addresses of the loops and jumps whose condition an operand or an undriven net may affect, in ascending order.
+/// For example, the condition may be that a value computed from an operand is not 0.
 pub fn decided_by_data(design: &Design) -> Vec<usize> {
     let microprogram = design.control.microprogram.iter().enumerate();
     let decided = microprogram.filter(|(_, microinstruction)| match microinstruction.sequence {
@@ -23,14 +22,13 @@ pub fn decided_by_data(design: &Design) -> Vec<usize> {
     decided.map(|(at, _)| at).collect()
 }
 
-/// Returns the smallest number of registers on a path from the control word (the output of the control ROM) to the output
-/// `valid`. Returns `None` if an operand affects `valid`, or if the design has no `valid`.
+/// Returns the smallest number of registers on a path from the control word to the output `valid`. Returns `None` if an operand
+/// affects `valid`, or if the design has no `valid`.
 pub fn delay_of_valid(design: &Design) -> Option<u32> {
     let valid = design.port(|role| role == Role::Valid)?;
     registers_from_control(design, valid.net)
 }
 
-/// Returns whether a net is the control word, or a field of it.
 fn is_control(design: &Design, net: NetId) -> bool {
     match design.net(net).driver {
         Driver::Field(_) => true,
@@ -39,9 +37,8 @@ fn is_control(design: &Design, net: NetId) -> bool {
     }
 }
 
-/// Returns the smallest number of registers on a path from the control word to `net`. If the control word does not affect the
-/// net, returns a number that is larger than the registers on any path to it. Returns `None` if an operand or an undriven net
-/// affects `net`.
+/// Returns the smallest number of registers on a path from the control word to `net`. Without such a path, returns a larger
+/// number than any path has. Returns `None` if an operand or an undriven net affects `net`.
 fn registers_from_control(design: &Design, net: NetId) -> Option<u32> {
     let inputs = |net| match is_control(design, net) {
         true => Vec::new(),
@@ -82,7 +79,6 @@ fn registers_from_control(design: &Design, net: NetId) -> Option<u32> {
     Some(shortest.unwrap_or(delay))
 }
 
-/// Returns whether an input of this `role` is a signal of the handshake, not an operand.
 fn is_handshake(role: Role) -> bool {
     matches!(role, Role::Start | Role::Reset | Role::InValid | Role::OutReady)
 }
@@ -93,8 +89,8 @@ mod tests {
     use crate::dsl::{Designer, Signal, end, loop_while, step};
     use glint_base::fixed::Format;
 
-    /// Returns a design with a counter of three bits that begins at `start`. The result is loaded after the last
-    /// iteration of a loop, and `valid` comes two clocks after that load.
+    /// A counter of three bits begins at `start`. The result is loaded after the last iteration of a loop, and `valid` comes two
+    /// clocks after that load.
     fn counted(start: for<'d> fn(&'d Designer, Signal<'d>) -> Signal<'d>) -> Design {
         let d = Designer::new("counted");
         let x = d.operand("x", Format::unsigned(3, 0));

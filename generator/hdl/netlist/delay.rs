@@ -1,63 +1,60 @@
-//! Finds the delay lines of a pipeline: chains of registers that only pass a value on to a later stage. The Verilog may replace
-//! delay lines by memories.
+//! Finds the delay lines of a pipeline, which the Verilog may replace by memories.
 
 use std::collections::BTreeMap;
 
 use super::{Design, Driver, NetId, Op, Pipeline, RegId};
 
-/// A delay line of a pipeline: registers that carry values from one stage to a later stage, with no reader in between. All its
-/// values travel between the same two stages.
+/// Registers of a pipeline that carry values from one stage to a later stage, with no reader in between. All its values travel
+/// between the same two stages.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DelayLine {
-    /// The number of the stage that computes the values.
+    /// The stage that computes the values.
     pub from: usize,
-    /// The number of the stage that reads the values.
+    /// The stage that reads the values.
     pub to: usize,
-    /// The net that says when the values move to the next stage; `None` if they always move.
+    /// Says when the values move to the next stage; `None` if they always move.
     pub enable: Option<NetId>,
-    /// The values that travel through this delay line, in the order of their first registers in the design.
+    /// The values, in the order of their first registers in the design.
     pub values: Vec<Delayed>,
 }
 
 /// A value of a delay line, which passes through one register in each of several stages.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Delayed {
-    /// The net with the value that enters the delay line, the data input of its first register.
+    /// The value that enters the delay line, the data input of its first register.
     pub data: NetId,
-    /// The registers that the value passes, one for each stage. Only the last register has a reader besides the next register.
+    /// One register for each stage. Only the last has a reader besides the next register.
     pub registers: Vec<RegId>,
 }
 
 impl DelayLine {
-    /// Returns the number of words of a memory that replaces the registers of the delay line. One more register behind the memory
-    /// stores the output of the memory. For example, five registers become a memory of four words.
+    /// Returns the number of words of a memory that replaces the delay line. One more register behind the memory stores its
+    /// output: five registers become a memory of four words.
     pub fn words(&self) -> usize {
         self.values[0].passed().len()
     }
 }
 
 impl Delayed {
-    /// Returns the registers that a memory replaces: all registers that the value passes except the last register, from which the
-    /// value is read.
+    /// Returns the registers that a memory replaces: all except the last, from which the value is read.
     pub fn passed(&self) -> &[RegId] {
         &self.registers[..self.registers.len() - 1]
     }
 
-    /// Returns the last register that the value passes, from which the value is read.
+    /// Returns the register from which the value is read.
     pub fn last(&self) -> RegId {
         self.registers[self.registers.len() - 1]
     }
 }
 
 impl Design {
-    /// Returns the delay lines that the Verilog writes as memories. A delay line is written as a memory if the target has small
-    /// memories and a memory takes fewer look-up tables and registers. The list is empty for a design that is no pipeline.
+    /// Returns the delay lines that the Verilog writes as memories, because the target has small memories and a memory takes
+    /// fewer look-up tables and registers.
     ///
     /// A memory returns the same value for each point as the registers would, however often the enable stops the pipeline. After
-    /// a reset, which drops all points, a memory begins with its first word again. The side channel stays in registers, because
-    /// the proof by induction follows its value from stage to stage. Registers inside a multiplier stay registers too. Among
-    /// values that travel between the same two stages, a value also stays in registers if its registers have another enable than
-    /// the registers of the first value.
+    /// a reset, which drops all points, it begins with its first word again. The side channel stays in registers, because the
+    /// proof by induction follows its value from stage to stage. Registers inside a multiplier, and those with another enable
+    /// than the first value between the same two stages, stay too.
     pub fn delay_lines(&self) -> Vec<DelayLine> {
         let Some(pipeline) = &self.pipeline else { return Vec::new() };
         let Some(memory) = pipeline.delay_memory else { return Vec::new() };
@@ -95,9 +92,8 @@ impl Design {
         lines
     }
 
-    /// Returns the number of the register that follows register `at` in a delay line. This next register is the only reader of
-    /// register `at`, and has the same enable. Returns `None` if another net reads register `at`, or if one of the registers has
-    /// a reset. Returns `None` if register `at` belongs to the side channel or is inside a multiplier.
+    /// Returns the register that follows register `at` in a delay line: its only reader, with the same enable. Neither may have a
+    /// reset or belong to the side channel or to a multiplier.
     fn next_of_line(
         &self,
         pipeline: &Pipeline,
@@ -115,7 +111,7 @@ impl Design {
         is_alike.then_some(next)
     }
 
-    /// Returns whether a net has, directly or through wiring, a word of a synchronous ROM.
+    /// Returns whether a net carries, directly or through wiring, a word of a synchronous ROM.
     fn is_of_block_memory(&self, id: NetId) -> bool {
         match &self.net(id).driver {
             Driver::Rom(rom) => self.roms[rom.index()].synchronous,
@@ -126,7 +122,6 @@ impl Design {
         }
     }
 
-    /// Returns for each net the list of its readers.
     fn readers(&self) -> Vec<Vec<NetReader>> {
         let mut readers = vec![Vec::new(); self.nets.len()];
         for (at, register) in self.registers.iter().enumerate() {
@@ -149,11 +144,10 @@ impl Design {
     }
 }
 
-/// A reader of a net.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum NetReader {
-    /// The data input of the register with this number.
+    /// The data input of a register.
     Register(usize),
-    /// Any other reader: an enable, a ROM, a cell or a port.
+    /// An enable, a ROM, a cell or a port.
     Other,
 }

@@ -5,8 +5,8 @@ use std::fmt::{self, Write as _};
 
 use super::{Design, Driver, NetId, Op};
 
-/// The netlist as text: a line with the name of the design, then one line for each port, net and microinstruction, each list in
-/// its order in the design. Tests compare this text with stored texts.
+/// Prints the name of the design, then one line for each port, net and microinstruction, each list in its order in the design.
+/// Tests compare this text with stored texts.
 impl fmt::Display for Design {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let name = |id: NetId| self.net(id).name.as_str();

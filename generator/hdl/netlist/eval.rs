@@ -1,7 +1,7 @@
 //! Evaluates a netlist: each cell as [`Op`] defines it, and a whole design clock by clock.
 //!
 //! This interpreter defines the meaning of a netlist, and is written to be read. The simulator ([`crate::sim`]) is written for
-//! speed. The interpreter and the simulator share no code that evaluates cells, and tests compare both.
+//! speed. They share no code that evaluates cells, and tests compare both.
 
 use super::{Design, Driver, NetId, Op, RomId};
 use glint_base::fixed::{Format, mask};
@@ -14,15 +14,14 @@ fn two<const N: usize>(a: &[u64; N], b: &[u64; N], cell: impl Fn(u64, u64) -> u6
     std::array::from_fn(|lane| cell(a[lane], b[lane]))
 }
 
-/// Returns a function that converts the bit pattern of a signed net with `width` bits to a number. For example, `0b111` with 3
-/// bits gives −1.
+/// Returns a function that reads a bit pattern of `width` bits in two's complement: `0b111` with 3 bits is −1.
 fn signed(width: u32) -> impl Fn(u64) -> i64 {
     let drop = 64 - width;
     move |bits| (bits << drop) as i64 >> drop
 }
 
-/// Returns the bit patterns of a cell's result, `width` bits wide, for `N` independent sets of operands. [`Op`] defines what each
-/// cell computes. `format` gives the format of an operand, `of` its `N` bit patterns.
+/// Evaluates a cell, as [`Op`] defines it, for `N` independent sets of operands. The result has `width` bits; `of` gives the bit
+/// patterns of an operand.
 pub fn cell<'a, Operand: Copy, const N: usize>(
     op: &Op<Operand>,
     width: u32,
@@ -86,7 +85,7 @@ pub fn cell<'a, Operand: Copy, const N: usize>(
     }
 }
 
-/// A simple simulator of a design. The interpreter stores the state of registers and ROMs, and evaluates one net after another.
+/// A simple simulator, which evaluates one net after another.
 pub struct Interpreter<'a> {
     design: &'a Design,
     order: Vec<NetId>,
@@ -97,13 +96,13 @@ impl<'a> Interpreter<'a> {
     /// Makes a simulator of the design at power-up: inputs, registers and the outputs of synchronous ROMs are 0.
     ///
     /// # Errors
-    /// Fails if the design has a combinational loop. The error is the nets along the loop.
+    /// Fails if the design has a combinational loop. The error lists the nets along the loop.
     pub fn new(design: &'a Design) -> Result<Self, Vec<NetId>> {
         Ok(Self { design, order: design.levelise()?, values: vec![[0]; design.nets.len()] })
     }
 
     /// Applies the bit patterns of all input ports, in the order of the ports, and evaluates every net. Bits above the width of a
-    /// port are ignored. Registers and synchronous ROMs keep their outputs.
+    /// port are ignored.
     pub fn settle(&mut self, inputs: &[u64]) {
         let design = self.design;
         for (port, &bits) in design.inputs().zip(inputs) {
@@ -127,8 +126,8 @@ impl<'a> Interpreter<'a> {
         }
     }
 
-    /// Performs the rising edge of the clock after [`Interpreter::settle`]: registers and synchronous ROMs load their new values.
-    /// If the input `rst_n` is 0, registers with a reset take their reset values.
+    /// Performs a rising edge after [`Interpreter::settle`]: registers and synchronous ROMs load. If the input `rst_n` is 0,
+    /// registers with a reset take their reset values.
     pub fn edge(&mut self) {
         let design = self.design;
         let reset_port = design.port(|role| role == super::Role::Reset);
@@ -152,12 +151,12 @@ impl<'a> Interpreter<'a> {
         }
     }
 
-    /// Returns the bit pattern of a net. The bit patterns of cells come from the latest [`Interpreter::settle`].
+    /// Returns the bit pattern of a net; for a cell, since the latest [`Interpreter::settle`].
     pub fn value(&self, net: NetId) -> u64 {
         self.values[net.index()][0]
     }
 
-    /// Returns the word that a ROM's address selects, or 0 if the address is behind the last word.
+    /// Returns the addressed word, or 0 behind the last word.
     fn read(&self, rom: RomId) -> u64 {
         let rom = self.design.rom(rom);
         rom.words.get(self.value(rom.address) as usize).copied().unwrap_or(0)

@@ -5,9 +5,8 @@ use super::Op;
 use glint_base::fixed::{Format, mask};
 use glint_base::interval::{Interval, hull, product, wrap};
 
-/// Returns the interval of raw values that a cell with the result `format` can produce. If no narrower interval is known, the
-/// returned interval is the whole range of the format. `of` gives the interval of an operand, `format_of` its format. For
-/// example, a product of a net with itself is a square, whose interval begins at 0 or above.
+/// Returns the interval of raw values that a cell with the result `format` can produce, at worst the whole range of the format.
+/// For example, a product of a net with itself is a square, which is never negative.
 pub fn of_cell<N: Copy + PartialEq>(
     op: &Op<N>,
     format: Format,
@@ -25,8 +24,8 @@ pub fn of_cell<N: Copy + PartialEq>(
         Op::Slice { of: a, low } => wrapped((of(*a).0 >> low, of(*a).1 >> low)),
         Op::Concat(parts) => wrapped(parts.iter().fold((0, 0), |(low, high), part| {
             let width = format_of(*part).width();
-            // A negative value of a signed part contributes its bit pattern, so that all patterns count. If the part is the
-            // top of a signed number, its sign is the sign of the number, and the order of values remains.
+            // A negative value of a signed part contributes its bit pattern, so that all patterns count. If the part is the top
+            // of a signed number, its sign is the sign of the number, and the order of values remains.
             let is_sign = format.signed && Some(part) == parts.first();
             let own = if of(*part).0 < 0 && !is_sign { (0, mask(width).into()) } else { of(*part) };
             ((low << width) + own.0, (high << width) + own.1)

@@ -1,13 +1,12 @@
 //! Packs the values of the fields of a microinstruction into a control word, and unpacks them.
 
-/// Packs the values of the fields of a microinstruction into a control word, the first field in the top bits. `widths` are the
-/// fields' widths in bits; each value must fit into its field. For example, widths 2 and 1 with the values 1 and 1 give `0b011`.
+/// Packs the fields of a microinstruction into a control word, the first field in the top bits. `widths` are in bits, and each
+/// value must fit. For example, widths 2 and 1 with the values 1 and 1 give `0b011`.
 pub fn pack(widths: &[u32], values: &[u64]) -> u64 {
     widths.iter().zip(values).fold(0, |word, (width, value)| word << width | value)
 }
 
-/// Returns the values of the fields in a control word, in the order of `widths`, the fields' widths in bits. The first field is
-/// in the top bits. For example, `0b011` with widths 2 and 1 gives 1 and 1.
+/// The inverse of [`pack`]: `0b011` with widths 2 and 1 gives 1 and 1.
 pub fn unpack(widths: &[u32], word: u64) -> Vec<u64> {
     let mut rest = word;
     let mut values: Vec<u64> = widths

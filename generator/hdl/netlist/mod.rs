@@ -3,8 +3,7 @@
 //!
 //! A [`Design`] is a list of *nets*. Every net has a [`Format`], the interval of its raw values, and exactly one [`Driver`], such
 //! as a register or a combinational [`Op`]. [`Design::verify`] checks widths, names and drivers, and [`Design::levelise`] finds
-//! combinational loops. There is one clock. Only registers and synchronous ROMs have state, which changes on the rising edge of
-//! the clock.
+//! combinational loops. Only registers and synchronous ROMs have state, which changes on the rising edge of the one clock.
 
 mod builder;
 mod cell;
@@ -44,8 +43,6 @@ macro_rules! id {
         pub struct $name(pub u32);
 
         impl $name {
-            /// Returns the identifier as an index into the list of its kind: nets, registers, ROMs or fields of a design, or
-            /// nodes of a graph.
             pub fn index(self) -> usize {
                 self.0 as usize
             }
@@ -55,146 +52,132 @@ macro_rules! id {
 pub(crate) use id;
 
 id!(
-    /// The identifier of a net: its position in [`Design::nets`].
+    /// A position in [`Design::nets`].
     NetId
 );
 id!(
-    /// The identifier of a register: its position in [`Design::registers`].
+    /// A position in [`Design::registers`].
     RegId
 );
 id!(
-    /// The identifier of a ROM: its position in `Design::roms`.
+    /// A position in `Design::roms`.
     RomId
 );
 id!(
-    /// The identifier of a field of the control word: its position in [`Control::fields`].
+    /// A position in [`Control::fields`].
     FieldId
 );
 
 /// The Verilog module to which a net belongs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Partition {
-    /// The control unit: the sequencer and the control ROM.
+    /// The sequencer and the control ROM.
     Control,
-    /// The datapath: operand registers, arithmetic and result registers.
+    /// Operand registers, arithmetic and result registers.
     Datapath,
 }
 
 /// A wire of the design, with its format, its interval and its one driver.
 #[derive(Clone, Debug)]
 pub struct Net {
-    /// The name of the net, which must be a legal Verilog identifier and distinct in the design.
+    /// A legal Verilog identifier, distinct in the design.
     pub name: String,
-    /// The fixed-point format of the net: the place of the binary point, and whether the top bit is a sign.
     pub format: Format,
-    /// The interval of raw values that the net can carry: the smallest and the largest. For example, (0, 255) for `u8.0`.
+    /// The smallest and the largest raw value that the net can carry, such as (0, 255) for `u8.0`.
     pub range: Interval,
-    /// The one thing that drives the net, such as an input port, a register or a cell.
     pub driver: Driver,
-    /// The number of the block that drives this net, in the block diagram of the document that describes the device. `None` if
-    /// the diagram does not number this block.
+    /// The number of the block that drives this net in the source's block diagram, if it has one.
     pub block: Option<u16>,
-    /// A comment of one line on the net, which the Verilog shows, or an empty text.
+    /// A comment of one line for the Verilog, or an empty text.
     pub doc: String,
-    /// The topic of the net's comment `doc`. A pipeline shows only comments on the device itself.
+    /// The topic of `doc`. A pipeline shows only comments on the device itself.
     pub doc_topic: Topic,
     /// Whether the author of the description named the net, so that waveforms and Verilog show it. All other nets are wiring that
-    /// the description language adds (extensions, slices, rounding). Such a net is named after the signal that it serves.
+    /// the description language adds (extensions, slices, rounding).
     pub named: bool,
-    /// The Verilog module to which the net belongs.
     pub partition: Partition,
-    /// The place in the Rust source where the device's description makes the net.
+    /// The place in the Rust source that makes the net.
     pub location: SourceLocation,
 }
 
-/// The driver of a net: the one thing that determines its value.
+/// Determines the value of a net.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Driver {
     /// No driver yet, an error that [`Design::verify`] reports.
     Undriven,
-    /// An input port drives the net.
     Input,
-    /// A constant drives the net; the number is its bit pattern.
+    /// A constant, as a bit pattern.
     Constant(u64),
-    /// The output of a register drives the net.
+    /// The output of a register.
     Register(RegId),
-    /// The data output of a ROM drives the net.
+    /// The data output of a ROM.
     Rom(RomId),
-    /// A field of the control word drives the net.
+    /// A field of the control word.
     Field(FieldId),
-    /// A combinational cell drives the net.
     Op(Op),
 }
 
 /// A register, which loads `data` on a rising edge if `enable` is 1 or absent.
 #[derive(Clone, Debug)]
 pub struct NetlistRegister {
-    /// The net that the register drives. Name, format, block number and location of the net are also the register's.
+    /// The net that the register drives, which has its name, format, block number and location.
     pub q: NetId,
     /// The data input; `None` is an error that [`Design::verify`] reports.
     pub data: Option<NetId>,
-    /// The load enable, one bit. If this field is `None`, the register loads on every rising edge.
+    /// The load enable, one bit; without it, the register loads on every rising edge.
     pub enable: Option<NetId>,
-    /// The bit pattern that the register loads on a rising edge with `rst_n` low. If this field is `None`, a reset does not
-    /// affect the register.
+    /// The bit pattern that the register loads on a rising edge with `rst_n` low. `None` if a reset does not affect it.
     pub reset: Option<u64>,
-    /// The purpose of the register.
     pub kind: RegisterKind,
 }
 
-/// The purpose of a register in a design. For example, checks compare the architectural registers with the golden model.
+/// The purpose of a register. Checks compare the architectural registers with the golden model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RegisterKind {
-    /// An operand register. The write strobe loads it from an input port, or `start` loads it from its buffer. The register does
-    /// not change during a computation. For example, `cos_gamma_reg` of `rough`.
+    /// The write strobe loads it from an input port, or `start` from its buffer. It does not change during a computation. For
+    /// example, `cos_gamma_reg` of `rough`.
     Operand,
-    /// A buffer in front of an operand register, which accepts the next operand at any time.
+    /// A buffer in front of an operand register accepts the next operand at any time.
     Buffer,
     /// A register of the datapath that the description declares. The golden model predicts it on every clock.
     Architectural,
-    /// A register of the sequencer. The golden model predicts it on every clock too.
+    /// Part of the sequencer. The golden model predicts it on every clock too.
     Sequencer,
-    /// A register inside a block, for example behind a synchronous ROM or a multiplier. No golden model predicts it.
+    /// Inside a block, for example behind a synchronous ROM or a multiplier. No golden model predicts it.
     Internal,
 }
 
-/// A read-only memory of a design, with its address, its data net and its words.
 #[derive(Clone, Debug)]
 pub struct NetlistRom {
-    /// The name of the ROM, which must be a legal Verilog identifier. The contents go to `<design>_<name>.mem`. For example, the
-    /// ROM `sine` of `rough` is in `rough_sine.mem`.
+    /// A legal Verilog identifier. The contents go to `<design>_<name>.mem`, for example `rough_sine.mem`.
     pub name: String,
-    /// The net with the address of the word to read. Its interval must lie between 0 and the number of words less one.
+    /// The address, whose interval must lie between 0 and the number of words less one.
     pub address: NetId,
-    /// The net with the word that was read. The net must be wide enough for every word.
+    /// The word that was read. The net must be wide enough for every word.
     pub data: NetId,
     /// Whether the ROM is read at the rising edge (block RAM) rather than without a clock (logic).
     pub synchronous: bool,
-    /// The read enable of a synchronous ROM, one bit. The ROM keeps its output while the enable is 0. If this field is `None`,
-    /// the ROM reads at every rising edge.
+    /// The read enable of a synchronous ROM, one bit. The ROM keeps its output while the enable is 0. Without one, it reads at
+    /// every rising edge.
     pub enable: Option<NetId>,
-    /// The first read port of this ROM's memory, if this ROM is the second read port; both ROMs must have the same words.
-    /// Otherwise `None`.
+    /// The first read port of this ROM's memory, if this ROM is the second one; both must have the same words.
     pub shares: Option<RomId>,
-    /// The contents of the ROM: its words as bit patterns, from address 0.
+    /// Bit patterns, from address 0.
     pub words: Vec<u64>,
-    /// A comment on the meaning of a word of the ROM, in one or more lines.
     pub doc: Vec<String>,
-    /// A comment for each word of the ROM, or an empty list.
+    /// A comment for each word, or an empty list.
     pub comments: Vec<String>,
-    /// The number of the ROM in the block diagram of the document that describes the device. `None` if the diagram does not
-    /// number the ROM.
+    /// The number of the ROM in the source's block diagram, if it has one.
     pub block: Option<u16>,
-    /// The place in the Rust source where the device's description makes the ROM.
+    /// The place in the Rust source that makes the ROM.
     pub location: SourceLocation,
 }
 
 /// A port of the design, other than the clock `clk`.
 #[derive(Clone, Debug)]
 pub struct Port {
-    /// The net of the port, which has its name, format, block number and comment.
+    /// The net that has the port's name, format, block number and comment.
     pub net: NetId,
-    /// The role of the port in the interface of the device. For example, an operand, its strobe or `start`.
     pub role: Role,
 }
 
@@ -203,12 +186,11 @@ pub struct Port {
 pub enum Role {
     /// Input `rst_n`, the reset: active low, synchronous.
     Reset,
-    /// Input `start`, which begins a computation if the device is not busy. If operands have buffers, `start` also begins a
-    /// computation in the last clock of the computation before.
+    /// Input `start`, which begins a computation if the device is not busy, or with operand buffers in its last clock too.
     Start,
     /// Input for the value of an operand, which the write strobe loads.
     Operand {
-        /// The net of the write strobe, an input of one bit that loads the operand register or its buffer.
+        /// The input of one bit that loads the operand register or its buffer.
         strobe: NetId,
     },
     /// Input, the write strobe of an operand register. For example, `cos_gamma_write` writes `cos_gamma_reg`.
@@ -238,7 +220,6 @@ pub enum Role {
 }
 
 impl Role {
-    /// Returns whether the port is an input.
     pub fn is_input(self) -> bool {
         matches!(
             self,
@@ -257,52 +238,45 @@ impl Role {
 /// Texts about a device, for the header of the Verilog, the manifest and the documentation.
 #[derive(Clone, Debug, Default)]
 pub struct About {
-    /// The name of the device, such as `rough`.
+    /// The device's name, such as `rough`.
     pub device: String,
-    /// The title of the device, one line.
+    /// The title has one line.
     pub title: String,
-    /// The formula that the device computes, as text.
     pub formula: String,
-    /// The document that describes the device, and the part of the document, as text for people. Empty if no document describes
-    /// the device.
+    /// The document that describes the device, and the part of the document, for people. Empty if there is no such document.
     pub source: String,
-    /// Paragraphs about the device: how its description interprets the source document, its formats and its limits.
+    /// How the description interprets the source document, its formats and its limits.
     pub notes: Vec<Note>,
 }
 
 impl About {
-    /// Returns the texts of the paragraphs about the device.
     pub fn paragraphs(&self) -> impl Iterator<Item = &str> {
         self.notes.iter().map(|note| note.text.as_str())
     }
 }
 
-/// A paragraph about a device, for pages and for the header of the Verilog.
+/// A paragraph about a device.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Note {
-    /// The topic of the paragraph. A pipeline shows only paragraphs on the device itself.
     pub topic: Topic,
-    /// The text of the paragraph.
     pub text: String,
 }
 
-/// The topic of a paragraph or comment about a device. A pipeline shows only texts on the device itself, because the rest is true
-/// only of the sequential design.
+/// The topic of a paragraph or comment. A pipeline shows only texts on the device itself, because the rest is true only of the
+/// sequential design.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Topic {
-    /// The paragraph is about the device itself, whatever its architecture.
+    /// The device itself, whatever its architecture.
     Device,
-    /// The paragraph is about hardware that a microprogram uses several times: multipliers, the control ROM, the clocks of a
-    /// loop.
+    /// Hardware that a microprogram uses several times: multipliers, the control ROM, the clocks of a loop.
     Microprogram,
-    /// The paragraph is about writes to operands, and how long the outputs keep their values.
+    /// Writes to operands, and how long the outputs keep their values.
     Writes,
-    /// The paragraph is about the number of clocks from `start` to `valid`.
+    /// The number of clocks from `start` to `valid`.
     Latency,
 }
 
 impl Topic {
-    /// Makes a paragraph about a device that has this topic.
     pub fn note(self, text: impl Into<String>) -> Note {
         Note { topic: self, text: text.into() }
     }
@@ -317,61 +291,55 @@ impl<T: Into<String>> From<T> for Note {
 /// The netlist of a device: datapath, control unit and ports.
 #[derive(Clone, Debug)]
 pub struct Design {
-    /// The name of the top module, which must be a legal Verilog identifier.
+    /// The name of the top module, a legal Verilog identifier.
     pub name: String,
-    /// Texts about the device, for people.
     pub about: About,
-    /// All nets of the design. A [`NetId`] is an index into this list.
+    /// A [`NetId`] is an index into this list.
     pub nets: Vec<Net>,
-    /// All registers of the design. A [`RegId`] is an index into this list.
+    /// A [`RegId`] is an index into this list.
     pub registers: Vec<NetlistRegister>,
     /// All ROMs, the control ROM among them.
     pub roms: Vec<NetlistRom>,
-    /// The ports of the design: inputs, then outputs, in the order of declaration.
+    /// Inputs, then outputs, in the order of declaration.
     pub ports: Vec<Port>,
     /// The control unit; for a pipeline it is [`Control::none`].
     pub control: Control,
-    /// The facts about the stages of a pipeline; `None` for any other design.
+    /// The facts about the stages, if the design is a pipeline.
     pub pipeline: Option<Pipeline>,
-    /// Warnings about logic on which no output depends, about muxes that always pass the same input, and about choices that no
-    /// microinstruction makes.
+    /// Logic on which no output depends, muxes that always pass the same input, and choices that no microinstruction makes.
     pub warnings: Vec<Diagnostic>,
 }
 
 impl Design {
-    /// Returns the net with the identifier `id`.
     pub fn net(&self, id: NetId) -> &Net {
         &self.nets[id.index()]
     }
 
-    /// Returns the width of the net `id` in bits.
+    /// Returns the width in bits.
     pub fn width(&self, id: NetId) -> u32 {
         self.net(id).format.width()
     }
 
-    /// Returns the register with the identifier `id`.
     pub fn register(&self, id: RegId) -> &NetlistRegister {
         &self.registers[id.index()]
     }
 
-    /// Returns whether `rom` stores control words. Returns true for the control ROM, and for another ROM at the same address,
-    /// which has the fields that do not fit into the control ROM.
+    /// Returns whether `rom` stores control words: the control ROM, or another ROM at the same address for the fields that do not
+    /// fit into it.
     pub fn is_control_memory(&self, rom: &NetlistRom) -> bool {
         self.roms.get(self.control.rom.index()).is_some_and(|it| it.address == rom.address)
     }
 
-    /// Returns the ROM with the identifier `id`.
     pub fn rom(&self, id: RomId) -> &NetlistRom {
         &self.roms[id.index()]
     }
 
-    /// Returns the net with this name, or `None` if the design has no such net.
     pub fn find(&self, name: &str) -> Option<NetId> {
         let at = self.nets.iter().position(|net| net.name == name)?;
         Some(NetId(at as u32))
     }
 
-    /// Returns the net that net `id` only renames, directly or through several names. Returns `id` itself if it renames no net.
+    /// Returns the net that net `id` only renames, through any number of names, or `id` itself.
     pub fn renamed(&self, id: NetId) -> NetId {
         match self.net(id).driver {
             Driver::Op(Op::Relabel(of)) => self.renamed(of),
@@ -379,28 +347,25 @@ impl Design {
         }
     }
 
-    /// Returns every net with its id.
     pub fn iter(&self) -> impl Iterator<Item = (NetId, &Net)> {
         self.nets.iter().enumerate().map(|(at, net)| (NetId(at as u32), net))
     }
 
-    /// Returns the ports that are inputs, in the order of declaration.
     pub fn inputs(&self) -> impl Iterator<Item = &Port> {
         self.ports.iter().filter(|port| port.role.is_input())
     }
 
-    /// Returns the ports that are outputs, in the order of declaration.
     pub fn outputs(&self) -> impl Iterator<Item = &Port> {
         self.ports.iter().filter(|port| !port.role.is_input())
     }
 
-    /// Returns the first port of the design for whose role `wanted` returns true, or `None` if no port has such a role.
+    /// Returns the first port with a wanted role.
     pub fn port(&self, wanted: impl Fn(Role) -> bool) -> Option<&Port> {
         self.ports.iter().find(|port| wanted(port.role))
     }
 
-    /// Returns the nets on which net `id` depends within one clock: operands of its cell, the address of an asynchronous ROM, or
-    /// the control word of a field. The list is empty for inputs, constants, registers and synchronous ROMs.
+    /// Returns the nets on which net `id` depends within one clock. They are operands of its cell, the address of an asynchronous
+    /// ROM, or the control word of a field.
     pub fn combinational_inputs(&self, id: NetId) -> Vec<NetId> {
         match &self.net(id).driver {
             Driver::Op(op) => op.operands(),
@@ -414,11 +379,10 @@ impl Design {
         }
     }
 
-    /// Returns all nets of the design in an order in which each net follows the nets on which it depends within one clock.
+    /// Returns all nets, each behind the nets on which it depends within one clock.
     ///
     /// # Errors
-    /// Fails if there is a combinational loop. The error is the nets along the loop: each net depends on the next net, and the
-    /// last net depends on the first net.
+    /// Fails if there is a combinational loop. The error lists its nets: each depends on the next, and the last on the first.
     pub fn levelise(&self) -> Result<Vec<NetId>, Vec<NetId>> {
         #[derive(Clone, Copy, PartialEq)]
         enum VisitMark {
@@ -432,7 +396,7 @@ impl Design {
             if mark[root as usize] != VisitMark::New {
                 continue;
             }
-            // Each entry has a net, and its inputs that the search has not visited.
+            // Each entry has a net and its unvisited inputs.
             let mut path = vec![(NetId(root), self.combinational_inputs(NetId(root)))];
             mark[root as usize] = VisitMark::Open;
             while let Some((net, pending)) = path.last_mut() {
@@ -462,7 +426,7 @@ impl Design {
         Ok(order)
     }
 
-    /// Returns the number of bits in all ROMs of the design together: the number of words times their width, added up.
+    /// Returns the number of bits in all ROMs together.
     pub fn rom_bits(&self) -> u64 {
         self.roms.iter().map(|rom| rom.words.len() as u64 * u64::from(self.width(rom.data))).sum()
     }

@@ -1,96 +1,87 @@
 //! Defines the facts about a pipeline that its netlist alone does not state: stages, handshake, shared multipliers, and
-//! checkpoints. A checkpoint is a value that a register of the sequential design has at some time too, so that checks can compare
-//! both designs.
+//! checkpoints.
 
 use std::collections::BTreeMap;
 
 use super::{Design, Driver, Net, NetId, Op, RegId};
 use glint_base::target::DelayMemory;
 
-/// The facts about a pipeline, a design that accepts a point (a set of operands) every clock or every few clocks.
+/// The facts about a design that accepts a point (a set of operands) every clock or every few clocks.
 #[derive(Clone, Debug, Default)]
 pub struct Pipeline {
-    /// The name of the FPGA target whose delays Glint assumed when it divided the computation into stages. For example, `ecp5`.
+    /// The FPGA target whose delays divide the computation into stages, such as `ecp5`.
     pub target: String,
     /// The clock frequency that the stages reach, in MHz.
     pub clock_mhz: f64,
-    /// The highest clock frequency that any number of stages can reach, in MHz. The slowest single operation limits it.
+    /// The highest clock frequency that any number of stages can reach, in MHz. The slowest operation limits it.
     pub most_mhz: f64,
-    /// The interval: the smallest number of clocks between two points. A counter counts slots from 0 to this number less one, and
-    /// the pipeline accepts a point in slot 0. A point is in stage s while the slot is s modulo the interval. For example, with
-    /// an interval of 4 a point is in stage 6 while the slot is 2.
+    /// The smallest number of clocks between two points. A counter counts slots from 0 to this number less one, and slot 0
+    /// accepts a point. A point is in stage s while the slot is s modulo the interval. For example, with an interval of 4 a point
+    /// is in stage 6 while the slot is 2.
     pub interval: usize,
-    /// The counter of slots, or `None` if the interval is 1. The counter increases by one whenever the points move to the next
-    /// stage.
+    /// The counter of slots, which increases whenever the points move to the next stage; `None` if the interval is 1.
     pub slot: Option<NetId>,
-    /// For each slot in which registers load a value that they must keep for a whole interval, the net that enables these
-    /// registers.
+    /// For each slot in which registers load a value for a whole interval, the net that enables these registers.
     pub loads: BTreeMap<usize, NetId>,
-    /// The multipliers that serve several products. Each product uses the multiplier in a slot of its own.
+    /// The multipliers that serve several products, each product in a slot of its own.
     pub units: Vec<Unit>,
     /// Whether the environment can stall the pipeline by setting `out_ready` to 0.
     pub stall: bool,
-    /// The number of bits of the side channel, which carries data of the user along with each point.
+    /// The number of bits of the side channel, which carries the user's data along with each point.
     pub side: u32,
-    /// The kind of memory with which the Verilog replaces delay lines, chains of registers that only carry a value to a later
-    /// stage. `None` if the registers stay.
+    /// The kind of memory that replaces delay lines in the Verilog. `None` if their registers stay.
     pub delay_memory: Option<DelayMemory>,
-    /// The stages, from the operands on. The results are in the registers behind the last stage, so there are as many stages as
-    /// clocks from a point to its results. For example, `rough_pipelined` has 18 stages.
+    /// The stages, from the operands on. The results are in the registers behind the last one, so there are as many stages as
+    /// clocks from a point to its results: `rough_pipelined` has 18.
     pub stages: Vec<Stage>,
-    /// The number of the stage for each net. A register in stage k has a value that stage k − 1 computed.
+    /// The stage of each net. A register in stage k has a value that stage k − 1 computed.
     pub stage_of: Vec<usize>,
-    /// For each net, the name of the value that it carries. The name is the same in every stage through which the value travels.
+    /// For each net, the name of the value that it carries, the same in every stage through which the value travels.
     pub value_of: Vec<String>,
-    /// The nets of the handshake: the valid bits, the slot counter, and the nets that determine when points move.
+    /// The valid bits, the slot counter, and the nets that determine when points move.
     pub handshake: Vec<NetId>,
-    /// For each stage from 1 on, including the results, the net that is 1 if the stage has a point.
+    /// For each stage from 1 on, the net that is 1 if the stage has a point. The last entry is the stage of the results.
     pub valid: Vec<NetId>,
-    /// For each stage from 1 on, the net that carries the side channel's data. The list is empty if there is no side channel.
+    /// For each stage from 1 on, the net of the side channel; empty without one.
     pub side_values: Vec<NetId>,
-    /// The registers that become output registers of multipliers, inside a DSP block of the FPGA.
+    /// The registers that become output registers of multipliers, inside a DSP block.
     pub registered: Vec<RegId>,
-    /// The checkpoints: values of the pipeline that a register of the sequential design has at some time too. Checks compare
-    /// these values of both designs.
     pub checkpoints: Vec<Checkpoint>,
 }
 
-/// A multiplier that several products share. A slot is the number of a clock modulo the interval, and the multiplier computes one
-/// product in each slot.
+/// A multiplier that several products share. It computes one product in each slot, a clock modulo the interval.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unit {
-    /// The name of the multiplier in the Verilog, and of the register behind it.
+    /// The name of the multiplier, and of the register behind it, in the Verilog.
     pub name: String,
-    /// The nets of the multiplier: its muxes if it has any, its two operand registers, its product, and the register behind it.
+    /// Its muxes if it has any, its two operand registers, its product, and the register behind it.
     pub nets: Vec<NetId>,
-    /// For each slot (clock modulo the interval), the name of the product that the multiplier computes in this slot; `None` for a
-    /// slot without a product.
+    /// For each slot, the name of the product that the multiplier computes.
     pub serves: Vec<Option<String>>,
 }
 
-/// A stage of a pipeline: the logic between two rows of registers. For example, the first stage of `rough_pipelined` has 4.4 ns
-/// of logic and 86 register bits.
+/// The logic between two rows of registers. For example, the first stage of `rough_pipelined` has 4.4 ns of logic and 86 register
+/// bits.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stage {
-    /// The microinstructions of the sequential design that compute the values of this stage.
+    /// The microinstructions of the sequential design that compute its values.
     pub microinstructions: Vec<String>,
-    /// The delay of the longest path through the logic of the stage, in nanoseconds.
+    /// The delay of the longest path through the logic, in nanoseconds.
     pub logic_ns: f64,
-    /// The part of the clock period, in nanoseconds, that remains after the delays of the logic and the registers.
+    /// The rest of the clock period after the delays of logic and registers, in nanoseconds.
     pub slack_ns: f64,
-    /// The number of bits in the pipeline registers at the end of the stage.
+    /// The number of bits in the registers at the end of the stage.
     pub register_bits: u32,
-    /// The number of bits that memories store in place of registers at the end of the stage.
+    /// The number of bits that memories store in place of registers there.
     pub delayed_bits: u32,
 }
 
-/// A checkpoint: a value of a pipeline that a register of the sequential design has in some microinstruction too. Checks compare
-/// both values.
+/// A value of a pipeline that a register of the sequential design has at some time too. Checks compare both values.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Checkpoint {
-    /// The name of the register in the sequential design.
+    /// A register of the sequential design.
     pub register: String,
-    /// The address of the microinstruction in which the sequential design's register has the value.
+    /// The microinstruction in which the register has the value.
     pub address: usize,
     /// The number of earlier executions of this microinstruction in the same computation.
     pub visit: usize,
@@ -99,20 +90,18 @@ pub struct Checkpoint {
 }
 
 impl Pipeline {
-    /// Returns the first clock in which a net of the pipeline has its value for a point. The pipeline accepts the point in clock
-    /// 0, so this is the stage of the net.
+    /// Returns the stage of a net: the first clock in which it has its value for a point that the pipeline accepts in clock 0.
     pub fn clock_of(&self, net: NetId) -> usize {
         self.stage_of[net.index()]
     }
 
-    /// Returns whether a net belongs to a multiplier that several products share.
     pub fn is_shared(&self, net: NetId) -> bool {
         self.units.iter().any(|unit| unit.nets.contains(&net))
     }
 
-    /// Returns the multipliers of the pipeline, each with its name and the product that it computes in each slot. The shared
-    /// multipliers come first. A multiplier that serves a single product has the name of this product. A product with a constant
-    /// takes no multiplier. For example, with an interval of 3, `lerp` has one multiplier, which is idle in two slots.
+    /// Returns each multiplier's name and the product that it computes in each slot, the shared multipliers first. A multiplier
+    /// with a single product has its name; a product with a constant takes none. For example, with an interval of 3, `lerp` has
+    /// one multiplier, which is idle in two slots.
     pub fn multipliers(&self, design: &Design) -> Vec<(String, Vec<Option<String>>)> {
         let shared = self.units.iter().map(|unit| (unit.name.clone(), unit.serves.clone()));
         let mut multipliers: Vec<_> = shared.collect();
@@ -130,8 +119,7 @@ impl Pipeline {
         multipliers
     }
 
-    /// Returns the named nets whose logic is in stage number `stage`, each with the name of its value, in the order of the
-    /// design. The function leaves out nets of the handshake.
+    /// Returns the named nets whose logic is in this stage, each with the name of its value, without nets of the handshake.
     pub fn computed<'a>(
         &'a self,
         design: &'a Design,
@@ -154,17 +142,16 @@ impl Pipeline {
     }
 }
 
-/// A multiplier of a pipeline together with its output register, which is inside the same DSP block.
+/// A multiplier together with its output register inside the same DSP block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Multiplier {
-    /// The net of the product that the output register loads.
+    /// The net that the output register loads.
     pub product: NetId,
-    /// The nets of the product's two factors.
     pub factors: [NetId; 2],
 }
 
 impl Design {
-    /// Returns the multiplier whose output register is this register, or `None` for any other register.
+    /// Returns the multiplier whose output register is this register.
     pub fn multiplier(&self, register: RegId) -> Option<Multiplier> {
         self.pipeline.as_ref().filter(|it| it.registered.contains(&register))?;
         let product = self.register(register).data?;

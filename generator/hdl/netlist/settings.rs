@@ -1,13 +1,11 @@
 //! Evaluates control lines, such as enables and the selects of muxes, for one microinstruction.
-//!
-//! For example, a microinstruction that loads a register sets the field that is the register's enable to 1.
 
 use super::{Design, Driver, Microinstruction, NetId, Op};
 use glint_base::fixed::mask;
 
-/// Returns the value of a control line, such as the select of a mux, while `microinstruction` is executed. Follows fields of the
-/// control word and constants through renaming, slices, inverters, and bitwise `and` and `or`. Returns `None` if the value
-/// depends on anything else; but an `and` with an operand 0 is 0 whatever its other operand is.
+/// Returns the value of a control line while `microinstruction` is executed. Follows fields and constants through renaming,
+/// slices, inverters, and bitwise `and` and `or`. Returns `None` if the value depends on anything else; but an `and` with an
+/// operand 0 is 0.
 pub fn setting_of(
     design: &Design,
     microinstruction: &Microinstruction,
@@ -28,8 +26,8 @@ pub fn setting_of(
     }
 }
 
-/// Returns the nets on which `net` depends within the clock of `microinstruction`. If the microinstruction determines the
-/// select of a mux, the mux depends only on its chosen input.
+/// Returns the nets on which `net` depends within the clock of `microinstruction`. If it determines the select of a mux, the mux
+/// depends only on the chosen input.
 pub fn passed_on(design: &Design, microinstruction: &Microinstruction, net: NetId) -> Vec<NetId> {
     if let Driver::Op(Op::Mux { select, inputs }) = &design.net(net).driver
         && let Some(chosen) = setting_of(design, microinstruction, *select)

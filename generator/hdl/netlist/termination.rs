@@ -1,33 +1,30 @@
 //! Computes an upper limit of the clocks that a computation can take, from its microprogram alone.
 //!
 //! A loop is accepted only if it consists of one microinstruction and its condition depends on one register alone, a counter. The
-//! module does not check that the counter counts down in every iteration; the formal proof checks this.
+//! module does not check that the counter counts down; the formal proof does.
 
 use crate::netlist::{Design, Driver, NetId, RegId, Sequence};
 use glint_base::cone;
 
-/// An upper limit of the number of clocks from a microinstruction to the clock in which `done` is high. For example, 3 clocks
-/// plus the value of the counter `remaining`.
+/// An upper limit of the clocks until `done` is high, such as 3 clocks plus the value of the counter `remaining`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Left {
-    /// The part of the limit that does not depend on a counter, in clocks.
+    /// The part that does not depend on a counter, in clocks.
     pub clocks: u64,
-    /// The counter register that determines how often the microinstruction repeats itself. The limit is `clocks` plus the current
-    /// value of this register. `None` if the microinstruction does not repeat itself.
+    /// The register whose current value is added, because it determines how often the microinstruction repeats itself.
     pub counter: Option<RegId>,
 }
 
-/// Returns for each microinstruction of a design an upper limit of the clocks from its execution to the clock with `done`. The
-/// limit holds only if the register of each loop's condition counts down to the end of the loop, by one in each iteration. The
-/// function does not check this.
+/// Returns for each microinstruction an upper limit of the clocks from its execution to the clock with `done`. The caller must
+/// know that the register of each loop's condition counts down by one in each iteration.
 ///
-/// Returns `None` if a microinstruction waits for `start`, if the last microinstruction does not end the computation, or if a
-/// loop has several microinstructions. Returns `None` if the condition of a loop depends on anything but one register. A jump
-/// forward has no such restriction.
+/// Returns `None` if a microinstruction waits for `start`, or the last one does not end the computation. It is also `None` if a
+/// loop has several microinstructions, or its condition depends on anything but one register. A jump forward has no such
+/// restriction.
 pub fn remaining(design: &Design) -> Option<Vec<Left>> {
     let microprogram = &design.control.microprogram;
     let mut left: Vec<Left> = Vec::with_capacity(microprogram.len());
-    // The list is built from the last microinstruction to the first.
+    // The successors must be known, so the list begins with the last microinstruction.
     for (at, microinstruction) in microprogram.iter().enumerate().rev() {
         let entering = |to: usize| -> Option<u64> {
             let Left { clocks, counter } = *left.get((microprogram.len() - 1).checked_sub(to)?)?;
@@ -51,9 +48,8 @@ pub fn remaining(design: &Design) -> Option<Vec<Left>> {
     Some(left)
 }
 
-/// Returns the number of the latest clock in which the output `done` can be high, under the assumption of [`remaining`] about
-/// counters. Clock 0 is the clock that accepts `start`. Returns `None` if [`remaining`] finds no limit, or if the design has no
-/// microprogram.
+/// Returns the latest clock in which `done` can be high, if the caller knows the same of the counters. Clock 0 accepts `start`.
+/// Returns `None` if [`remaining`] finds no limit, or if the design has no microprogram.
 pub fn latest_done(design: &Design) -> Option<u32> {
     // Microinstruction 0 is executed in clock 1.
     let first = *remaining(design)?.first()?;
@@ -61,13 +57,12 @@ pub fn latest_done(design: &Design) -> Option<u32> {
     u32::try_from(1 + first.clocks + most).ok()
 }
 
-/// Returns the largest value that the width of a register allows. For example, a register of 3 bits gives 7.
+/// Returns the largest value of the register's width.
 fn largest(design: &Design, register: RegId) -> u64 {
     glint_base::fixed::mask(design.width(design.register(register).q))
 }
 
-/// Returns the one register on which `net` depends within one clock. Returns `None` if the net depends on no register or on
-/// several, on an input, on a ROM or on a field.
+/// Returns the one register that alone determines `net` within one clock, if there is one.
 fn decides(design: &Design, net: NetId) -> Option<RegId> {
     let mut found = None;
     for net in cone::reached([net], |net| design.combinational_inputs(net)) {
@@ -89,7 +84,7 @@ mod tests {
 
     type Condition = for<'d> fn(&'d Designer, Signal<'d>, Signal<'d>) -> Signal<'d>;
 
-    /// Makes a design with a counter of three bits, which counts from the operand down to 0 in microinstruction 2.
+    /// A counter of three bits counts from the operand down to 0 in microinstruction 2.
     fn counted(condition: Condition) -> Design {
         design(|d| {
             let x = d.operand("x", Format::unsigned(3, 0));

@@ -1,9 +1,7 @@
 //! Checks the structure of a [`Design`]: its names, drivers, widths, combinational loops and microprogram.
 //!
 //! The description language runs these checks on every design that a user describes; tests run them on generated pipelines. For
-//! example, the checks report a net without a driver, and a product that is narrower than both factors together. rust_hdl's own
-//! `check_all` only finds unconnected pins and writes to inputs. No check of this module notices a wrong formula; only
-//! co-simulation with the golden model finds such a mistake.
+//! example, they report a net without a driver. Only co-simulation with the golden model notices a wrong formula.
 
 use std::collections::HashMap;
 
@@ -14,8 +12,8 @@ use glint_base::fixed::{MAX_WIDTH, mask};
 use glint_base::identifier;
 
 impl Design {
-    /// Returns every mistake in the design's names and structure, such as a net with two drivers. Only if the list is empty, the
-    /// mistakes in the microprogram are searched and returned instead.
+    /// Returns the mistakes in names and structure, such as a net with two drivers. Without such mistakes, checks the
+    /// microprogram too.
     pub fn verify(&self) -> Vec<Diagnostic> {
         let mut found = self.verify_structure();
         self.names(&mut found);
@@ -26,7 +24,7 @@ impl Design {
     }
 
     /// Returns the mistakes that make a design meaningless: references to missing parts, nets without a driver or with two
-    /// drivers, wrong widths, and combinational loops. The function does not check the names and the microprogram.
+    /// drivers, wrong widths, and combinational loops. Names and the microprogram are not checked.
     pub fn verify_structure(&self) -> Vec<Diagnostic> {
         let mut found = Vec::new();
         // The later checks must not index parts that do not exist, or ask for an impossible width.
@@ -66,8 +64,7 @@ impl Design {
                 Driver::Undriven | Driver::Input | Driver::Constant(_) => {}
             }
         }
-        // Only nets have a location of their own in the description. Mistakes of all other parts get the location of
-        // the first net.
+        // Only nets have a location in the description. Mistakes of all other parts get the location of the first net.
         let Some(first) = self.nets.first().map(|net| net.location) else { return };
         let mut referred: Vec<NetId> = Vec::new();
         for register in &self.registers {
@@ -225,7 +222,7 @@ impl Design {
         }
     }
 
-    /// Checks that a cell and its operands have the widths and signs that its [`Op`] documents. The error is the violated rule.
+    /// Checks the widths and signs that [`Op`] documents. The error is the violated rule.
     fn cell(&self, id: NetId, op: &Op) -> Result<(), &'static str> {
         let width = |id: NetId| self.width(id);
         let signed = |id: NetId| self.net(id).format.signed;
@@ -364,7 +361,6 @@ impl Design {
     }
 }
 
-/// Returns `why` as an error if `holds` is false.
 fn ok(holds: bool, why: &'static str) -> Result<(), &'static str> {
     if holds { Ok(()) } else { Err(why) }
 }

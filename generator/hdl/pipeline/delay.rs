@@ -4,8 +4,7 @@ use super::graph::{Cell, Graph, NodeId};
 use crate::netlist::Op;
 use glint_base::target::Timing;
 
-/// Returns the delay from the operands of the cell `op` to its value, in nanoseconds. Wiring and inverters take 0 ns. `width`
-/// gives the width of each operand in bits.
+/// Returns the delay of the cell `op`; wiring and inverters take 0 ns. `width` gives the width of each operand in bits.
 pub fn delay_of<N: Copy>(timing: &Timing, op: &Op<N>, width: &impl Fn(N) -> u32) -> f64 {
     match op {
         Op::Relabel(_) | Op::Extend(_) | Op::Slice { .. } | Op::Concat(_) | Op::Not(_) => 0.0,
@@ -19,23 +18,21 @@ pub fn delay_of<N: Copy>(timing: &Timing, op: &Op<N>, width: &impl Fn(N) -> u32)
     }
 }
 
-/// Returns the delay of a tree of four-input look-up tables that combines `inputs` bits, in nanoseconds. For example, 5 to 16
-/// bits take two levels of look-up tables.
+/// Returns the delay of a tree of four-input look-up tables that combines `inputs` bits. For example, 5 to 16 bits take two
+/// levels.
 fn tables(timing: &Timing, inputs: u32) -> f64 {
     let bits = u32::BITS - (inputs.max(2) - 1).leading_zeros();
     timing.logic * f64::from(bits.div_ceil(2))
 }
 
-/// Returns the delay of a multiplexer with `values` inputs on the FPGA target, in nanoseconds. For example, 4 inputs and 2 select
-/// bits take two levels of look-up tables.
+/// Returns the delay of a multiplexer with `values` inputs: 4 inputs and 2 select bits take two levels of look-up tables.
 pub fn of_choice(timing: &Timing, values: usize) -> f64 {
     let select = usize::BITS - values.saturating_sub(1).leading_zeros();
     delay_of(timing, &Op::Mux { select: 0, inputs: vec![0; values] }, &|_| select)
 }
 
-/// Returns the delay from the operands of a node of the computation's graph to the node's value, in nanoseconds. For an
-/// operand of the design, this is the time that the environment takes to deliver the operand. For a word of a block memory, it
-/// is the time from the clock edge to the word.
+/// Returns the delay from the operands of a node to its value. For an operand of the design, this is the time that the
+/// environment takes to deliver it. A word of a block memory has the time from the clock edge.
 pub fn node_delay(timing: &Timing, graph: &Graph, id: NodeId) -> f64 {
     match &graph.node(id).cell {
         Cell::Operand(_) => timing.input,
@@ -51,27 +48,25 @@ pub fn node_delay(timing: &Timing, graph: &Graph, id: NodeId) -> f64 {
     }
 }
 
-/// Returns the additional setup time, in nanoseconds, of the register behind a node of the computation's graph: the delay of one
-/// look-up table for a mux with a constant input and more than one bit, and otherwise 0.
+/// Returns the additional setup time of the register behind a mux with a constant input and more than one bit.
 ///
-/// Synthesis turns such a mux into the set or the reset of the register. The select of the mux then passes through a look-up
-/// table with the clock enable. From this table, it takes a longer path to the register.
+/// Synthesis turns such a mux into the set or the reset of the register. A look-up table then combines the select with the clock
+/// enable, and its path to the register is longer.
 pub fn setup(timing: &Timing, graph: &Graph, id: NodeId) -> f64 {
     let Cell::Op(Op::Mux { inputs, .. }) = &graph.node(id).cell else { return 0.0 };
     let has_constant = inputs.iter().any(|input| graph.constant_of(*input).is_some());
     if has_constant && graph.width(id) > 1 { timing.logic } else { 0.0 }
 }
 
-/// Returns the select of a mux that synthesis implements by the reset of the register behind it, which takes no look-up tables.
-/// Such a mux has more than one bit and two inputs, one of them a constant. Returns `None` for any other node.
+/// Returns the select of a mux that takes no look-up tables, because synthesis implements it by the reset of the register behind
+/// it. Such a mux has more than one bit and two inputs, one of them a constant.
 pub fn reset_by(graph: &Graph, id: NodeId) -> Option<NodeId> {
     let Cell::Op(Op::Mux { select, inputs }) = &graph.node(id).cell else { return None };
     let constants = inputs.iter().filter(|input| graph.constant_of(**input).is_some()).count();
     (graph.width(id) > 1 && inputs.len() == 2 && constants == 1).then_some(*select)
 }
 
-/// Returns whether a node of the computation's graph reads a ROM that synthesis puts into a block memory. The word of such a ROM
-/// comes one clock after the address.
+/// Returns whether a node reads a ROM that synthesis puts into a block memory, whose word comes one clock after the address.
 pub fn is_block(timing: &Timing, graph: &Graph, id: NodeId) -> bool {
     match graph.node(id).cell {
         Cell::Read { address, .. } => {

@@ -2,15 +2,14 @@
 //!
 //! Synthesis implements such a mux by the set or the reset of the register behind it. A look-up table combines the select of the
 //! mux with the clock enable. The path from this table to the register is too long for clocks at which products need output
-//! registers. Synthesis treats each bit separately, and so does this pass.
+//! registers. The pass treats each bit separately, as synthesis does.
 
 use super::graph::{Cell, Graph, Label, NodeId, NodeOp};
 use super::rebuild::rebuilt;
 use super::unroll::Unrolled;
 use glint_base::fixed::Format;
 
-/// Returns a copy of the computation with gates in place of every mux of two inputs that has an input with constant bits. For
-/// example, `s ? 0 : x` becomes `x & ~s`, bit by bit.
+/// Replaces every two-input mux with constant bits by gates, bit by bit: `s ? 0 : x` becomes `x & ~s`.
 pub fn gated(unrolled: &Unrolled) -> Unrolled {
     rebuilt(unrolled, |graph, op, node| match op {
         NodeOp::Mux { select, inputs } => {
@@ -35,12 +34,11 @@ pub fn gated(unrolled: &Unrolled) -> Unrolled {
     })
 }
 
-/// One bit position of a mux with two inputs: the bit of input 0 and the bit of input 1. A bit is `None` if it is not constant.
+/// The bits of both inputs of a mux at one position, `None` if not constant.
 type BitPair = (Option<bool>, Option<bool>);
 
-/// Returns `width` bits of a mux, from bit `low` on. The mux has the inputs `zero` and `one`. `pair` states for each input which
-/// constant all these bits have in it, or `None` if they are not constant. For example, with constant 0 in `zero` only, the
-/// result is `one & select`.
+/// Returns `width` bits, from bit `low` on, of the mux of `zero` and `one`. `pair` states which constant all these bits have in
+/// each input. For example, with constant 0 in `zero` only, the result is `one & select`.
 fn part(
     graph: &mut Graph,
     select: NodeId,
@@ -75,15 +73,15 @@ fn part(
     graph.op(op, format, label)
 }
 
-/// Returns a node of `width` bits. Each bit equals the bit `select`, or its inverse if `inverted`.
+/// Returns a node whose `width` bits all equal the bit `select`, or its inverse if `inverted`.
 fn spread(graph: &mut Graph, select: NodeId, inverted: bool, width: u32, label: &Label) -> NodeId {
     let bit = if inverted { graph.op(NodeOp::Not(select), Format::BIT, label) } else { select };
     let sign = graph.op(NodeOp::Relabel(bit), Format::signed(0, 0), label);
     graph.resize(sign, width, true)
 }
 
-/// Returns the bits of a node, from the lowest up. A bit is `None` unless constants and wiring alone determine it. For example,
-/// the concatenation of a variable bit and the constant `01` gives 1, 0, `None`.
+/// Returns the bits of a node, from the lowest up, as far as constants and wiring alone determine them. For example, the
+/// concatenation of a variable bit and the constant `01` gives 1, 0, `None`.
 fn known(graph: &Graph, id: NodeId) -> Vec<Option<bool>> {
     let node = graph.node(id);
     let width = graph.width(id) as usize;
@@ -112,7 +110,7 @@ mod tests {
     use super::*;
     use crate::pipeline::parse_text::{computed, parsed};
 
-    /// A mux with every kind of bit pair: both bits constant, only one bit constant, no bit constant.
+    /// Has every kind of bit pair: both bits constant, only one, none.
     const MUX: &str = "
 select u1.0
 a u2.0

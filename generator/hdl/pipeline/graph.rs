@@ -13,61 +13,55 @@ use glint_base::fixed::{Format, mask};
 use glint_base::interval::{self, Interval};
 
 netlist::id!(
-    /// The number of a node in a [`Graph`], the graph of all values of a computation.
+    /// The number of a node in a [`Graph`].
     NodeId
 );
 
-/// A combinational cell, such as a sum or a mux, whose operands are nodes of a [`Graph`].
+/// A combinational cell whose operands are nodes of a [`Graph`].
 pub type NodeOp = netlist::Op<NodeId>;
 
 /// The operation that computes the value of a node of a [`Graph`].
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Cell {
-    /// An operand of the design. The number is its position among all operands.
+    /// An operand of the design, by its position among all operands.
     Operand(usize),
-    /// An unknown value: the content of the named register or ROM output before its first load.
+    /// The content of the named register or ROM output before its first load.
     Unknown(String),
     /// A constant bit pattern.
     Constant(u64),
-    /// A read of a ROM: the word at an address.
+    /// The word of a ROM at an address.
     Read {
-        /// The ROM of the sequential design that is read.
         rom: RomId,
-        /// The node whose value is the address.
         address: NodeId,
     },
-    /// A combinational cell; its operands are nodes.
     Op(NodeOp),
 }
 
-/// The texts by which people recognise a value in Verilog and in diagrams: its name, its comment, and the number of its block.
+/// The texts by which people recognise a value in Verilog and in diagrams.
 #[derive(Clone, Debug)]
 pub struct Label {
-    /// The name of the net or register in the sequential design that has the value. For example, `product`.
+    /// The net or register of the sequential design that has the value.
     pub name: String,
-    /// A comment of one line, taken from the sequential design, or an empty text.
+    /// A comment of one line from the sequential design, or an empty text.
     pub doc: String,
-    /// The number of the block that computes the value, in the block diagram of the document that describes the device. `None` if
-    /// the diagram does not number this block.
+    /// The number of the block that computes the value in the source's block diagram, if it has one.
     pub block: Option<u16>,
-    /// Whether the author of the device's description chose the name. Glint generates all other names.
+    /// Whether the author of the description chose the name, not Glint.
     pub named: bool,
-    /// The name of the whole value if the node is a part of a value; otherwise `None`. For example, the part `base_low` has
-    /// `base` here.
+    /// The name of the whole value if the node is a part: `base` for `base_low`.
     pub part_of: Option<String>,
     /// The line of the Rust source that describes the value.
     pub location: &'static Location<'static>,
 }
 
 impl Label {
-    /// Makes the label of a value whose name the author of the description chose.
+    /// Labels a value whose name the author of the description chose.
     pub fn new(name: String, location: &'static Location<'static>) -> Self {
         Self { name, doc: String::new(), block: None, named: true, part_of: None, location }
     }
 
-    /// Returns the label of a part of the labelled value, such as its low bits. A part of a part is named after the whole value,
-    /// so that names stay short. For example, the part `low` of `base` is named `base_low`, and the part `high` of that part
-    /// `base_high`.
+    /// Returns the label of a part, such as the low bits. A part of a part is named after the whole value, so that names stay
+    /// short. The part `low` of `base` is `base_low`, and the part `high` of that part `base_high`.
     pub fn part(&self, name: &str) -> Self {
         let whole = self.part_of.as_ref().unwrap_or(&self.name);
         let part_of = Some(whole.clone());
@@ -75,46 +69,40 @@ impl Label {
     }
 }
 
-/// A value of the computation: the operation that computes it, its format, and its interval.
 #[derive(Clone, Debug)]
 pub struct Node {
-    /// The operation that computes the value, such as a sum of two other nodes.
     pub cell: Cell,
-    /// The fixed-point format of the value.
     pub format: Format,
-    /// The interval of raw values that the node can have.
+    /// The raw values that the node can have.
     pub range: Interval,
-    /// The name, the comment and the source line of the value.
     pub label: Label,
-    /// The first executed microinstruction whose execution made the value, as a position in [`super::unroll::Unrolled::steps`].
+    /// The first executed microinstruction that made the value, as a position in [`super::unroll::Unrolled::steps`].
     pub step: usize,
     /// Whether a register of the sequential design loads the value, so that the node has the register's label.
     pub held: bool,
 }
 
-/// All values of a computation. Every node has a higher number than its operands.
+/// All values of a computation. A node has a higher number than its operands.
 #[derive(Clone, Debug, Default)]
 pub struct Graph {
-    /// The nodes of the graph. The number of a node is its index in this list.
+    /// The number of a node is its index.
     pub nodes: Vec<Node>,
     known: HashMap<(Cell, u32, bool), NodeId>,
-    /// The microinstruction that is being unrolled, as a position in [`super::unroll::Unrolled::steps`]. New nodes get this
-    /// number as their `step`.
+    /// The microinstruction that is being unrolled, as a position in [`super::unroll::Unrolled::steps`]. New nodes get it.
     pub step: usize,
 }
 
 impl Graph {
-    /// Returns the node with the number `id`.
     pub fn node(&self, id: NodeId) -> &Node {
         &self.nodes[id.index()]
     }
 
-    /// Returns the width of a node in bits.
+    /// Returns the width in bits.
     pub fn width(&self, id: NodeId) -> u32 {
         self.node(id).format.width()
     }
 
-    /// Returns the bit pattern of the constant if node `id` is a constant, otherwise `None`.
+    /// Returns the bit pattern of a constant node.
     pub fn constant_of(&self, id: NodeId) -> Option<u64> {
         match self.node(id).cell {
             Cell::Constant(bits) => Some(bits),
@@ -122,15 +110,14 @@ impl Graph {
         }
     }
 
-    /// Returns all nodes on which the values of `roots` depend, including the roots. Each node follows its operands.
+    /// Returns all nodes on which `roots` depend, with them, each behind its operands.
     pub fn cone(&self, roots: impl IntoIterator<Item = NodeId>) -> Vec<NodeId> {
         let operands = |at: usize| self.nodes[at].cell.operands().into_iter().map(NodeId::index);
         let live = cone::needed(self.nodes.len(), roots.into_iter().map(NodeId::index), operands);
         (0..live.len()).filter(|&at| live[at]).map(|at| NodeId(at as u32)).collect()
     }
 
-    /// Narrows the interval of node `id`, its smallest and largest raw value, to the intersection with `range`. The interval
-    /// stays as it is if the intersection is empty. Returns `id`.
+    /// Narrows the interval of node `id` to its intersection with `range`, unless that is empty. Returns `id`.
     pub fn refine(&mut self, id: NodeId, range: Interval) -> NodeId {
         let node = &mut self.nodes[id.index()];
         // On a path that is never taken, the intersection can be empty.
@@ -138,8 +125,7 @@ impl Graph {
         id
     }
 
-    /// Gives node `id` the label of the register that loads its value. A constant, and a node that another register has already
-    /// named, keep their labels.
+    /// Gives node `id` the label of the register that loads its value. Constants and nodes of other registers keep their labels.
     pub fn name_after(&mut self, id: NodeId, register: &Label) {
         let node = &mut self.nodes[id.index()];
         if !matches!(node.cell, Cell::Constant(_)) && !node.held {
@@ -148,16 +134,15 @@ impl Graph {
         }
     }
 
-    /// Returns the node of a constant, and adds it to the graph unless the graph has an equal constant. Bits of `bits` beyond the
-    /// width of `format` are dropped.
+    /// Returns the node of a constant. Bits of `bits` beyond the width of `format` are dropped.
     pub fn constant(&mut self, bits: u64, format: Format, label: &Label) -> NodeId {
         let bits = bits & mask(format.width());
         let raw = format.raw(bits);
         self.insert(Cell::Constant(bits), format, (raw, raw), label)
     }
 
-    /// Returns the node of a constant of the description, as [`Graph::constant`] does. The constant gets the label of the
-    /// description, even if the graph has an equal constant of the microprogram, such as the value of a select line.
+    /// Like [`Graph::constant`], but the description's label replaces the label of an equal constant of the microprogram, such as
+    /// the value of a select line.
     pub fn described_constant(&mut self, bits: u64, format: Format, label: &Label) -> NodeId {
         let id = self.constant(bits, format, label);
         let node = &mut self.nodes[id.index()];
@@ -168,8 +153,8 @@ impl Graph {
         id
     }
 
-    /// Returns the node for the word at `address` of a ROM with the contents `words`. Adds the node to the graph unless the graph
-    /// has it. If `address` is a constant, the returned node is the constant word, or 0 behind the last word.
+    /// Returns the node for the word at `address` of a ROM with the contents `words`. A constant `address` gives the constant
+    /// word, or 0 behind the last one.
     pub fn read(
         &mut self,
         rom: RomId,
@@ -190,9 +175,8 @@ impl Graph {
         self.insert(Cell::Read { rom, address }, format, range, label)
     }
 
-    /// Returns the node for the operation `cell`, and adds it unless the graph has an equal node. Two nodes are equal if
-    /// operation, width and sign agree; the place of the binary point does not matter. The interval of an equal node narrows to
-    /// `range`. An equal node whose name was generated takes `label` if an author chose the name in `label`.
+    /// Returns the node for the operation `cell`, an existing one if operation, width and sign agree; the binary point does not
+    /// matter. The interval of an existing node narrows to `range`, and a name that an author chose replaces a generated one.
     pub fn insert(&mut self, cell: Cell, format: Format, range: Interval, label: &Label) -> NodeId {
         let key = (cell.clone(), format.width(), format.signed);
         if let Some(&id) = self.known.get(&key) {
@@ -209,8 +193,7 @@ impl Graph {
         id
     }
 
-    /// Returns a node with the low `width` bits of node `id`, or with its bits extended to `width`. The bits are extended by the
-    /// sign if node `id` is signed, and otherwise by zeros. The result is signed if `signed`.
+    /// Truncates node `id` to `width` bits, or extends it by its sign or zeros. The result is signed if `signed`.
     pub fn resize(&mut self, id: NodeId, width: u32, signed: bool) -> NodeId {
         let node = self.node(id);
         let (format, label) = (node.format, Label { named: false, ..node.label.clone() });
@@ -223,8 +206,7 @@ impl Graph {
         }
     }
 
-    /// Returns a node with the value of the combinational cell `op`, which is an existing, a simpler or a new node. For example,
-    /// a sum of two constants becomes a constant.
+    /// Returns a node with the value of the cell `op`, simplified if possible: a sum of two constants becomes a constant.
     pub fn op(&mut self, op: NodeOp, format: Format, label: &Label) -> NodeId {
         if let Some(id) = self.fold(&op, format, label) {
             let node = &mut self.nodes[id.index()];
@@ -242,8 +224,7 @@ impl Graph {
         self.insert(Cell::Op(op), format, range, label)
     }
 
-    /// Returns an upper limit for a mux of the form `value < limit ? value : limit`: the largest value of `limit`. Returns `None`
-    /// if `op` has another form.
+    /// Returns the largest value of `limit` as an upper limit of a mux `value < limit ? value : limit`.
     fn limit(&self, op: &NodeOp) -> Option<i128> {
         let NodeOp::Mux { select, inputs } = op else { return None };
         match (&self.node(*select).cell, &inputs[..]) {
@@ -256,8 +237,8 @@ impl Graph {
         }
     }
 
-    /// Returns whether the mux `select ? limit : value` is superfluous because `value` never exceeds the constant `limit`.
-    /// Returns true if `limit` is a power of two, and `select` is the bit of `value` with this weight.
+    /// Returns whether the mux `select ? limit : value` is superfluous because `value` never exceeds the constant `limit`:
+    /// `limit` is a power of two, and `select` is the bit of `value` with this weight.
     fn is_kept(&self, value: NodeId, select: NodeId, limit: u64) -> bool {
         let (low, high) = self.node(value).range;
         let Cell::Op(NodeOp::Slice { of, low: bit }) = self.node(select).cell else { return false };
@@ -268,8 +249,7 @@ impl Graph {
             && limit.is_power_of_two()
     }
 
-    /// Returns a simpler node with the value of the cell `op`, or an existing node with this value. Returns `None` if no
-    /// simplification applies. For example, `x + 0` gives `x`.
+    /// Returns a simpler or existing node with the value of the cell `op`, if there is one: `x + 0` gives `x`.
     fn fold(&mut self, op: &NodeOp, format: Format, label: &Label) -> Option<NodeId> {
         let known = op.operands().into_iter();
         let known: Option<HashMap<NodeId, [u64; 1]>> =
@@ -373,14 +353,12 @@ impl Graph {
         }
     }
 
-    /// Returns whether the node `inverse` is the inverted node `of`.
     fn is_inverse(&self, inverse: NodeId, of: NodeId) -> bool {
         matches!(self.node(inverse).cell, Cell::Op(NodeOp::Not(it)) if it == of)
     }
 
-    /// Returns a slice without the zeros that an extension has put above an unsigned number. Returns `None` if the slice has no
-    /// such zeros. For example, if a number of 3 bits is extended to 8, the slice of all 8 bits becomes the slice of the lowest
-    /// 3.
+    /// Drops the zeros in a slice that an extension has put above an unsigned number, if there are any. If a number of 3 bits is
+    /// extended to 8, the slice of all 8 bits becomes the slice of the lowest 3.
     fn without_zeros(&mut self, slice: NodeId, label: &Label) -> Option<NodeId> {
         let Cell::Op(NodeOp::Slice { of, low }) = self.node(slice).cell else { return None };
         let Cell::Op(NodeOp::Extend(number)) = self.node(of).cell else { return None };
@@ -392,8 +370,7 @@ impl Graph {
         })
     }
 
-    /// Simplifies the slice of node `of` that begins at bit `low` and is as wide as `format`. For example, a slice of a slice
-    /// becomes one slice. Returns `None` if no simplification applies.
+    /// Simplifies the slice of node `of` from bit `low`, as wide as `format`, if possible. A slice of a slice becomes one slice.
     fn fold_slice(
         &mut self,
         of: NodeId,
@@ -425,7 +402,7 @@ impl Graph {
                 (low >= inner.width() && !inner.signed).then(|| self.constant(0, format, label))
             }
             Cell::Op(NodeOp::Concat(parts)) => {
-                // The parts are visited from the lowest one up, and the bits of each part that the slice takes are listed.
+                // The bits of each part that the slice takes, from the lowest part up.
                 let (mut from, mut wanted) = (0, Vec::new());
                 for part in parts.into_iter().rev() {
                     let end = from + self.width(part);
@@ -450,8 +427,8 @@ impl Graph {
         }
     }
 
-    /// Returns a product whose factors are no wider than their values require. The factors are unsigned if neither can be
-    /// negative. Returns `None` if the product of `a` and `b` already has this form.
+    /// Returns a product whose factors are no wider than their values require, and unsigned if neither can be negative. Returns
+    /// `None` if the product already has this form.
     fn fold_product(
         &mut self,
         a: NodeId,
@@ -478,8 +455,7 @@ impl Graph {
 }
 
 impl Cell {
-    /// Returns the nodes that the operation reads, in order, such as the two factors of a product. The list is empty for
-    /// operands, constants and unknown values.
+    /// Returns the nodes that the operation reads, in order.
     pub fn operands(&self) -> Vec<NodeId> {
         match self {
             Self::Op(op) => op.operands(),
@@ -488,8 +464,7 @@ impl Cell {
         }
     }
 
-    /// Returns whether the operation takes no logic: it is a constant, or it renames, extends, slices or joins the bits of other
-    /// nodes.
+    /// Returns whether the operation takes no logic: it is a constant, or it renames, extends, slices or joins bits.
     pub fn is_wiring(&self) -> bool {
         matches!(
             self,
@@ -500,8 +475,8 @@ impl Cell {
     }
 }
 
-/// Returns how many bits a number of this range takes, at least 1; `signed` includes the sign. For example, 0 to 5 take 3 bits,
-/// and −4 to 3 take 3 with the sign.
+/// Returns how many bits a number of this range takes, at least 1, with a sign if `signed`: 0 to 5 take 3 bits, and −4 to 3 take
+/// 3 with the sign.
 fn bits_for(range: Interval, signed: bool) -> u32 {
     let [low, high] = [range.0, range.1].map(|raw| {
         let magnitude = if raw < 0 { !raw } else { raw };

@@ -8,29 +8,27 @@ use super::schedule::ScheduleProblem;
 use super::{Goal, Options};
 use crate::netlist::Design;
 
-/// The way in which Glint chooses the interval of a pipeline. The interval is the number of clocks from one point to the next.
+/// The way in which Glint chooses the interval of a pipeline.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum IntervalGoal {
     /// The interval itself, in clocks.
     Clocks(usize),
-    /// The largest interval with at least this rate, in million points a second, at the requested clock. The interval is never
-    /// larger than the number of clocks that the sequential core takes for a point. For example, 26 million points a second at
-    /// 130 MHz allow an interval of 5 clocks.
+    /// The largest interval with at least this rate, in million points a second, at the requested clock. The clocks of the
+    /// sequential core for a point limit it. For example, 26 million points a second at 130 MHz allow an interval of 5 clocks.
     Rate(f64),
     /// The smallest interval that reaches the requested clock with at most this number of multipliers.
     Multipliers(usize),
 }
 
-/// Returns the interval of a pipeline in clocks, from one point to the next, as `options.interval` requests it. `most` is the
-/// number of clocks in which the sequential core computes a point. `problems` makes the scheduling problem for an interval.
+/// Returns the interval in clocks that `options.interval` requests. `most` is the number of clocks in which the sequential core
+/// computes a point. `problems` makes the scheduling problem for an interval.
 ///
-/// For a rate, the function returns the longest interval up to `most` that reaches the rate and the clock. For a number of
-/// multipliers, the function returns the shortest interval that reaches the clock and needs no more multipliers. If no interval
-/// reaches the clock, the function returns 1 for both goals, and the scheduler reports the error.
+/// A rate gets the longest interval up to `most` that reaches the rate and the clock. A number of multipliers gets the shortest
+/// one that reaches the clock. If no interval reaches the clock, both get 1, and the scheduler reports the error.
 ///
 /// # Errors
-/// Fails if the requested interval exceeds `most`. Fails if the rate exceeds one point a clock, or if the options give a rate
-/// without a clock frequency. Fails if every interval that reaches the clock needs more multipliers than the options allow.
+/// Fails if the requested interval exceeds `most`, or the rate exceeds one point a clock or lacks a clock frequency. Also fails
+/// if every interval that reaches the clock needs more multipliers than the options allow.
 pub fn clocks<'a>(
     sequential: &Design,
     options: &Options,
@@ -86,7 +84,6 @@ pub fn clocks<'a>(
                 }
             }
             let Some((interval, fewest)) = best else {
-                // No interval reaches the clock. The scheduler reports the error.
                 return Ok(1);
             };
             let message = format!(

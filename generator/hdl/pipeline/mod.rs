@@ -1,9 +1,8 @@
 //! Turns a design with a microprogram into a pipeline, which accepts a point (a set of operands) every clock or every few clocks.
 //!
-//! `unroll` turns the design into a graph of values. The passes in `passes` rewrite the graph, for example to split products that
-//! are too wide for the multipliers of the FPGA target. `request` finds a schedule (`schedule`), which assigns every value to a
-//! stage. `stages` builds the pipeline, which has no microprogram, and a register wherever a value passes from one stage to the
-//! next.
+//! `unroll` turns the design into a graph of values, which the passes in `passes` rewrite. `request` finds a schedule
+//! (`schedule`), which assigns every value to a stage. `stages` builds the pipeline, with a register wherever a value passes from
+//! one stage to the next.
 
 mod delay;
 mod error;
@@ -41,51 +40,43 @@ pub use unroll::{
     unroll_in_powers, unroll_line,
 };
 
-/// The goal with which Glint divides a computation into pipeline stages: a clock frequency or a number of stages.
+/// How Glint divides a computation into stages.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Goal {
-    /// The pipeline must reach this clock frequency in MHz, with as few stages as possible, and then with as few register bits as
-    /// possible.
+    /// This clock frequency in MHz, with as few stages as possible, and then as few register bits.
     ClockMhz(f64),
-    /// The pipeline must have this number of stages, with as high a clock frequency as possible.
+    /// This number of stages, with as high a clock frequency as possible.
     Stages(usize),
 }
 
-/// The way in which a pipeline stores a value that no stage reads for several stages.
+/// How a pipeline stores a value that no stage reads for several stages.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Delays {
-    /// A waiting value is stored in a small memory of look-up tables, if the target has such memories and if they take fewer
-    /// resources than registers.
+    /// In a small memory of look-up tables, if the target has such memories and they take fewer resources than registers.
     Memory,
-    /// A waiting value is stored in a register at the end of each stage.
+    /// In a register at the end of each stage.
     Registers,
 }
 
-/// The options with which a user requests a pipeline. For example, a clock of 100 MHz on ECP5, a point every clock, no stalls.
+/// A user's request, for example a clock of 100 MHz on ECP5, a point every clock, no stalls.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
-    /// The FPGA target whose delays and multipliers the schedule assumes.
+    /// Its delays and multipliers determine the schedule.
     pub target: &'static Timing,
-    /// Whether Glint divides the computation into stages for a clock frequency or for a number of stages.
     pub goal: Goal,
-    /// How Glint chooses the interval, the number of clocks from one point to the next.
+    /// The number of clocks from one point to the next.
     pub interval: IntervalGoal,
     /// Whether products use the output registers inside the multipliers, if the target states a delay for them.
     pub registered: bool,
     /// Whether the environment can stall the pipeline by setting `out_ready` to 0.
     pub stall: bool,
-    /// The number of bits of the side channel. The side channel carries data of the user along with a point, such as a pixel's
-    /// position.
+    /// The number of bits of the side channel, which carries the user's data along with a point, such as a pixel's position.
     pub side: u32,
-    /// How the pipeline stores values that no stage reads for several stages: in registers or in small memories.
     pub delays: Delays,
 }
 
-/// Returns the computation of a pipeline before the passes and after each of them, in the order of the passes. The first entry is
-/// the unrolled microprogram, and Glint schedules the last entry.
-///
-/// # Errors
-/// Fails if the microprogram cannot be unrolled; the error has its source line.
+/// Returns the unrolled microprogram, and the computation after each pass. Glint schedules the last entry. Fails, with a source
+/// line, if the microprogram cannot be unrolled.
 pub fn pass_results(
     sequential: &Design,
     options: &Options,
@@ -95,13 +86,12 @@ pub fn pass_results(
     Ok(passes::results(unrolled, options))
 }
 
-/// Turns a sequential design, which executes a microprogram, into a pipeline with the same results, and returns the pipeline.
+/// Turns a sequential design, which executes a microprogram, into a pipeline with the same results.
 ///
 /// # Errors
-/// Fails if the microprogram cannot be unrolled into a computation without loops; the error has the source line. Fails if the
-/// requested clock, number of stages, interval, rate or number of multipliers cannot be reached. The error then states the
-/// nearest value that can be reached. Fails if the options give a rate without a clock frequency, or if the solver finds no
-/// schedule; these errors state no nearest value.
+/// Fails if the microprogram cannot be unrolled into a computation without loops. Also fails if a pipeline cannot have the
+/// requested clock, number of stages, interval, rate or number of multipliers. The latter errors state the nearest value that can
+/// be reached. Fails without such a value if a rate comes without a clock frequency, or if the solver finds no schedule.
 pub fn pipeline(sequential: &Design, options: &Options) -> Result<Design, PipelineError> {
     let mut results = pass_results(sequential, options)?;
     let Some(PassResult { computation, .. }) = results.pop() else {

@@ -11,11 +11,8 @@ use super::unroll::Unrolled;
 use crate::netlist::{NetId, eval};
 use glint_base::fixed::{Format, mask};
 
-/// Parses a computation from its text notation, for tests. For example, `sum u6.0 = sub a b` is the difference of two operands.
-///
-/// # Errors
-/// Fails if a line has an unknown operation, a wrong format, or a value that no earlier line defines. The error is a text with
-/// the reason, in most cases with the line.
+/// Parses a computation: `sum u6.0 = sub a b` is the difference of two operands. The error has the reason, in most cases with
+/// the line.
 #[track_caller]
 pub fn parsed(text: &str) -> Result<Unrolled, String> {
     let mut graph = Graph::default();
@@ -101,8 +98,8 @@ pub fn parsed(text: &str) -> Result<Unrolled, String> {
 }
 
 /// Evaluates a computation for one combination of operand values. Returns the bit patterns of its results, and the number of all
-/// combinations. `combination` counts through the operand values within their intervals; the first operand changes fastest. ROM
-/// words and unknown values count as 0.
+/// combinations. `combination` counts through the operands' intervals; the first operand changes fastest. ROM words and unknown
+/// values count as 0.
 pub fn computed(unrolled: &Unrolled, combination: u64) -> (Vec<u64>, u64) {
     let graph = &unrolled.graph;
     let mut values: HashMap<NodeId, [u64; 1]> = HashMap::new();

@@ -12,22 +12,22 @@ use super::text::printed;
 use super::unroll::Unrolled;
 use glint_base::target::Timing;
 
-/// The name of the first [`PassResult`], the computation before all passes.
+/// The name of the computation before all passes.
 const UNROLL: &str = "unroll";
 
-/// A pass: a rewriting of a computation before Glint schedules it as a pipeline. The results of the computation stay the same.
+/// A rewrite of a computation that keeps its results.
 pub struct Pass {
-    /// The name of the pass, and of the directory with the files that test it. For example, `split`.
+    /// The directory with the files that test the pass has the same name.
     pub name: &'static str,
-    /// A sentence about what the pass does, for `glint schedule --passes`.
+    /// A sentence for `glint schedule --passes`.
     pub description: &'static str,
-    /// Returns whether Glint runs the pass for a pipeline with these options.
+    /// Says whether pipelines with these options need the pass.
     pub applies: fn(&Options) -> bool,
-    /// Returns the computation after the pass has rewritten it for an FPGA target.
+    /// Rewrites the computation for an FPGA target.
     pub run: fn(&Unrolled, &Timing) -> Unrolled,
 }
 
-/// All passes that may rewrite a computation before Glint schedules it, in the order in which they run.
+/// All passes, in the order in which they run.
 pub static PASSES: [Pass; 2] = [
     Pass {
         name: "split",
@@ -45,22 +45,20 @@ pub static PASSES: [Pass; 2] = [
 
 /// A computation after a pass, or before all passes.
 pub struct PassResult {
-    /// The name of the pass, or `unroll` for the computation before all passes.
+    /// The name of the pass, or `unroll`.
     pub name: &'static str,
-    /// A sentence about what the pass does.
     pub description: &'static str,
-    /// The computation after the pass.
     pub computation: Unrolled,
 }
 
 impl PassResult {
-    /// Returns the computation as text, a line for each value. For example, a line is `sum u6.0 = add a b`.
+    /// Returns the computation as text, a line such as `sum u6.0 = add a b` for each value.
     pub fn text(&self) -> String {
         printed(&self.computation)
     }
 
-    /// Returns the number of operations on which the results depend, wiring included. Operands, constants and unknown values do
-    /// not count.
+    /// Returns the number of operations on which the results depend, with wiring, but without operands, constants and unknown
+    /// values.
     pub fn operations(&self) -> usize {
         self.count(|cell| matches!(cell, Cell::Op(_) | Cell::Read { .. }))
     }
@@ -77,8 +75,7 @@ impl PassResult {
     }
 }
 
-/// Returns the computation `unrolled` as the first entry, and then the computation after each pass that applies to a pipeline
-/// with these options.
+/// Returns `unrolled`, and the computation after each pass that applies.
 pub fn results(unrolled: Unrolled, options: &Options) -> Vec<PassResult> {
     let description = "executes the microprogram symbolically, one clock after another";
     let mut results = vec![PassResult { name: UNROLL, description, computation: unrolled }];
@@ -99,11 +96,11 @@ mod tests {
     use super::{PASSES, printed};
     use glint_base::target::TIMINGS;
 
-    /// The largest number of combinations of operand values that one test file may have.
+    /// The number of combinations of operand values that one test file may have.
     const MOST: u64 = 1 << 16;
 
-    /// For every test file, the pass must return the computation behind the arrow `->`. The results of both computations must be
-    /// the same for every combination of operand values.
+    /// Each file has a computation and the one that the pass must return. Both must have the same results for every combination
+    /// of operand values.
     #[test]
     fn passes_make_what_their_files_say() {
         let place = Path::new(env!("CARGO_MANIFEST_DIR")).join("pipeline/passes");

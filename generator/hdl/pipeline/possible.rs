@@ -6,16 +6,15 @@ use super::graph::{Cell, Graph, NodeId};
 use crate::netlist::eval;
 use glint_base::fixed::mask;
 
-/// The largest number of bits on which a condition may depend. With more bits, there are too many combinations to try.
+/// With more bits, there are too many combinations to try.
 const MOST_BITS: u32 = 16;
 
-/// The largest width in bits of the node for which [`count`] returns a list. With 6 bits, the list has 64 entries.
+/// The largest width of the leaf of [`count`], so that a list has at most 64 entries.
 const MOST_SELECTED: u32 = 6;
 
-/// Returns whether `condition`, a node of one bit, is 1 for at least one combination of values of the leaves on which it depends.
-/// Leaves are operands, unknown values, ROM words and the nodes `free`; each may have any value in its range. Returns `None` if
-/// `condition` depends on more than 16 bits. For example, `count > 3` can be 1 if `count` is a leaf of 3 bits, and never if the
-/// leaf has 2 bits.
+/// Returns whether `condition`, a node of one bit, can be 1: `count > 3` can if `count` is a leaf of 3 bits, and cannot if it has
+/// 2. Leaves are operands, unknown values, ROM words and the nodes `free`; each may have any value in its range. Returns `None`
+/// if `condition` depends on more than 16 bits.
 pub fn ever(graph: &Graph, condition: NodeId, free: &[NodeId]) -> Option<bool> {
     let cone = Cone::of(graph, &[condition], free);
     if cone.bits > MOST_BITS {
@@ -25,12 +24,11 @@ pub fn ever(graph: &Graph, condition: NodeId, free: &[NodeId]) -> Option<bool> {
     Some(cases.any(|values| values[&condition] == [1]))
 }
 
-/// Counts the `conditions` that are 1, for each value of the one leaf on which all of them depend. A leaf is an operand, an
-/// unknown value, a ROM word, or one of the nodes `free`. Returns the leaf, and for each of its bit patterns the number of
-/// conditions that are 1. The number is `None` for a bit pattern outside the range of the leaf.
+/// Counts the `conditions` that are 1, for each bit pattern of the one leaf on which all of them depend. `None` marks patterns
+/// outside its range. For example, the conditions `count > 0` and `count > 1` give 0, 1, 2 and 2 for a `count` of two bits.
+/// Leaves are as in [`ever`].
 ///
-/// Returns `None` if the conditions depend on no leaf or on several, or if the leaf has more than 6 bits. For example, the
-/// conditions `count > 0` and `count > 1` give 0, 1, 2 and 2 for a `count` of two bits.
+/// Returns `None` if the conditions depend on no leaf or on several, or if the leaf has more than 6 bits.
 pub fn count(
     graph: &Graph,
     conditions: &[NodeId],
@@ -63,8 +61,7 @@ struct Cone {
 }
 
 impl Cone {
-    /// Finds the nodes on which `conditions` depend. The search stops at the leaves: operands, unknown values, ROM words and the
-    /// nodes `free`.
+    /// Searches from `conditions` to the leaves.
     fn of(graph: &Graph, conditions: &[NodeId], free: &[NodeId]) -> Self {
         let free: HashSet<NodeId> = free.iter().copied().collect();
         let (mut seen, mut pending) = (HashSet::new(), conditions.to_vec());
@@ -87,8 +84,8 @@ impl Cone {
         Self { leaves, bits, inside }
     }
 
-    /// Returns the bit pattern of every node for one combination of leaf values. The first leaf has the lowest bits of `number`,
-    /// the next leaf the bits above, and so on. Returns `None` if a leaf's value is outside its range.
+    /// Returns the bit pattern of every node for one combination of leaf values; the first leaf has the lowest bits of `number`.
+    /// Returns `None` if a leaf's value is outside its range.
     fn values(&self, graph: &Graph, number: u64) -> Option<HashMap<NodeId, [u64; 1]>> {
         let mut values: HashMap<NodeId, [u64; 1]> = HashMap::new();
         let mut rest = number;

@@ -3,9 +3,8 @@
 use super::graph::{Cell, Graph, Node, NodeId, NodeOp};
 use super::unroll::Unrolled;
 
-/// Returns a copy of a computation in which `replace` may substitute the nodes of combinational cells. Operands, constants,
-/// unknown values and reads of ROMs are copied. `replace` gets the new graph, a cell whose operands are nodes of the new graph,
-/// and the original node. `replace` returns the substitute, or `None` to copy the cell.
+/// Copies a computation. `replace` gets each combinational cell, with operands in the new graph, and the original node. It
+/// returns a substitute in the new graph, or `None` to copy the cell.
 pub fn rebuilt(
     unrolled: &Unrolled,
     mut replace: impl FnMut(&mut Graph, &NodeOp, &Node) -> Option<NodeId>,

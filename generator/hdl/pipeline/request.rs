@@ -10,7 +10,6 @@ use super::unroll::Unrolled;
 use super::{Goal, Options};
 use crate::netlist::{Design, decided_by_data, latest_done};
 
-/// A user's request for a pipeline: the computation, and the options with its clock, stages and interval.
 pub struct Request<'a> {
     sequential: &'a Design,
     unrolled: &'a Unrolled,
@@ -19,26 +18,21 @@ pub struct Request<'a> {
 }
 
 impl<'a> Request<'a> {
-    /// Makes the request for a pipeline of the computation `unrolled`, which Glint has unrolled from the design `sequential`.
+    /// `unrolled` must be the computation of `sequential`.
     pub fn new(sequential: &'a Design, unrolled: &'a Unrolled, options: &'a Options) -> Self {
         let results = unrolled.results.iter().map(|&(_, value)| value).collect();
         Self { sequential, unrolled, options, results }
     }
 
-    /// Returns the scheduling problem of the computation for a given `interval` in clocks. If `registered` is true, products use
-    /// the output registers of multipliers, provided that the target states a delay for them.
+    /// Returns the scheduling problem for an `interval` in clocks. With `registered`, products use the output registers of
+    /// multipliers, provided that the target states a delay for them.
     pub fn problems(&self, registered: bool, interval: usize) -> ScheduleProblem<'_> {
         let target = self.options.target;
         let registered = target.registered.filter(|_| registered);
         ScheduleProblem::new(&self.unrolled.graph, target, registered, interval, &self.results)
     }
 
-    /// Returns the interval in clocks, the number of clocks from one point to the next, that satisfies the user's options.
-    ///
-    /// # Errors
-    /// Fails if the requested interval is longer than the sequential core takes for a point. Fails if the rate exceeds one point
-    /// a clock, or if the options give a rate without a clock frequency. Fails if every interval that reaches the clock needs
-    /// more multipliers than the options allow.
+    /// Returns the interval, as [`interval::clocks`] chooses it.
     pub fn interval(&self) -> Result<usize, PipelineError> {
         // The sequential core takes one clock for each microinstruction, plus the clock of `start`, which writes the operands. If
         // operands decide the number of iterations, the largest number counts.
@@ -53,11 +47,11 @@ impl<'a> Request<'a> {
         })
     }
 
-    /// Returns the assignment of operations to stages that reaches the requested clock frequency or number of stages.
+    /// Returns the schedule that reaches the requested clock frequency or number of stages.
     ///
     /// # Errors
-    /// Fails if one operation takes longer than the clock period. Fails if the requested number of stages is more than useful, or
-    /// fewer than memories and multipliers need. Each of these errors has the nearest value that can be reached. Fails if the
+    /// Fails if one operation takes longer than the clock period. Also fails if the requested number of stages is more than
+    /// useful, or fewer than memories and multipliers need. These errors have the nearest value that can be reached. Fails if the
     /// solver finds no schedule.
     pub fn schedule(
         &self,
@@ -76,8 +70,7 @@ impl<'a> Request<'a> {
         }
     }
 
-    /// Returns the schedule with exactly `stages` stages. Fails if `stages` is more than useful, or fewer than memories and
-    /// multipliers need, or if the solver finds no schedule.
+    /// Returns the schedule with exactly `stages` stages, for [`Request::schedule`].
     fn in_stages(
         &self,
         problems: &ScheduleProblem<'_>,
@@ -111,8 +104,7 @@ impl<'a> Request<'a> {
         Ok(schedule)
     }
 
-    /// Returns the error for a clock frequency (`clock`, in MHz) whose period is shorter than the delay of the single operation
-    /// in `limit`.
+    /// Returns the error for a clock frequency (`clock`, in MHz) at which the operation in `limit` takes longer than a period.
     fn too_fast(&self, clock: f64, interval: usize, limit: &Unreachable) -> PipelineError {
         let Unreachable { limiting, period } = *limit;
         let nearest = schedule::megahertz(period);
@@ -128,8 +120,8 @@ impl<'a> Request<'a> {
         self.error(kind, message, Some(limiting))
     }
 
-    /// Returns the highest clock frequency, in MHz, if products use the output registers of multipliers. Returns `None` if the
-    /// options request these registers already, or if the target states no delay for them.
+    /// Returns the highest clock frequency, in MHz, if products use the output registers of multipliers. Returns `None` if they
+    /// use them already, or if the target states no delay for them.
     fn registered_clock(&self, interval: usize) -> Option<f64> {
         if self.options.registered || self.options.target.registered.is_none() {
             return None;
@@ -137,15 +129,14 @@ impl<'a> Request<'a> {
         self.problems(true, interval).fastest().map(|limit| schedule::megahertz(limit.period))
     }
 
-    /// Returns the error for a problem in which the solver finds no schedule, although a schedule always exists. `at` is the node
-    /// at which the solver's result is wrong, if known.
+    /// The solver found no schedule, although a schedule always exists. `at` is the node at which its result is wrong, if known.
     fn unsolved(&self, why: &str, at: Option<NodeId>) -> PipelineError {
         let name = &self.sequential.name;
         let message = format!("`{name}` has no schedule: {why}; this is a bug in Glint");
         self.error(PipelineErrorKind::Unsolved, message, at)
     }
 
-    /// Returns an error with the source line of `node`, or with the source line of the design's first net if `node` is `None`.
+    /// The error has the source line of `node`, or of the design's first net.
     fn error(
         &self,
         kind: PipelineErrorKind,

@@ -1,10 +1,10 @@
 //! Assigns each node of a computation to a stage of the pipeline, with the fewest register bits.
 //!
-//! A node must be in a later stage than its operand if a block memory lies between them, or if the logic between them is too slow
-//! for the clock. A value takes one register bit for each of its bits and for each boundary between stages up to its last use.
-//! All constraints are on differences of two stages, so a linear program finds an integer solution. (The method is from Cong and
-//! Zhang, "An efficient and versatile scheduling algorithm based on SDC formulation", 2006.) Products that share multipliers
-//! (`sharing`) get their stages before the linear program runs.
+//! A node must be in a later stage than its operand if a block memory lies between them, or too much logic for the clock. A value
+//! takes one register bit for each of its bits and for each boundary between stages up to its last use. All constraints are on
+//! differences of two stages, so a linear program finds an integer solution. (The method is from Cong and Zhang, "An efficient
+//! and versatile scheduling algorithm based on SDC formulation", 2006.) Products that share multipliers (`sharing`) get their
+//! stages before the linear program runs.
 
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
@@ -16,85 +16,80 @@ use super::graph::{Cell, Graph, Node, NodeId, NodeOp};
 use super::sharing::{self, MultiplierUnit, ProductGroup};
 use glint_base::target::{Registered, Timing};
 
-/// A schedule for a pipeline: the stage of every node of the computation's graph, and the clock period that the stages reach.
+/// The stage of every node, and the clock period that the stages reach.
 #[derive(Clone, Debug)]
 pub struct Schedule {
-    /// The stage of each node of the computation's graph. An entry is meaningless for constants, for extensions that are no
-    /// results, and for nodes on which no result depends.
+    /// The stage of each node; meaningless for constants, for extensions that are no results, and for nodes on which no result
+    /// depends.
     pub stage: Vec<usize>,
-    /// The number of register rows from the operands to the results, which is the latency in clocks.
+    /// The number of register rows from the operands to the results: the latency in clocks.
     pub latency: usize,
-    /// The clock period that the stages reach, in nanoseconds.
+    /// The clock period in nanoseconds.
     pub period: f64,
-    /// The delay of the logic in each stage, in nanoseconds, without the registers around it.
+    /// The delay of the logic in each stage, in nanoseconds, without registers.
     pub logic: Vec<f64>,
 }
 
-/// The reason why the scheduler returns no assignment of a computation's nodes to pipeline stages.
+/// The reason why the scheduler returns no schedule.
 #[derive(Clone, Debug)]
 pub enum ScheduleRefusal {
     /// The requested clock period is too short for a single operation.
     Unreachable(Unreachable),
-    /// The solver failed, or its solution violates a constraint. The fields are the reason as text, and the node in a wrong
-    /// stage, if known.
+    /// The solver failed, or its solution violates a constraint: the reason, and the node in a wrong stage, if known.
     Unsolved(String, Option<NodeId>),
 }
 
-/// The operation that limits the clock period of a pipeline, and the shortest period.
+/// The operation that limits the clock period.
 #[derive(Clone, Debug)]
 pub struct Unreachable {
-    /// The slowest node of the computation's graph, which limits the clock period.
+    /// The slowest node.
     pub limiting: NodeId,
     /// The shortest clock period that this node allows, in nanoseconds.
     pub period: f64,
 }
 
-/// The problem that the scheduler solves: assign the nodes of a computation to pipeline stages, given their dependences and their
-/// delays on an FPGA target.
+/// Assigns the nodes of a computation to stages, given their dependences and their delays on an FPGA target.
 pub struct ScheduleProblem<'a> {
     graph: &'a Graph,
     target: &'a Timing,
-    /// The nodes to schedule, each after its operands. Constants are not among them, nor are extensions that are no results.
+    /// The nodes to schedule, each after its operands, without constants and extensions that are no results.
     live: Vec<NodeId>,
     results: &'a [NodeId],
-    /// For each node, the scheduled nodes that read it, directly or through extensions. The list is empty for constants.
+    /// For each node, the scheduled nodes that read it, directly or through extensions; none for constants.
     users: Vec<Vec<NodeId>>,
     delay: Vec<f64>,
     /// For each node, the additional setup time of a register behind it, in nanoseconds.
     setup: Vec<f64>,
     /// For each mux between a value and a constant, its select, if the register behind the mux can make the choice by its reset.
-    /// `None` for all other nodes.
     reset_by: Vec<Option<NodeId>>,
-    /// For each node that a rising edge computes (a word of a block memory, or a product behind a register), its timing. `None`
-    /// for all other nodes.
+    /// For each node that a rising edge computes, its timing.
     clocked: Vec<Option<ClockedNode>>,
-    /// The interval: the smallest number of clocks from one point to the next.
+    /// The smallest number of clocks from one point to the next.
     interval: usize,
-    /// The groups of products whose products share multipliers.
+    /// The products that share multipliers.
     kinds: Vec<ProductGroup>,
 }
 
-/// The timing of a node that gets its value at a rising edge. Such a node is a word of a block memory, a product in the register
-/// of a multiplier, or a product of a shared multiplier.
+/// The timing of a node that gets its value at a rising edge. It is a word of a block memory, a product in the register of a
+/// multiplier, or a product of a shared multiplier.
 #[derive(Clone, Copy, Debug)]
 struct ClockedNode {
     /// The time from the operands to the rising edge in nanoseconds, as far as it exceeds the path to an ordinary register.
     operands: f64,
-    /// The delay of the logic between two registers that the operands pass afterwards, in nanoseconds: the multiplier behind its
-    /// operand registers. The delay is 0 without such logic.
+    /// The delay of the multiplier between its operand registers and its output register, in nanoseconds; 0 without operand
+    /// registers.
     inside: f64,
     /// The number of stage boundaries from the operands to the node: 2 for a shared multiplier, otherwise 1.
     apart: usize,
 }
 
-/// Returns the clock frequency for a `period` in nanoseconds, in MHz to one decimal. The frequency is rounded down, so that the
-/// stated clock can be reached. For example, 7 ns give 142.8 MHz.
+/// Returns the clock frequency for a `period` in nanoseconds, in MHz. It is rounded down to one decimal, so that it can be
+/// reached: 7 ns give 142.8 MHz.
 pub fn megahertz(period: f64) -> f64 {
     (10_000.0 / period).floor() / 10.0
 }
 
-/// Returns whether an operation is a carry chain or a product. The look-up tables of any other operation can include a mux in
-/// front of the operation.
+/// Returns whether an operation is a carry chain or a product, whose cells cannot include a mux in front of it.
 fn takes_no_logic(cell: &Cell) -> bool {
     matches!(
         cell,
@@ -108,7 +103,7 @@ type StageDifference = (NodeId, NodeId, usize);
 /// The stages of the products that share multipliers, which are chosen before all other stages.
 type Taken = BTreeMap<NodeId, usize>;
 
-/// Returns the inverters among the nodes whose outputs are factors of products in `live`, directly or through wiring.
+/// Returns the inverters that are factors of products in `live`, directly or through wiring.
 fn inverted_factors(graph: &Graph, live: &[NodeId]) -> Vec<NodeId> {
     let mut open: Vec<NodeId> = Vec::new();
     for &id in live {
@@ -127,14 +122,13 @@ fn inverted_factors(graph: &Graph, live: &[NodeId]) -> Vec<NodeId> {
     inverters
 }
 
-/// Returns whether a node only extends or renames another node. Each stage that uses such a node makes it again, so that the
-/// registers between stages store the narrower operand.
+/// Returns whether a node only extends or renames another node. Each stage makes such a node again, so that the registers between
+/// stages store the narrower operand.
 pub fn is_extension(graph: &Graph, id: NodeId) -> bool {
     matches!(graph.node(id).cell, Cell::Op(NodeOp::Extend(_) | NodeOp::Relabel(_)))
 }
 
-/// Returns the node that registers store for the readers of `id`. For an extension that is no result, this is the node below the
-/// extensions; for any other node, `id` itself.
+/// Returns the node that registers store for the readers of `id`: the node below its extensions, unless `id` is a result.
 fn held(graph: &Graph, results: &[NodeId], mut id: NodeId) -> NodeId {
     while is_extension(graph, id) && !results.contains(&id) {
         id = graph.node(id).cell.operands()[0];
@@ -142,8 +136,8 @@ fn held(graph: &Graph, results: &[NodeId], mut id: NodeId) -> NodeId {
     id
 }
 
-/// Returns the delay of a node in nanoseconds, and the node's timing at a rising edge. The timing is `None` if no rising edge
-/// computes the node. `shares` says whether the node is a product of a multiplier that several products share.
+/// Returns the delay of a node in nanoseconds, and its timing if a rising edge computes it. `shares` says whether the node is a
+/// product of a multiplier that several products share.
 fn node_timing(
     graph: &Graph,
     target: &Timing,
@@ -177,9 +171,8 @@ fn node_timing(
 }
 
 impl<'a> ScheduleProblem<'a> {
-    /// Makes the scheduling problem for the nodes of `graph` on which `results` depend. `interval` is the number of clocks from
-    /// one point to the next. `registered` has the delays of multipliers with output registers, or is `None` if products do not
-    /// use these registers.
+    /// `interval` is the number of clocks from one point to the next. `registered` has the delays of multipliers with output
+    /// registers, if products use them.
     pub fn new(
         graph: &'a Graph,
         target: &'a Timing,
@@ -243,8 +236,7 @@ impl<'a> ScheduleProblem<'a> {
         }
     }
 
-    /// Returns the number of multipliers of the FPGA target that all products of the computation take together. Shared
-    /// multipliers count once.
+    /// Returns the number of multipliers that all products together take on the FPGA target.
     pub fn multipliers(&self) -> usize {
         let mut multipliers = sharing::products(self.graph, self.target, &self.live).len();
         for kind in &self.kinds {
@@ -253,8 +245,7 @@ impl<'a> ScheduleProblem<'a> {
         multipliers
     }
 
-    /// Returns the operation that limits the clock period most, with the shortest period that it allows. Operands of the design
-    /// and ROMs whose words are all equal do not count. Returns `None` if the computation has no other node.
+    /// Returns the operation that limits the clock period most. Operands of the design do not count.
     pub fn fastest(&self) -> Option<Unreachable> {
         let mut limiting: Option<(NodeId, f64)> = None;
         for &id in &self.live {
@@ -276,7 +267,7 @@ impl<'a> ScheduleProblem<'a> {
         Some(Unreachable { limiting, period: alone + self.target.register })
     }
 
-    /// Returns the nanoseconds that a node alone takes between two registers, without the delay of the registers themselves.
+    /// Returns the nanoseconds that a node alone takes between two registers, without the registers.
     fn delay_alone(&self, id: NodeId) -> f64 {
         let logic = self.delay[id.index()] + self.setup[id.index()];
         match self.clocked[id.index()] {
@@ -285,9 +276,9 @@ impl<'a> ScheduleProblem<'a> {
         }
     }
 
-    /// Returns the schedule that reaches a clock period in nanoseconds. The schedule has as few stages as possible, and among
-    /// all such schedules the fewest register bits; some muxes count as bits too (`solve`). If products share multipliers,
-    /// Glint chooses the stages of these products first. The schedule may then have more stages or bits than necessary.
+    /// Returns the schedule for a clock period in nanoseconds. It has as few stages as possible, and then the fewest register
+    /// bits; some muxes count as bits too (`solve`). Products that share multipliers get their stages first. The schedule may
+    /// then have more stages or bits than necessary.
     ///
     /// # Errors
     /// Fails if an operation takes longer than the period, or if the solver fails.
@@ -300,11 +291,8 @@ impl<'a> ScheduleProblem<'a> {
         self.solve(period, 0)
     }
 
-    /// Returns the schedule with the shortest clock period for this number of stages. With more stages than useful, the slowest
-    /// operation determines the period. The schedule has more stages than `stages` if no period allows so few.
-    ///
-    /// # Errors
-    /// Fails if the solver fails.
+    /// Returns the schedule with the shortest clock period for this number of stages, or for more stages if no period allows so
+    /// few. The slowest operation limits the period. Fails if the solver fails.
     pub fn for_stages(&self, stages: usize) -> Result<Schedule, ScheduleRefusal> {
         let fastest = self.fastest_period();
         let all = self.delay.iter().chain(&self.setup).sum::<f64>();
@@ -313,7 +301,7 @@ impl<'a> ScheduleProblem<'a> {
             true => fastest,
             false => self.target.register + all + 1.0,
         };
-        // The search ends at a picosecond.
+        // Down to a picosecond.
         while high - low > 0.001 {
             let middle = f64::midpoint(low, high);
             if self.least_stages(middle) <= stages {
@@ -325,13 +313,12 @@ impl<'a> ScheduleProblem<'a> {
         self.solve(high, stages)
     }
 
-    /// Returns the largest useful number of stages. With more stages, the clock period cannot become shorter, because the slowest
-    /// operation limits it.
+    /// Returns the largest useful number of stages: with more, the slowest operation still limits the clock period.
     pub fn most_stages(&self) -> usize {
         self.least_stages(self.fastest_period())
     }
 
-    /// Returns the period of [`Self::fastest`] in nanoseconds, or 0 if no operation limits the period.
+    /// Returns the period of [`Self::fastest`] in nanoseconds, or 0.
     fn fastest_period(&self) -> f64 {
         match self.fastest() {
             Some(unreachable) => unreachable.period,
@@ -339,15 +326,14 @@ impl<'a> ScheduleProblem<'a> {
         }
     }
 
-    /// Returns the smallest number of stages with which a pipeline reaches a clock period in nanoseconds.
+    /// Returns the smallest number of stages for a clock period in nanoseconds.
     fn least_stages(&self, period: f64) -> usize {
         let differences = self.differences(period);
         self.latency(&differences, &self.taken(&differences))
     }
 
-    /// Returns the number of rows of pipeline registers that must lie between the operands of node `user` and its value. Returns
-    /// 0 for combinational logic, 1 for a word of a block memory or a product with a register, and 2 for a product of a shared
-    /// multiplier.
+    /// Returns the number of register rows that must lie between the operands of node `user` and its value: 0 for combinational
+    /// logic, 1 for a word of a block memory or a product with a register, and 2 for a product of a shared multiplier.
     pub fn apart(&self, user: NodeId) -> usize {
         match self.clocked[user.index()] {
             Some(clocked) => clocked.apart,
@@ -356,9 +342,8 @@ impl<'a> ScheduleProblem<'a> {
     }
 
     /// Returns the number of register rows between the nodes `from` and `user`, whose path takes longer than the `most`
-    /// nanoseconds of a stage. The number is 2 if a block memory's value goes to a multiplier and the time does not suffice for
-    /// the wire; otherwise it is 1. Block memories and multipliers lie in separate columns of the chip, so that one register is
-    /// placed near each of the two.
+    /// nanoseconds of a stage. If even the wire from a block memory to a multiplier takes too long, it is 2. The two lie in
+    /// separate columns of the chip, so that one register is placed near each.
     fn registers_between(&self, from: NodeId, user: NodeId, most: f64) -> usize {
         let product = matches!(self.graph.node(user).cell, Cell::Op(NodeOp::Mul(..)));
         let far = product && delay::is_block(self.target, self.graph, from);
@@ -366,7 +351,7 @@ impl<'a> ScheduleProblem<'a> {
     }
 
     /// Returns the nanoseconds until the setup of a register behind `user`, if the operand `from` arrives after `after`
-    /// nanoseconds. If the register makes the choice of a mux by its reset, the delay of the mux counts for the select alone.
+    /// nanoseconds. If the register makes the choice of a mux by its reset, only the select takes the delay of the mux.
     fn until_register(&self, from: NodeId, user: NodeId, after: f64) -> f64 {
         match self.reset_by[user.index()] {
             Some(select) if select != from => after,
@@ -374,8 +359,8 @@ impl<'a> ScheduleProblem<'a> {
         }
     }
 
-    /// Returns the constraints of a clock period in nanoseconds: for each pair of dependent nodes the least difference of their
-    /// stages. The constraints are sorted, and each pair occurs once.
+    /// Returns the least difference of the stages of each pair of dependent nodes for a clock period in nanoseconds, sorted, each
+    /// pair once.
     fn differences(&self, period: f64) -> Vec<StageDifference> {
         let most = period - self.target.register + 1e-9;
         let mut differences = Vec::new();
@@ -434,7 +419,7 @@ impl<'a> ScheduleProblem<'a> {
         latency
     }
 
-    /// Returns the earliest stage of each node. `differences` must be sorted by the first node of each entry, and a node must
+    /// Returns the earliest stage of each node, in one sweep. `differences` must be sorted by their first node, and a node must
     /// have a higher number than its operands.
     fn earliest(&self, differences: &[StageDifference], taken: &Taken) -> Vec<usize> {
         let mut earliest = vec![0; self.graph.nodes.len()];
@@ -447,8 +432,8 @@ impl<'a> ScheduleProblem<'a> {
         earliest
     }
 
-    /// Returns the stages of products that share multipliers. The products get their stages one after another. The product that
-    /// can have the earliest stage comes first. Among several, the product that the most stages must follow comes first.
+    /// Gives the products that share multipliers their stages, one after another. The product that can have the earliest stage
+    /// comes first, and among several the one that the most stages must follow.
     fn taken(&self, differences: &[StageDifference]) -> Taken {
         let mut after = vec![0; self.graph.nodes.len()];
         for &(from, to, apart) in differences.iter().rev() {
@@ -478,17 +463,14 @@ impl<'a> ScheduleProblem<'a> {
         taken
     }
 
-    /// Returns the last stage that a node may have. Returns 0 for an operand, because operands are available from the beginning.
-    /// Returns `latency` − 1 for any other node, because a register row follows the results.
+    /// Returns the last stage that a node may have. Operands are available from the beginning, and a register row follows the
+    /// results.
     fn last_stage(&self, id: usize, latency: usize) -> usize {
         if matches!(self.graph.nodes[id].cell, Cell::Operand(_)) { 0 } else { latency - 1 }
     }
 
-    /// Checks that the stages satisfy every constraint. `differences` are the constraints between two nodes; `latency` is the
-    /// number of stages.
-    ///
-    /// # Errors
-    /// Fails if the stages break a constraint. The error is the first such constraint.
+    /// Checks the solver's stages against every constraint, because it computes with floating-point numbers. Fails with the first
+    /// violated constraint.
     fn verify(
         &self,
         differences: &[StageDifference],
@@ -537,8 +519,8 @@ impl<'a> ScheduleProblem<'a> {
     }
 
     /// Returns the schedule with the fewest register bits for a period in nanoseconds, with at least `least` stages. A mux that
-    /// takes look-up tables, because its register cannot choose by a reset, counts as many additional bits as its width. Fails if
-    /// the solver finds no solution, or a solution that violates a constraint.
+    /// takes look-up tables, because its register cannot choose by a reset, counts as many bits as its width. Fails if the solver
+    /// finds no solution, or a solution that violates a constraint.
     fn solve(&self, period: f64, least: usize) -> Result<Schedule, ScheduleRefusal> {
         let differences = self.differences(period);
         let taken = self.taken(&differences);
@@ -551,8 +533,8 @@ impl<'a> ScheduleProblem<'a> {
                 Some(&stage) => (stage as f64, stage as f64),
                 None => (0.0, self.last_stage(at, latency) as f64),
             };
-            // Among schedules with equally many register bits, the solver prefers one with late products, because the operands of
-            // products have registers of their own.
+            // Among schedules with equally many register bits, late products are better, because operands of products have
+            // registers of their own.
             let weight = match node.cell {
                 Cell::Op(NodeOp::Mul(..)) => -1e-3,
                 _ => 0.0,
@@ -575,7 +557,7 @@ impl<'a> ScheduleProblem<'a> {
                 problem.add_constraint(terms, ComparisonOp::Ge, last);
             }
         }
-        // A mux that its register makes by a reset takes one look-up table a bit if a node in its own stage reads it.
+        // A mux that a register makes by its reset takes one look-up table a bit if a node in its own stage reads it.
         for &id in &self.live {
             if self.reset_by[id.index()].is_none() {
                 continue;
@@ -623,7 +605,7 @@ impl<'a> ScheduleProblem<'a> {
         users
     }
 
-    /// Returns the delay of the slowest path through the logic of each stage, in nanoseconds.
+    /// Returns the delay of the slowest path through each stage's logic, in nanoseconds.
     fn logic(&self, stage: &[usize], latency: usize) -> Vec<f64> {
         let mut arrival = vec![0.0f64; self.graph.nodes.len()];
         let mut longest = vec![0.0f64; latency];
@@ -667,19 +649,18 @@ impl<'a> ScheduleProblem<'a> {
         longest
     }
 
-    /// Returns the part of the clock period that pipeline registers take, in nanoseconds: clock-to-output delay, wire and setup.
+    /// Returns the nanoseconds of a clock period that registers take: clock-to-output delay, wire and setup.
     pub fn register_ns(&self) -> f64 {
         self.target.register
     }
 
-    /// Returns the nodes to which the schedule must assign a stage, each after its operands: all nodes on which a result depends,
-    /// except constants, and except extensions that are no results.
+    /// Returns the nodes that need a stage, each after its operands.
     pub fn live(&self) -> &[NodeId] {
         &self.live
     }
 
-    /// Returns for each node of the computation's graph the last stage that reads its value. Registers must carry the value up to
-    /// that stage. For a result, this is the latency.
+    /// Returns the last stage that reads each node's value, up to which registers must carry it. For a result, this is the
+    /// latency.
     pub fn last_use(&self, schedule: &Schedule) -> Vec<usize> {
         let mut last = schedule.stage.clone();
         for &id in &self.live {
@@ -694,8 +675,7 @@ impl<'a> ScheduleProblem<'a> {
         last
     }
 
-    /// Returns the multipliers that serve several products under this schedule, with the product that each computes in each slot.
-    /// A slot is the number of a clock modulo the interval, the number of clocks between points.
+    /// Returns the multipliers that serve several products, with the product of each slot (clock modulo the interval).
     pub fn units(&self, schedule: &Schedule) -> Vec<MultiplierUnit> {
         let mut units = Vec::new();
         for kind in &self.kinds {
@@ -705,8 +685,7 @@ impl<'a> ScheduleProblem<'a> {
         units
     }
 
-    /// Returns whether a node gets its value at a rising edge: it is the word of a block memory, or a product in the register
-    /// behind a multiplier.
+    /// Returns whether a node gets its value at a rising edge.
     pub fn is_clocked(&self, id: NodeId) -> bool {
         self.clocked[id.index()].is_some()
     }

@@ -1,15 +1,13 @@
-//! Merges two muxes that limit a value to a constant into one mux. Two such muxes follow each other if a computation repeats a
-//! step that limits (saturates) its result.
+//! Merges muxes that limit a value to a constant one after another, as in a computation that repeats a saturating step.
 //!
-//! For example, in `over₂ ? most : f(over₁ ? most : x)`, `f` is wiring, and the condition `over₂` is a bit of the inner
-//! mux. The module returns one mux: the result is `most` if either condition holds, and otherwise `f(x)`.
+//! For example, in `over₂ ? most : f(over₁ ? most : x)`, `f` is wiring, and the condition `over₂` is a bit of the inner mux. The
+//! result is `most` if either condition holds, and otherwise `f(x)`.
 
 use super::graph::{Cell, Graph, Label, NodeId, NodeOp};
 use glint_base::fixed::Format;
 
-/// Returns a node with the value of node `id`. If `id` is a mux `over ? most : rest` with a constant `most`, the returned mux
-/// bypasses those inner muxes of this kind in `rest` whose condition must be 0 if the new condition is 0. Returns `id` itself if
-/// the node is no mux of this kind.
+/// Returns a node with the value of node `id`. For a mux `over ? most : rest` with a constant `most`, bypasses the muxes of this
+/// kind in `rest` whose condition [`follows`] from the new one.
 pub fn settled(graph: &mut Graph, id: NodeId) -> NodeId {
     let node = graph.node(id).clone();
     let Some((over, rest, most)) = limit(graph, id) else { return id };
@@ -18,8 +16,7 @@ pub fn settled(graph: &mut Graph, id: NodeId) -> NodeId {
     graph.op(NodeOp::Mux { select: over, inputs: vec![rest, most] }, node.format, &node.label)
 }
 
-/// Matches node `id` with the form `over ? most : rest`, in which `most` is a constant. Returns the nodes `over`, `rest` and
-/// `most`, or `None` if the node has another form.
+/// Matches the form `over ? most : rest` with a constant `most`. Returns `over`, `rest` and `most`.
 fn limit(graph: &Graph, id: NodeId) -> Option<(NodeId, NodeId, NodeId)> {
     let Cell::Op(NodeOp::Mux { select, inputs }) = &graph.node(id).cell else { return None };
     match inputs[..] {
@@ -29,8 +26,7 @@ fn limit(graph: &Graph, id: NodeId) -> Option<(NodeId, NodeId, NodeId)> {
 }
 
 /// Rewrites the condition `id` if it is one bit of a mux `over ? most : rest` whose constant `most` has a 1 at this bit. The
-/// returned condition is 1 if `over` is 1 or if the same bit of `rest` is 1, and does not read the mux. Returns `id` for any
-/// other condition.
+/// condition is 1 if `over` or the same bit of `rest` is, and so need not wait for the mux.
 fn flag(graph: &mut Graph, id: NodeId) -> NodeId {
     let node = graph.node(id).clone();
     let Cell::Op(NodeOp::Slice { of, low }) = node.cell else { return id };
@@ -43,7 +39,7 @@ fn flag(graph: &mut Graph, id: NodeId) -> NodeId {
     either(graph, over, bit, &label)
 }
 
-/// Returns a node that is 1 if bit `a` or bit `b` is 1. If `b` is the bit directly below the bits that `a` tests, the node is one
+/// Returns a node that is 1 if bit `a` or bit `b` is. If `b` is the bit directly below the bits that `a` tests, the node is one
 /// [`NodeOp::Any`] of all these bits.
 fn either(graph: &mut Graph, a: NodeId, b: NodeId, label: &Label) -> NodeId {
     if let (Some((of, low, width)), Some((other, below, 1))) = (run(graph, a), run(graph, b))
@@ -57,9 +53,8 @@ fn either(graph: &mut Graph, a: NodeId, b: NodeId, label: &Label) -> NodeId {
     graph.op(NodeOp::Or(a, b), Format::BIT, label)
 }
 
-/// Returns which bits the condition `id` tests for a 1: the node with the bits, the lowest bit, and the number of bits. For
-/// example, `Any` of the bits 4 to 6 of `x` gives `(x, 4, 3)`. Returns `None` if the condition is no slice and no `Any` of a
-/// slice.
+/// Returns which bits the condition `id` tests for a 1: the node with the bits, the lowest bit, and their number. `Any` of the
+/// bits 4 to 6 of `x` gives `(x, 4, 3)`. Returns `None` for any other condition.
 fn run(graph: &Graph, id: NodeId) -> Option<(NodeId, u32, u32)> {
     match graph.node(id).cell {
         Cell::Op(NodeOp::Any(of)) => run(graph, of),
@@ -68,8 +63,8 @@ fn run(graph: &Graph, id: NodeId) -> Option<(NodeId, u32, u32)> {
     }
 }
 
-/// Returns a node that equals `id` whenever the condition `over` is 0. The search passes through wiring to an inner choice
-/// between a value and a constant. If the condition of this choice must be 0 whenever `over` is 0, the value replaces the choice.
+/// Returns a node that equals `id` whenever `over` is 0. The search passes through wiring to an inner choice between a value and
+/// a constant. The value replaces the choice if the condition of this choice [`follows`] from `over`.
 fn below(graph: &mut Graph, id: NodeId, over: NodeId) -> NodeId {
     let node = graph.node(id).clone();
     if let Some((inner, rest, _)) = limit(graph, id) {

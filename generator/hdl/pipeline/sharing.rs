@@ -10,30 +10,27 @@ use std::cmp::Reverse;
 use super::graph::{Cell, Graph, NodeId, NodeOp};
 use glint_base::target::{FAMILIES, Timing};
 
-/// A group of a pipeline's products that can share multipliers, each product in its own slot (clock modulo the interval).
+/// Products that can share multipliers, each in its own slot (clock modulo the interval).
 #[derive(Clone, Debug)]
 pub struct ProductGroup {
-    /// The products of the group, in the order of the computation.
+    /// The products, in the order of the computation.
     pub products: Vec<NodeId>,
-    /// The number of multipliers for the group, less than the number of products: one multiplier computes a product in each slot.
+    /// The number of multipliers, less than the number of products.
     pub units: usize,
     /// Whether the multipliers take signed factors.
     signed: bool,
 }
 
-/// A multiplier of a pipeline that several products share, with the product of each slot.
+/// A multiplier that several products share.
 #[derive(Clone, Debug)]
 pub struct MultiplierUnit {
-    /// The widths of the multiplier's two factors, in bits.
+    /// The widths of the two factors, in bits.
     pub widths: [u32; 2],
-    /// Whether the multiplier takes signed factors.
     pub signed: bool,
-    /// For each slot (clock modulo the interval), the product that the multiplier computes in it, and the two factors in the
-    /// order of the multiplier's operands. `None` for a slot without a product.
+    /// For each slot, the product that the multiplier computes, and its factors in the order of the multiplier's operands.
     pub serves: Vec<Option<(NodeId, [NodeId; 2])>>,
 }
 
-/// Returns the two factors of node `id`, or `None` if the node is no product.
 fn factors(graph: &Graph, id: NodeId) -> Option<[NodeId; 2]> {
     match graph.node(id).cell {
         Cell::Op(NodeOp::Mul(a, b)) => Some([a, b]),
@@ -41,9 +38,8 @@ fn factors(graph: &Graph, id: NodeId) -> Option<[NodeId; 2]> {
     }
 }
 
-/// Returns the products among the nodes `live` for which synthesis uses multipliers of the target. The function leaves out narrow
-/// products, which become look-up tables. For example, a product of 5 by 5 bits is left out on iCE40. For the generic target, the
-/// function leaves out no product.
+/// Returns the products for which synthesis uses multipliers of the target. Narrow products become look-up tables, for example 5
+/// by 5 bits on iCE40. The generic target counts all products.
 pub fn products(graph: &Graph, target: &Timing, live: &[NodeId]) -> Vec<NodeId> {
     let least = match FAMILIES.iter().find(|family| family.name() == target.name) {
         Some(family) => family.estimate.least_product,
@@ -58,17 +54,16 @@ pub fn products(graph: &Graph, target: &Timing, live: &[NodeId]) -> Vec<NodeId> 
     products
 }
 
-/// Returns the groups of products that can share multipliers. A group that would save no multiplier is left out, so that an
-/// interval of 1 has no groups. Products without a sign join the signed products if the multiplier has a bit to spare and this
-/// saves multipliers. For example, six products with an interval of 4 need two multipliers.
+/// Groups the products that can share multipliers. A group that would save no multiplier is left out, so that an interval of 1
+/// has no groups. Unsigned products join the signed ones if the multiplier has a bit to spare and this saves multipliers. For
+/// example, six products with an interval of 4 need two multipliers.
 pub fn kinds(
     graph: &Graph,
     target: &Timing,
     live: &[NodeId],
     interval: usize,
 ) -> Vec<ProductGroup> {
-    // One grouping separates signed and unsigned products. The other also puts unsigned products among the signed ones if their
-    // factors leave a bit for a sign.
+    // Two groupings: by sign, and with unsigned products among the signed ones if their factors leave a bit for a sign.
     let (mut signed, mut unsigned) = (Vec::new(), Vec::new());
     let (mut with_room, mut without_room) = (Vec::new(), Vec::new());
     for id in products(graph, target, live) {
@@ -90,7 +85,7 @@ pub fn kinds(
     kinds
 }
 
-/// Returns whether both factors of a product are narrower than the multiplier's operands, so that each leaves a bit for a sign.
+/// Returns whether the multiplier's operands leave a bit for a sign in both factors.
 fn has_room(graph: &Graph, target: &Timing, product: NodeId) -> bool {
     let mut widths =
         factors(graph, product).unwrap_or([product; 2]).map(|factor| graph.width(factor));
@@ -98,8 +93,7 @@ fn has_room(graph: &Graph, target: &Timing, product: NodeId) -> bool {
     widths[1] < target.multiplier.0 && widths[0] < target.multiplier.1
 }
 
-/// Makes a group of the products `signed`, which take signed multipliers, and a group of the products `unsigned`. A group of n
-/// products needs n / `interval` multipliers, rounded up.
+/// Makes a group for signed and a group for unsigned multipliers. Of n products, `interval` share a multiplier.
 fn group(signed: Vec<NodeId>, unsigned: Vec<NodeId>, interval: usize) -> [ProductGroup; 2] {
     [(signed, true), (unsigned, false)].map(|(products, signed)| {
         let units = products.len().div_ceil(interval);
@@ -107,9 +101,8 @@ fn group(signed: Vec<NodeId>, unsigned: Vec<NodeId>, interval: usize) -> [Produc
     })
 }
 
-/// Assigns the products of the group `kind` to multipliers, and returns the multipliers. `stage` has the pipeline stage of each
-/// node. Wider products are assigned first. Among the multipliers that are free in its slot, a product takes the one whose muxes
-/// and registers grow the least.
+/// Assigns the products of `kind` to multipliers, the widest first. `stage` has the stage of each node. Among the multipliers
+/// that are free in its slot, a product takes the one whose muxes and registers grow the least.
 pub fn units(
     graph: &Graph,
     target: &Timing,
@@ -117,7 +110,7 @@ pub fn units(
     stage: &[usize],
     interval: usize,
 ) -> Vec<MultiplierUnit> {
-    // A signed multiplier takes a factor without a sign with a zero above it, which is one more bit.
+    // A signed multiplier takes an unsigned factor with a zero above it.
     let width = |id: NodeId| {
         let format = graph.node(id).format;
         format.width() + u32::from(kind.signed && !format.signed)

@@ -2,8 +2,8 @@
 //!
 //! A factor that is too wide is divided into as many upper bits as a multiplier takes, and the remaining lower bits. A few lower
 //! bits are multiplied row by row in look-up tables; more lower bits become a product of their own. In a square, the two partial
-//! products with the lower bits l become one product: `(u·2^r + l)² = u²·4^r + l·(u·2^(r+1) + l)`. If a factor's highest bit is 1
-//! only if all other bits are 0, the product is either the other factor, shifted, or a product without this bit.
+//! products with the lower bits l become one product: `(u·2^r + l)² = u²·4^r + l·(u·2^(r+1) + l)`. A factor's highest bit may be
+//! 1 only if all its other bits are 0. The product is then either the other factor, shifted, or a product without this bit.
 
 use super::graph::{Graph, Label, NodeId, NodeOp};
 use super::rebuild::rebuilt;
@@ -12,11 +12,11 @@ use super::unroll::Unrolled;
 use glint_base::fixed::Format;
 use glint_base::target::Timing;
 
-/// The largest number of lower bits of an operand whose product becomes rows in look-up tables.
+/// The most lower bits whose product is made of rows in look-up tables.
 const MOST_ROWS: u32 = 4;
 
-/// Returns a copy of the computation in which products that are too wide for the target's multipliers are sums of narrower
-/// products. Sums and differences are rewritten too, so that their carry chains are short (`sums::shortened`).
+/// Splits products that are too wide for the target's multipliers, and shortens the carry chains of sums and differences
+/// (`sums::shortened`).
 pub fn split(unrolled: &Unrolled, target: &Timing) -> Unrolled {
     rebuilt(unrolled, |graph, op, node| {
         Some(match op {
@@ -26,8 +26,8 @@ pub fn split(unrolled: &Unrolled, target: &Timing) -> Unrolled {
     })
 }
 
-/// Returns a node with the exact product of `a` and `b`, made of products that fit the target's multipliers. Either both factors
-/// are signed, or neither.
+/// Returns the exact product of `a` and `b`, made of products that fit the target's multipliers. Both factors or neither are
+/// signed.
 fn product(
     graph: &mut Graph,
     target: &Timing,
@@ -43,8 +43,7 @@ fn product(
     }
 }
 
-/// Returns terms whose sum is the product of `a` and `b`. There is only one term if the target's multipliers take the factors or
-/// if a special case applies.
+/// Returns terms whose sum is the product of `a` and `b`: only one if the multipliers take the factors or a special case applies.
 fn parts(
     graph: &mut Graph,
     target: &Timing,
@@ -68,15 +67,14 @@ fn parts(
     vec![ShiftedValue { value, places: 0 }]
 }
 
-/// Returns whether the largest value of an unsigned factor is the power of two whose only 1 is the factor's highest bit. For
-/// example, this is true of a factor of 5 bits with values up to 16.
+/// Returns whether the largest value of an unsigned factor is a power of two, and alone has the highest bit: 16 for 5 bits.
 fn reaches_a_power_of_two(graph: &Graph, factor: NodeId) -> bool {
     let (low, high) = graph.node(factor).range;
     low >= 0 && high == 1 << (graph.width(factor) - 1)
 }
 
-/// Returns a product with a factor `wide` whose highest bit is 1 only if all its other bits are 0. If the highest bit is 1, the
-/// product is the factor `narrow`, shifted. Otherwise the product has the factors `narrow` and the other bits of `wide`.
+/// Multiplies by a factor `wide` whose highest bit is 1 only if all its other bits are 0. Then the product is `narrow`, shifted.
+/// Otherwise it is the product of `narrow` and the other bits of `wide`.
 fn below_the_highest(
     graph: &mut Graph,
     target: &Timing,
@@ -106,17 +104,17 @@ fn below_the_highest(
     graph.op(NodeOp::Extend(whole), format, label)
 }
 
-/// Returns `a` and `b` in an order in which the first factor is signed and never negative, and the second factor has bits besides
-/// its sign. Returns `None` if no order of `a` and `b` has this form.
+/// Orders `a` and `b` so that the first factor is signed and never negative, and the second has bits besides its sign, if
+/// possible.
 fn with_a_sign(graph: &Graph, [a, b]: [NodeId; 2]) -> Option<[NodeId; 2]> {
     let positive = |id: NodeId| graph.node(id).format.signed && graph.node(id).range.0 >= 0;
     let factors = if positive(a) { [a, b] } else { [b, a] };
     (positive(factors[0]) && graph.width(factors[1]) > 1).then_some(factors)
 }
 
-/// Returns the product of two signed factors: `positive`, which is never negative, and `other`, which may be. The product of
-/// `positive` and the bits of `other` without the sign is computed first. If the sign is set, `positive` is then subtracted at
-/// the weight of the sign. This takes narrower multipliers than a product of two signed factors.
+/// Multiplies two signed factors, of which only `other` may be negative. The bits of `other` without the sign are multiplied
+/// first. If the sign is set, `positive` is then subtracted at the weight of the sign. This takes narrower multipliers than a
+/// signed product.
 fn below_the_sign(
     graph: &mut Graph,
     target: &Timing,
@@ -143,14 +141,13 @@ fn below_the_sign(
     graph.op(NodeOp::Extend(whole), format, label)
 }
 
-/// A number in units of two to the power of `places`. For example, the value 3 with 2 places is the number 12.
+/// A number `value · 2^places`.
 #[derive(Clone, Copy)]
 struct ShiftedValue {
     value: NodeId,
     places: u32,
 }
 
-/// Returns the sum of the terms `parts` of a product, in the format `format`.
 fn summed(
     graph: &mut Graph,
     mut parts: Vec<ShiftedValue>,
@@ -158,7 +155,7 @@ fn summed(
     label: &Label,
 ) -> NodeId {
     parts.sort_by_key(|term| std::cmp::Reverse(width_with_places(graph, term)));
-    // The widest term comes last, so that only the last addition is as wide as this term.
+    // The widest term comes last, so that only the last addition is as wide.
     parts.rotate_left(1);
     let mut terms = parts.into_iter();
     let mut sum = terms.next().expect("a product has parts");
@@ -175,12 +172,12 @@ fn summed(
     graph.op(NodeOp::Relabel(value), format, label)
 }
 
-/// Returns the number of bits of a term, including the places by which its value is shifted to the left.
+/// Returns the number of bits of a term with its places.
 fn width_with_places(graph: &Graph, term: &ShiftedValue) -> u32 {
     term.places + graph.width(term.value)
 }
 
-/// Returns a node with the number that a term denotes, resized to `width` bits and signed if `signed`.
+/// Returns a term as a node of `width` bits, signed if `signed`.
 fn in_ones(
     graph: &mut Graph,
     term: ShiftedValue,
@@ -192,7 +189,7 @@ fn in_ones(
     graph.resize(shifted, width, signed)
 }
 
-/// Returns a node with the number that a term denotes: the value with a zero below it for each place.
+/// Appends a zero for each place.
 fn shifted(
     graph: &mut Graph,
     ShiftedValue { value, places }: ShiftedValue,
@@ -207,9 +204,9 @@ fn shifted(
     graph.op(NodeOp::Concat(vec![value, zeros]), format, &unnamed(label))
 }
 
-/// Returns the terms of a product whose wider factor is divided into its `limit` upper bits and the remaining lower bits. For
-/// example, a limit of 18 bits divides a factor of 21 bits into 18 upper bits and 3 lower bits. On ECP5 the lower bits become
-/// rows if the other factor has at most 22 bits.
+/// Divides the wider factor into its `limit` upper bits and the remaining lower bits. For example, a limit of 18 bits divides a
+/// factor of 21 bits into 18 upper bits and 3 lower bits. On ECP5 the lower bits become rows if the other factor has at most 22
+/// bits.
 fn cut(
     graph: &mut Graph,
     target: &Timing,
@@ -220,8 +217,7 @@ fn cut(
 ) -> Vec<ShiftedValue> {
     let rest = graph.width(wide) - limit;
     let upper_bits = slice(graph, wide, rest, integer(signed, limit), &label.part("upper_bits"));
-    // The factor of the upper bits, the factor of the lower bits, and the places by which the upper product is shifted to the
-    // left.
+    // The factors of the upper and of the lower bits, and the weight of the upper product.
     let (upper_factor, rest_factor, places) = if wide == narrow {
         let lower = slice(graph, wide, 0, unsigned(rest), &label.part("lower_bits"));
         let zero = graph.constant(0, Format::BIT, &unnamed(label));
@@ -252,8 +248,7 @@ fn cut(
     terms
 }
 
-/// Returns the product of the lowest `rest` bits of `wide` with `narrow`, as a sum of one row for each of these bits. `rest` must
-/// not be 0. For example, the row of bit 2 is `narrow · 4` if the bit is 1, and otherwise 0.
+/// Multiplies the lowest `rest` bits of `wide`, at least one, by `narrow`, one row a bit. The row of bit 2 is `narrow · 4` or 0.
 fn rows(graph: &mut Graph, wide: NodeId, rest: u32, narrow: NodeId, label: &Label) -> NodeId {
     let signed = graph.node(narrow).format.signed;
     let width = graph.width(narrow);
@@ -279,17 +274,16 @@ fn rows(graph: &mut Graph, wide: NodeId, rest: u32, narrow: NodeId, label: &Labe
     sum.expect("there is a row for every bit of the rest, which is not empty")
 }
 
-/// Returns the format of an integer with `width` bits in total, including the sign if `signed`.
+/// Returns the format of an integer with `width` bits, including the sign if `signed`.
 pub(super) fn integer(signed: bool, width: u32) -> Format {
     Format { signed, int: width as i32 - i32::from(signed), frac: 0 }
 }
 
-/// Returns the format of an unsigned integer with `width` bits.
 fn unsigned(width: u32) -> Format {
     integer(false, width)
 }
 
-/// Returns a copy of a label without comment, for a node whose name is generated.
+/// Labels a node whose name is generated.
 fn unnamed(label: &Label) -> Label {
     Label { doc: String::new(), named: false, ..label.clone() }
 }
@@ -307,7 +301,7 @@ mod tests {
     use glint_base::fixed::Format;
     use glint_base::target::{TIMINGS, Timing};
 
-    /// Returns a pipeline of one stage with the product of two factors, for a target whose multipliers take 4 bits by 4.
+    /// Multiplies two factors in one stage, for a target whose multipliers take 4 bits by 4.
     fn product(factors: impl for<'d> Fn(&'d Designer) -> [Signal<'d>; 2]) -> Design {
         let design = design(|d| {
             let [a, b] = factors(d);
@@ -331,7 +325,6 @@ mod tests {
         pipeline(&design, &options).expect("a pipeline")
     }
 
-    /// Returns the bit pattern of the result for the bit patterns of the operands.
     fn result(design: &Design, operands: &[u64]) -> u64 {
         let mut device = Interpreter::new(design).expect("no loop");
         let mut operands = operands.iter();
@@ -348,7 +341,7 @@ mod tests {
         device.value(design.find("product_out").expect("a result"))
     }
 
-    /// Returns the number of multipliers, and checks that no factor has more than 4 bits.
+    /// Also checks that no factor has more than 4 bits.
     fn multipliers(design: &Design) -> usize {
         let products = design.iter().filter_map(|(_, net)| match net.driver {
             Driver::Op(Op::Mul(a, b)) => Some([a, b]),

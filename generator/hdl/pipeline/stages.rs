@@ -1,5 +1,4 @@
-//! Builds the pipelined design from a schedule: places every node of the graph in its stage, and adds the registers between
-//! stages and the handshake.
+//! Builds the pipelined design from a schedule.
 
 use std::collections::{BTreeSet, HashMap, HashSet};
 
@@ -15,9 +14,8 @@ use crate::netlist::{
 };
 use glint_base::fixed::Format;
 
-/// Builds the netlist of a pipeline from a schedule: the logic of every stage, the registers between stages, and the handshake.
-/// `sequential` is the design that was unrolled; names, comments and notes come from it. `interval` is the number of clocks from
-/// one point to the next.
+/// Builds the netlist of a pipeline: the logic of every stage, the registers between stages, and the handshake. `sequential` is
+/// the design that was unrolled; names, comments and notes come from it. `interval` is the number of clocks between points.
 pub fn assemble(
     sequential: &Design,
     unrolled: &Unrolled,
@@ -83,7 +81,7 @@ pub fn assemble(
     design
 }
 
-/// Moves the bits that memories store in place of registers from the stages' `register_bits` to their `delayed_bits`.
+/// Moves bits that memories store in place of registers from the stages' `register_bits` to their `delayed_bits`.
 fn count_delayed(design: &mut Design) {
     let lines = design.delay_lines();
     let passed = lines.iter().flat_map(|line| &line.values).flat_map(Delayed::passed);
@@ -103,23 +101,23 @@ struct StageBuilder<'a> {
     problems: &'a ScheduleProblem<'a>,
     schedule: &'a Schedule,
     design: Design,
-    /// The pipeline built so far. Its stages and checkpoints are added last.
+    /// Stages and checkpoints are added last.
     pipeline: Pipeline,
-    /// A net that is 1 if every point moves to the next stage; `None` if the pipeline cannot stall, so that points always move.
+    /// The net that is 1 if every point moves to the next stage; `None` if the pipeline cannot stall, so that points always move.
     advance: Option<NetId>,
-    /// For each product that shares a multiplier, the register behind this multiplier.
+    /// For each product that shares a multiplier, the register behind the multiplier.
     shared: HashMap<NodeId, NetId>,
     taken: HashSet<String>,
-    /// The name of each node's value, without the suffix of a stage.
+    /// The names of the nodes, without the suffix of a stage.
     names: HashMap<NodeId, String>,
-    /// The net with the value of a node in a stage. Constants have stage 0.
+    /// The net with the value of a node in a stage; constants have stage 0.
     values: HashMap<(NodeId, usize), NetId>,
-    /// For each ROM of the sequential design, the ROMs of the pipeline that are its read ports.
+    /// For each ROM of the sequential design, its read ports in the pipeline.
     memories: HashMap<RomId, Vec<RomId>>,
 }
 
 impl StageBuilder<'_> {
-    /// Adds a net to `stage`. Its source line is the line of the sequential design's first net, until `labelled` changes it.
+    /// Adds a net to `stage`. It has the source line of the sequential design's first net until `labelled` changes it.
     fn net(&mut self, name: String, stage: usize, format: Format, driver: Driver) -> NetId {
         self.taken.insert(name.clone());
         self.pipeline.stage_of.push(stage);
@@ -133,7 +131,6 @@ impl StageBuilder<'_> {
         id
     }
 
-    /// Gives a net the interval, block number, comment and source line of a node.
     fn labelled(&mut self, id: NetId, node: NodeId) -> NetId {
         if let Some(name) = self.names.get(&node) {
             name.clone_into(&mut self.pipeline.value_of[id.index()]);
@@ -152,7 +149,7 @@ impl StageBuilder<'_> {
         (register.data, register.enable, register.reset) = (Some(data), enable, reset);
     }
 
-    /// Adds a port of `width` bits with the comment `doc`. Inputs belong to stage 0, outputs to the last stage.
+    /// Adds a port with the comment `doc`. Inputs belong to stage 0, outputs to the last stage.
     fn port(&mut self, name: &str, width: u32, role: Role, doc: &str) -> NetId {
         let format = Format::unsigned(width as i32, 0);
         let stage = if role.is_input() { 0 } else { self.schedule.latency };
@@ -189,14 +186,12 @@ impl StageBuilder<'_> {
         if options.stall {
             self.port("out_ready", 1, Role::OutReady, "the receiver accepts the results");
         }
-        // No other net may take the name of an output port.
         let outputs =
             unrolled.results.iter().map(|(port, _)| self.sequential.net(*port).name.clone());
         let outputs: Vec<String> = outputs.collect();
         self.taken.extend(outputs);
     }
 
-    /// Gives the value of every node a distinct name.
     fn names(&mut self) {
         for &id in self.problems.live() {
             if !self.names.contains_key(&id) {
@@ -207,8 +202,7 @@ impl StageBuilder<'_> {
         }
     }
 
-    /// Returns `wish`, with a number added if another value has this name in any stage. For example, a second value `base` is
-    /// named `base_2`.
+    /// Returns `wish`, with a number if another value has this name in any stage: a second `base` is `base_2`.
     fn distinct(&self, wish: &str) -> String {
         let mut name = wish.to_owned();
         let mut number = 2;
@@ -219,13 +213,12 @@ impl StageBuilder<'_> {
         name
     }
 
-    /// Returns the name of the value `name` in a stage, with `_` added until no other net has this name. For example, `base` in
-    /// stage 3 is `base_s3`.
+    /// Returns the name of a value in a stage: `base` in stage 3 is `base_s3`.
     fn staged(&self, name: &str, stage: usize) -> String {
         self.free(format!("{name}_s{stage}"))
     }
 
-    /// Returns `name`, with `_` added until no other net has this name.
+    /// Appends `_` until no other net has this name.
     fn free(&self, mut name: String) -> String {
         while self.taken.contains(&name) {
             name.push('_');
@@ -233,12 +226,11 @@ impl StageBuilder<'_> {
         name
     }
 
-    /// Returns the net of the port with this role, or `None` if the pipeline has no such port.
     fn net_with(&self, role: Role) -> Option<NetId> {
         self.design.port(|it| it == role).map(|it| it.net)
     }
 
-    /// Makes the valid bit of each stage, the stall signal `advance`, the slot counter, the side channel, and the ports for them.
+    /// Makes the valid bits, the stall signal `advance`, the slot counter, the side channel, and their ports.
     fn handshake(&mut self) {
         let latency = self.schedule.latency;
         let offered = self.net_with(Role::InValid).expect("every pipeline has the port");
@@ -313,8 +305,8 @@ impl StageBuilder<'_> {
         id
     }
 
-    /// Makes the counter of the slots (clocks modulo the interval), and returns the net that is 1 in slot 0. Returns `None` if
-    /// the interval is 1.
+    /// Makes the counter of slots (clocks modulo the interval), and returns the net that is 1 in slot 0. An interval of 1 needs
+    /// neither.
     fn slots(&mut self) -> Option<NetId> {
         let last = self.pipeline.interval.checked_sub(1).filter(|last| *last > 0)?;
         let bits = usize::BITS - last.leading_zeros();
@@ -341,7 +333,6 @@ impl StageBuilder<'_> {
         Some(first)
     }
 
-    /// Returns a net that is 1 while the counter `slot` is `number`.
     fn is_slot(&mut self, slot: NetId, number: usize) -> NetId {
         let format = self.design.net(slot).format;
         let value = Driver::Constant(number as u64);
@@ -349,9 +340,8 @@ impl StageBuilder<'_> {
         self.inner("slot_is", Format::BIT, Driver::Op(Op::Equal(slot, number)))
     }
 
-    /// Returns the enable of the registers behind `stage`, which store its values until the next point arrives there. This enable
-    /// is 1 only in the slot in which a point leaves `stage`. With an interval of 1, the enable is the net `advance`, or `None`
-    /// if points always move.
+    /// Returns the enable of the registers behind `stage`, which store its values until the next point arrives there. It is 1
+    /// only in the slot in which a point leaves `stage`. With an interval of 1, it is `advance`, or `None` if points always move.
     fn load(&mut self, stage: usize) -> Option<NetId> {
         let Some(slot) = self.pipeline.slot else { return self.advance };
         let number = stage % self.pipeline.interval;
@@ -367,8 +357,8 @@ impl StageBuilder<'_> {
         Some(load)
     }
 
-    /// Makes the multipliers that several products share, without the logic that selects their factors. Returns each multiplier
-    /// with the nets of its two operand registers. `registered` says whether products use the registers inside the multipliers.
+    /// Makes the shared multipliers, without the muxes of their factors. Returns each with the nets of its two operand registers.
+    /// `registered` says whether products use the registers inside the multipliers.
     fn units(&mut self, registered: bool) -> Vec<(sharing::MultiplierUnit, [NetId; 2])> {
         let mut made = Vec::new();
         for (number, unit) in (1..).zip(self.problems.units(self.schedule)) {
@@ -406,8 +396,8 @@ impl StageBuilder<'_> {
         made
     }
 
-    /// Makes the operand registers of shared multipliers, with muxes before them that choose the factors by the slot. A factor
-    /// leaves its stage two stages before the product is available.
+    /// Makes the operand registers of shared multipliers, behind muxes that choose the factors by the slot. A factor leaves its
+    /// stage two stages before the product is available.
     fn muxes(&mut self, units: Vec<(sharing::MultiplierUnit, [NetId; 2])>) {
         for (at, (unit, factors)) in units.into_iter().enumerate() {
             for (side, q) in factors.into_iter().enumerate() {
@@ -417,7 +407,8 @@ impl StageBuilder<'_> {
                     let value = self.value(of[side], stage);
                     inputs[stage % self.pipeline.interval] = Some(self.widened(value, q));
                 }
-                // In a slot without a product, the factor has no effect. The mux then takes the same input as in the slot before.
+                // In a slot without a product, the factor has no effect. The mux keeps the input of the slot before, so that it
+                // needs less logic.
                 let first = inputs.iter().rev().flatten().next().copied();
                 let mut known = first.unwrap_or(q);
                 let mut filled: Vec<NetId> = Vec::new();
@@ -442,7 +433,7 @@ impl StageBuilder<'_> {
         }
     }
 
-    /// Returns the net of `value`, extended to the width of the net `as_many` if that net is wider.
+    /// Extends `value` to the width of the net `as_many`.
     fn widened(&mut self, value: NetId, as_many: NetId) -> NetId {
         let format = self.design.net(as_many).format;
         if self.design.width(value) == format.width() {
@@ -455,8 +446,8 @@ impl StageBuilder<'_> {
         wide
     }
 
-    /// Makes the value of every node in its stage, and the registers that carry the value to its last use. With an interval above
-    /// 1, such a register stores the value until the next point arrives.
+    /// Makes the value of every node in its stage, and the registers that carry it to its last use. With an interval above 1,
+    /// such a register stores the value until the next point arrives.
     fn cells(&mut self) {
         let last = self.problems.last_use(self.schedule);
         for &id in self.problems.live() {
@@ -486,7 +477,7 @@ impl StageBuilder<'_> {
         }
     }
 
-    /// Returns a net with the bits of a shared multiplier's register that are the product `id`.
+    /// The product has the low bits of the shared multiplier's register.
     fn shared_product(&mut self, id: NodeId, stage: usize) -> NetId {
         let (of, format) = (self.shared[&id], self.graph.node(id).format);
         let op = match self.design.width(of) == format.width() {
@@ -496,7 +487,7 @@ impl StageBuilder<'_> {
         self.of_node(id, stage, Driver::Op(op), self.graph.node(id).label.named)
     }
 
-    /// Makes the net of a node in a stage. Its name consists of the name of the node's value and the stage.
+    /// Makes the net of a node in a stage.
     fn of_node(&mut self, id: NodeId, stage: usize, driver: Driver, named: bool) -> NetId {
         let name = self.staged(&self.names[&id], stage);
         let net = self.net(name, stage, self.graph.node(id).format, driver);
@@ -505,22 +496,19 @@ impl StageBuilder<'_> {
         net
     }
 
-    /// Makes the combinational cell of a node in a stage.
     fn cell(&mut self, id: NodeId, op: &graph::NodeOp, stage: usize) -> NetId {
         let cell = op.map(|&operand| self.value(operand, stage));
         self.of_node(id, stage, Driver::Op(cell), self.graph.node(id).label.named)
     }
 
-    /// Makes a register in `stage` for the value of node `id`, and returns its output. `value` is the net with this value in the
-    /// stage before. `enable` is the load enable.
+    /// Makes a register in `stage` for the value of node `id`. `value` is the net with this value in the stage before.
     fn behind(&mut self, id: NodeId, value: NetId, stage: usize, enable: Option<NetId>) -> NetId {
         let q = self.of_node(id, stage, Driver::Undriven, true);
         self.register(q, value, enable, None);
         q
     }
 
-    /// Returns the net with the value of node `id` in `stage`. A constant, or an extension of a value in this stage, is made if
-    /// necessary.
+    /// Returns the net with the value of node `id` in `stage`, and makes a constant or an extension if necessary.
     fn value(&mut self, id: NodeId, stage: usize) -> NetId {
         let node = self.graph.node(id);
         let key = if let Cell::Constant(_) = node.cell { (id, 0) } else { (id, stage) };
@@ -543,7 +531,7 @@ impl StageBuilder<'_> {
         net
     }
 
-    /// Makes the net of an extension in `stage`, from the narrower value that registers carry to this stage.
+    /// Makes an extension in `stage` from the narrower value that registers carry there.
     fn extension(&mut self, id: NodeId, stage: usize) -> NetId {
         let node = self.graph.node(id);
         let Cell::Op(op) = &node.cell else {
@@ -552,21 +540,20 @@ impl StageBuilder<'_> {
         let wiring = op.map(|&operand| self.value(operand, stage));
         let name = self.distinct(&node.label.name);
         self.names.entry(id).or_insert(name);
-        // The extension is wiring. The Verilog has it in the expression that reads it.
+        // The Verilog has the extension in the expression that reads it.
         let net = self.of_node(id, stage, Driver::Op(wiring), false);
         self.values.insert((id, stage), net);
         net
     }
 
     /// Makes a read port of a memory, and returns its data. The word of a block memory comes a stage after the address. Two reads
-    /// share a memory, which has two ports; a third read starts a second copy of the memory.
+    /// share a memory, which has two ports; a third read starts a second copy.
     fn read(&mut self, id: NodeId, rom: RomId, address: NodeId, stage: usize) -> NetId {
         let synchronous = self.problems.is_clocked(id);
         let address = self.value(address, stage - usize::from(synchronous));
         let source = self.sequential.rom(rom).clone();
         let number = RomId(self.design.roms.len() as u32);
         let data = self.of_node(id, stage, Driver::Rom(number), true);
-        // A memory has two read ports.
         let ports = self.memories.entry(rom).or_default();
         let shares = (ports.len() % 2 == 1).then(|| ports[ports.len() - 1]);
         ports.push(number);
@@ -586,7 +573,6 @@ impl StageBuilder<'_> {
         data
     }
 
-    /// Makes the output ports.
     fn results(&mut self, unrolled: &Unrolled) {
         let latency = self.schedule.latency;
         for &(port, id) in &unrolled.results {
@@ -603,8 +589,6 @@ impl StageBuilder<'_> {
         }
     }
 
-    /// Returns the facts of each stage: its microinstructions, the delay of its logic, the slack, and the register bits behind
-    /// it.
     fn stages(&self, unrolled: &Unrolled) -> Vec<Stage> {
         let mut stages = Vec::new();
         for stage in 0..self.schedule.latency {
@@ -620,7 +604,7 @@ impl StageBuilder<'_> {
         stages
     }
 
-    /// Returns the names of the microinstructions whose operations are computed in a stage, in the order of execution.
+    /// Returns the microinstructions whose operations a stage computes, in the order of execution.
     fn microinstructions(&self, unrolled: &Unrolled, stage: usize) -> Vec<String> {
         let mut steps: BTreeSet<usize> = BTreeSet::new();
         for &id in self.problems.live() {
@@ -641,8 +625,8 @@ impl StageBuilder<'_> {
         names
     }
 
-    /// Returns the number of register bits in the row with the number `boundary`, which is behind the stage `boundary` − 1.
-    /// Registers inside multipliers and block memories do not count.
+    /// Returns the number of register bits in the row behind stage `boundary` − 1, without those inside multipliers and block
+    /// memories.
     fn register_bits(&self, boundary: usize) -> u32 {
         let mut bits = 0;
         for (id, register) in (0..).map(RegId).zip(&self.design.registers) {
@@ -654,15 +638,14 @@ impl StageBuilder<'_> {
         bits
     }
 
-    /// Returns the stage whose logic computes a node: the node's own stage, or, for a product with a register behind the product,
-    /// the stage before.
+    /// Returns the stage whose logic computes a node: the stage before its own for a product with a register behind it.
     fn computed_in(&self, id: NodeId) -> usize {
         let product = matches!(self.graph.node(id).cell, Cell::Op(_));
         self.schedule.stage[id.index()] - usize::from(product && self.problems.is_clocked(id))
     }
 
-    /// Returns the nets that have the values of operand registers and architectural registers. Each net comes with the first
-    /// executed microinstruction at which the register has this value. Constants and nets with generated names are left out.
+    /// Returns the nets with the values of operand registers and architectural registers, each with the first executed
+    /// microinstruction at which the register has this value. Constants and nets with generated names are left out.
     fn checkpoints(&self, unrolled: &Unrolled) -> Vec<Checkpoint> {
         let mut before: HashMap<RegId, NodeId> = HashMap::new();
         let mut checkpoints = Vec::new();

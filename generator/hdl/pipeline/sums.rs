@@ -10,10 +10,8 @@ use crate::netlist::interval::of_cell;
 use glint_base::fixed::Format;
 use glint_base::interval::Interval;
 
-/// Returns the node for the combinational cell `op`, and adds it to the graph unless it exists. In a sum or a difference, low
-/// bits that need no carry bypass the adder, so that its carry chain is short. For example, the lowest two bits of `x + 4` are
-/// the lowest two bits of `x`. A sum of `a`, `~b` and the carry 1 becomes the difference `a - b`. Any other cell is added
-/// unchanged.
+/// Returns the node for the cell `op`. In a sum or a difference, low bits that need no carry bypass the adder: the lowest two
+/// bits of `x + 4` equal the lowest two of `x`. A sum of `a`, `~b` and the carry 1 becomes `a - b`.
 pub fn shortened(
     graph: &mut Graph,
     op: NodeOp,
@@ -21,7 +19,7 @@ pub fn shortened(
     range: Interval,
     label: &Label,
 ) -> NodeId {
-    // In a sum, a single choice stays in front of the adder. A choice between choices moves behind it.
+    // A single choice stays in front of an adder. A choice between choices moves behind it.
     let behind = match op {
         NodeOp::Add { a, .. } => choice(graph, a)
             .is_some_and(|(_, inputs)| inputs.iter().any(|&it| choice(graph, it).is_some())),
@@ -30,8 +28,8 @@ pub fn shortened(
     within(graph, op, format, range, label, behind)
 }
 
-/// Returns a node with the value of the cell `op`, in which low bits bypass an adder as [`shortened`] describes. If `behind` is
-/// true, a choice between a value and a constant moves behind a sum with a constant, or behind a subtraction from a constant.
+/// Does the work of [`shortened`]. With `behind`, a choice between a value and a constant moves behind a sum with a constant, or
+/// a subtraction from a constant.
 fn within(
     graph: &mut Graph,
     op: NodeOp,
@@ -78,9 +76,8 @@ fn within(
     graph.insert(Cell::Op(NodeOp::Concat(vec![upper, lower])), format, range, label)
 }
 
-/// Moves a choice between a value and a constant behind the sum or difference `op` with another constant. For example,
-/// `(s ? 5 : x) + 3` becomes `s ? 8 : x + 3`, and `7 - (s ? 5 : x)` becomes `s ? 2 : 7 - x`. Returns `None` if `op` has another
-/// form.
+/// Moves a choice between a value and a constant behind the sum or difference `op` with another constant: `(s ? 5 : x) + 3`
+/// becomes `s ? 8 : x + 3`, and `7 - (s ? 5 : x)` becomes `s ? 2 : 7 - x`. Returns `None` if `op` has another form.
 fn chosen_behind(
     graph: &mut Graph,
     op: &NodeOp,
@@ -114,8 +111,7 @@ fn chosen_behind(
     Some(graph.insert(Cell::Op(NodeOp::Mux { select, inputs: sums }), format, range, label))
 }
 
-/// Returns the select and the two inputs of a mux between a value and a constant. Node `id` is this mux, or renames it. Returns
-/// `None` for any other node.
+/// Returns the select and the two inputs if node `id` is a mux between a value and a constant, or renames one.
 fn choice(graph: &Graph, id: NodeId) -> Option<(NodeId, Vec<NodeId>)> {
     match &graph.node(id).cell {
         Cell::Op(NodeOp::Relabel(of)) => choice(graph, *of),
@@ -127,8 +123,8 @@ fn choice(graph: &Graph, id: NodeId) -> Option<(NodeId, Vec<NodeId>)> {
     }
 }
 
-/// Returns how many of the lowest bits of node `id` are always 0, as far as constants and wiring show it. For example, a value
-/// with the constant `00` joined below it has 2.
+/// Returns how many of the lowest bits of node `id` are always 0, as far as constants and wiring show it. A value with the
+/// constant `00` joined below it has 2.
 fn zeros(graph: &Graph, id: NodeId) -> u32 {
     let width = graph.width(id);
     match &graph.node(id).cell {

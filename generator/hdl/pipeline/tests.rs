@@ -19,7 +19,7 @@ fn options(goal: Goal) -> Options {
     }
 }
 
-/// Returns a divider for a quotient of 8 bits, which computes one bit a clock.
+/// Computes a quotient of 8 bits, one bit a clock.
 fn ratio() -> Design {
     design(|d| {
         let a = d.operand("a", Format::unsigned(8, 0));
@@ -64,7 +64,6 @@ fn a_clock_that_cannot_be_met_names_the_nearest_and_what_limits_it() {
     let text = error.to_string();
     assert!(text.contains("cannot run at 1500 MHz"), "{text}");
     assert!(text.contains("`ratio_trial") && text.contains("pipeline/tests.rs"), "{text}");
-    // The proposed clock can be reached.
     let PipelineErrorKind::Clock { nearest, registered: None } = error.kind else {
         panic!("{error:?}")
     };
@@ -128,7 +127,6 @@ fn what_an_earlier_computation_left_cannot_be_a_result() {
     assert!(super::carried(&power()).is_none());
 }
 
-/// Returns a design that computes the fourth power of an operand, by two products.
 fn power() -> Design {
     design(|d| {
         let x = d.operand("x", Format::unsigned(9, 0));
@@ -146,7 +144,7 @@ fn a_registered_multiplier_is_named_where_it_reaches_the_clock_and_holds_every_p
     let goal = Goal::ClockMhz(165.0);
     let error = refused(&power(), goal);
     assert!(error.to_string().contains("cannot run at 165 MHz: `fourth`"), "{error}");
-    // The registers are named also for a clock that even they do not reach.
+    // The message names the registers also for a clock that even they do not reach.
     for clock in [165.0, 250.0] {
         let kind = refused(&power(), Goal::ClockMhz(clock)).kind;
         let PipelineErrorKind::Clock { nearest, registered: Some(higher) } = kind else {
@@ -181,8 +179,7 @@ fn without_registered_multipliers_no_register_is_inside_one() {
     assert!(registers.all(|register| made.multiplier(register).is_none()));
 }
 
-/// A product that no stage reads for several stages is stored in a memory. This memory begins behind the multiplier's register,
-/// which stays a register.
+/// A product that no stage reads for several stages is stored in a memory behind the multiplier's register.
 #[test]
 fn a_delay_line_begins_behind_a_registered_multiplier() {
     let goal = Goal::ClockMhz(165.0);
@@ -190,7 +187,7 @@ fn a_delay_line_begins_behind_a_registered_multiplier() {
     let registered = made.pipeline.as_ref().expect("a pipeline").registered.clone();
     let product = made.register(registered[0]).q;
     let second = made.multiplier(registered[1]).expect("a multiplier");
-    // The scheduler delays the factors where they are narrower. The test therefore adds the delay by hand.
+    // The scheduler delays the factors where they are narrower, so the test adds the delay by hand.
     let mut waiting = second.factors[0];
     for clocks in 1..=4 {
         let register = RegId(made.registers.len() as u32);
@@ -212,7 +209,7 @@ fn a_delay_line_begins_behind_a_registered_multiplier() {
     assert!(values.iter().all(|it| it.registers.iter().all(|at| !registered.contains(at))));
 }
 
-/// Returns a design with `(taken ? x : 0) + y`, and a fourth power that takes longer, so that the scheduler may delay the sum.
+/// Computes `(taken ? x : 0) + y`, and a fourth power that takes longer, so that the scheduler may delay the sum.
 fn row_beside_a_power() -> Design {
     design(|d| {
         let x = d.operand("x", Format::unsigned(9, 0));
@@ -253,12 +250,11 @@ fn a_choice_that_a_reset_makes_is_held_before_a_sum() {
 enum By {
     Nothing,
     Operand,
-    /// Bit of the sum itself.
+    /// A bit of the sum itself.
     Sum,
 }
 
-/// Returns the clock frequency in MHz of a pipeline of one stage. A register loads a sum, or 0 if the signal that `by` names is
-/// 0. With `By::Nothing` it always loads the sum.
+/// Returns the clock frequency in MHz of one stage, whose register loads a sum, or 0 if the signal `by` is 0.
 fn clock_of_a_sum(by: By) -> f64 {
     let design = design(|d| {
         let wide = Format::unsigned(40, 0);
@@ -289,7 +285,7 @@ fn what_a_reset_chooses_costs_the_select_time_and_the_value_none() {
     assert!(clock_of_a_sum(By::Sum) < sum);
 }
 
-/// Returns a design with three products, the first of them signed.
+/// Three products, the first of them signed.
 fn products() -> Design {
     design(|d| {
         let a = d.operand("a", Format::signed(11, 0)).q();

@@ -1,11 +1,11 @@
 //! Prints computations as text, as the tests of the passes and `glint schedule --after` show them.
 //!
-//! Each value is a line, `name format [low, high] = operation operands`. For example, `sum u6.0 = add a b` is a sum of 6 bits.
-//! The range `[low, high]` of raw values is left out if the format allows no other values. An operand of the computation, or an
-//! unknown value, is a line without an operation. The last lines are `result name`.
+//! Each value is a line, `name format [low, high] = operation operands`, such as `sum u6.0 = add a b`. The range `[low, high]`
+//! of raw values is left out if the format allows no other values. An operand of the computation, or an unknown value, is a
+//! line without an operation. The last lines are `result name`.
 //!
-//! `constant` is followed by a bit pattern, `read` by the number of a ROM and its address, `slice` by its value and its lowest
-//! bit, `mux` by its select and its inputs. `add` has a third operand if it has a carry input.
+//! A bit pattern follows `constant`, and the number of a ROM and its address follow `read`. The value and the lowest bit
+//! follow `slice`, and the select and the inputs follow `mux`. `add` has a third operand if it has a carry input.
 
 use std::collections::{HashMap, HashSet};
 use std::fmt::Write;
@@ -13,8 +13,8 @@ use std::fmt::Write;
 use super::graph::{Cell, NodeOp};
 use super::unroll::Unrolled;
 
-/// Returns the text notation of a computation: one line for each value that the results need, then one line for each result. If
-/// several values have the same name, all but the first get a number. For example, the second `sum` becomes `sum.2`.
+/// Prints each value that the results need, and then each result. Values with the same name get numbers: the second `sum`
+/// becomes `sum.2`.
 pub fn printed(unrolled: &Unrolled) -> String {
     let graph = &unrolled.graph;
     let results = unrolled.results.iter().map(|it| it.1);

@@ -1,9 +1,9 @@
 //! Unrolls a microprogram into a graph of values, by executing it symbolically with unknown operands.
 //!
-//! The execution follows one computation clock by clock, from the clock that accepts `start` to the clock with the results. The
-//! fields of the control word are constants in each clock, so that muxes with a field as their select disappear. If a condition
-//! depends on an operand, the execution follows both branches, and muxes choose the register contents behind them. A loop is
-//! unrolled as often as it can run. The module fails if a computation takes more than 4096 clocks.
+//! The execution follows one computation from the clock that accepts `start` to the clock with the results. The fields of the
+//! control word are constants in each clock, so that muxes with a field as their select disappear. If a condition depends on an
+//! operand, the execution follows both branches, and muxes choose the register contents behind them. A loop is unrolled as often
+//! as it can run. The module fails if a computation takes more than 4096 clocks.
 
 mod clock;
 mod cycle;
@@ -21,38 +21,34 @@ use glint_base::codes;
 use glint_base::diagnostic::{Diagnostic, Diagnostics};
 use glint_base::fixed::Format;
 
-/// The largest number of clocks of a computation that is unrolled. A longer computation is not worth a pipeline.
+/// A longer computation is not worth a pipeline.
 const MOST_CLOCKS: usize = 4096;
 
-/// A computation that Glint has unrolled from the microprogram of a design: a graph without loops, from the operands to the
-/// results.
+/// A graph without loops, from the operands of a design to the results of its microprogram.
 #[derive(Debug)]
 pub struct Unrolled {
-    /// The graph with all values of the computation, each computed once.
     pub graph: Graph,
-    /// The nets of the design's operand ports, in the order of the ports. `Cell::Operand` has positions in this list.
+    /// The nets of the operand ports, in the order of the ports. `Cell::Operand` has positions in this list.
     pub operands: Vec<NetId>,
-    /// The results: the nets of output ports, each with the node of its value in the graph. The outputs of the handshake are not
-    /// among them, except in the graph of a `Cycle`, which has all outputs.
+    /// The nets of output ports, each with its node. The outputs of the handshake are not among them, except in the graph of a
+    /// `Cycle`, which has all outputs.
     pub results: Vec<(NetId, NodeId)>,
-    /// The microinstructions in the order in which the computation executes them.
+    /// The microinstructions in the order of execution.
     pub steps: Vec<UnrolledStep>,
 }
 
-/// One executed microinstruction of the computation.
+/// An executed microinstruction.
 #[derive(Clone, Debug)]
 pub struct UnrolledStep {
-    /// The address of the executed microinstruction in the microprogram.
     pub address: usize,
     /// The number of earlier executions of the same microinstruction in this computation.
     pub visit: usize,
-    /// The values of the operand registers and the architectural registers while the microinstruction is executed, each as a node
-    /// of the computation's graph. (The golden model predicts these registers.) A register that no earlier microinstruction has
-    /// loaded has a node with an unknown value.
+    /// The nodes of operand registers and architectural registers, which the golden model predicts, while the microinstruction is
+    /// executed. A register that no earlier microinstruction has loaded has an unknown value.
     pub registers: Vec<(RegId, NodeId)>,
 }
 
-/// The state that an execution has reached: the register contents, and the address of the next microinstruction.
+/// The state before the microinstruction at `address`.
 struct At {
     state: State,
     address: usize,
@@ -63,67 +59,52 @@ struct Executor<'a> {
     iterations: Iterations,
     unrolled: Unrolled,
     visits: Vec<usize>,
-    /// The results, each as the net of a result or status port and the node of its value. `None` until a microinstruction sets
-    /// `valid`.
+    /// Each result or status port with its node; `None` until a microinstruction sets `valid`.
     shown: Option<Vec<(NetId, NodeId)>>,
 }
 
-/// Executes the microprogram of a design symbolically, and returns the computation from operands to results as a graph without
-/// loops. The description language must have accepted the design.
+/// Unrolls the microprogram of a design that the description language has accepted.
 ///
 /// # Errors
-/// Fails if no bound of a loop is found because its condition depends on more than 16 bits, or if the computation takes more than
-/// 4096 clocks. Fails if the microprogram ends or waits for `start` before it sets `valid`, or if `valid` depends on a signal.
-/// Fails if a microinstruction under a condition sets `valid`. Fails if a result depends on a value that an earlier computation
-/// has left in a register.
+/// Fails if a loop has no known bound because its condition depends on more than 16 bits. Fails if the computation takes more
+/// than 4096 clocks. Fails if the microprogram ends or waits for `start` before it sets `valid`. Fails if `valid` depends on a
+/// signal or is set under a condition. Fails if a result depends on a value that an earlier computation has left in a register.
 pub fn unroll(design: &Design) -> Result<Unrolled, Diagnostics> {
     run(design, Iterations::OneByOne).map_err(|diagnostic| Diagnostics(vec![diagnostic]))
 }
 
-/// Unrolls the microprogram of a design as [`unroll`] does, but with fewer muxes for loops whose number of iterations depends on
-/// an operand. Such iterations become blocks of 8, 4, 2 and 1 iterations, each enabled by one bit of the number. A loop is
-/// unrolled as by [`unroll`] if it has at most four iterations or if its iterations are not alike. The same holds if the number
-/// of iterations depends on several values or on more than 6 bits.
+/// Unrolls as [`unroll`] does, but with fewer muxes for loops whose number of iterations depends on an operand. They become
+/// blocks of 8, 4, 2 and 1 iterations, and one bit of the number enables each. Single iterations remain if a loop has at most
+/// four, they are not alike, or their number depends on several values or on more than 6 bits.
 ///
 /// # Errors
-/// Fails if no bound of a loop is found because its condition depends on more than 16 bits, or if the computation takes more than
-/// 4096 clocks. Fails if the microprogram does not set `valid` at a fixed place, or if a result depends on an earlier
-/// computation.
+/// Fails as [`unroll`] does.
 pub fn unroll_in_powers(design: &Design) -> Result<Unrolled, Diagnostics> {
     unroll_for_pipeline(design).map_err(|diagnostic| Diagnostics(vec![diagnostic]))
 }
 
-/// Unrolls the microprogram of a design as [`unroll_in_powers`] does.
-///
-/// # Errors
-/// Fails if the microprogram cannot be unrolled, as [`unroll`] describes. The error is the first mistake that the execution
-/// meets.
+/// Like [`unroll_in_powers`]; the error is the first mistake that the execution meets.
 pub(super) fn unroll_for_pipeline(design: &Design) -> Result<Unrolled, Diagnostic> {
     run(design, Iterations::InPowers)
 }
 
-/// The way in which the iterations of a loop are executed if their number depends on an operand.
+/// How the iterations of a loop are executed if their number depends on an operand.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Iterations {
     /// Each iteration is executed under the condition that all iterations up to it take place.
     OneByOne,
-    /// Blocks of 8, 4, 2 and 1 iterations are executed, each under one bit of the number of iterations. A loop is executed as
-    /// with `OneByOne` if it has at most four iterations, if its iterations are not alike, or if more than 6 bits determine their
-    /// number.
+    /// Blocks of 8, 4, 2 and 1 iterations are executed, if [`unroll_in_powers`] can make them.
     InPowers,
 }
 
-/// Returns a diagnostic if a result depends on a value that an earlier computation has left in a register or a memory output.
-/// Returns `None` if no result does, or if the microprogram cannot be unrolled.
+/// Returns a diagnostic if a result depends on a value that an earlier computation has left in a register or a memory output. A
+/// microprogram that cannot be unrolled has none.
 pub fn carried(design: &Design) -> Option<Diagnostic> {
     let (executor, results) = executed(design, Iterations::InPowers).ok()?;
     executor.determined(&results, "carries a state from one point to the next").err()
 }
 
-/// Unrolls the microprogram of a design, and checks that no result depends on a value of an earlier computation.
-///
-/// # Errors
-/// Fails as [`unroll`] does.
+/// Unrolls, and checks that no result depends on a value of an earlier computation.
 fn run(design: &Design, iterations: Iterations) -> Result<Unrolled, Diagnostic> {
     let (mut executor, results) = executed(design, iterations)?;
     executor.determined(&results, "cannot be a pipeline")?;
@@ -131,11 +112,8 @@ fn run(design: &Design, iterations: Iterations) -> Result<Unrolled, Diagnostic> 
     Ok(executor.unrolled)
 }
 
-/// Executes the microprogram of a design up to the clock with the results. Returns the execution, and the net of each result or
-/// status port with the node of its value.
-///
-/// # Errors
-/// Fails if the microprogram cannot be executed, as [`unroll`] describes, or if no microinstruction sets `valid`.
+/// Executes the microprogram up to the clock with the results. Returns each result or status port with its node. Fails as
+/// [`unroll`] does, except that results may depend on an earlier computation.
 fn executed(
     design: &Design,
     iterations: Iterations,
@@ -172,7 +150,6 @@ impl<'a> Executor<'a> {
         }
     }
 
-    /// Returns a state in which each register and each ROM output has an unknown value.
     fn power_up(&mut self) -> State {
         let design = self.design;
         let graph = &mut self.unrolled.graph;
@@ -185,17 +162,14 @@ impl<'a> Executor<'a> {
         State { registers, roms }
     }
 
-    /// Executes the clock that accepts `start` and writes all operands. Returns the state after this clock.
+    /// Executes the clock that accepts `start` and writes all operands.
     fn start(&mut self, state: &State) -> State {
         Clock::new(self, state, Some(0), true).edge()
     }
 
-    /// Executes microinstructions from `at` on, up to the clock with the results, or until the microinstruction with the address
-    /// `stop` comes next. Returns the state at `stop`, or `None` if the results came first. `self.shown` then has the results.
-    ///
-    /// # Errors
-    /// Fails if the microprogram ends or waits for `start` before `valid`, or if `valid` depends on a signal or is set under a
-    /// condition. Fails if a loop has no bound, or if the computation takes more than 4096 clocks.
+    /// Executes microinstructions from `at` on, up to the clock with the results, or until the microinstruction at `stop` comes
+    /// next. Returns the state at `stop`, or `None` if the results came first and are in `self.shown`. Fails as [`unroll`]
+    /// describes.
     fn follow(&mut self, mut at: At, stop: Option<usize>) -> Result<Option<State>, Diagnostic> {
         let design = self.design;
         loop {
@@ -246,14 +220,12 @@ impl<'a> Executor<'a> {
         }
     }
 
-    /// Executes every iteration but the first of the loop from address `to` to address `last`, and returns the state after these
-    /// iterations. `condition` says whether the second iteration takes place; `state` is the state after the first iteration. The
-    /// number of iterations must have a bound for any values of `free`, the register contents before the last microinstruction of
-    /// the first iteration.
+    /// Executes every iteration but the first of the loop from address `to` to address `last`. `condition` says whether the
+    /// second iteration takes place, and `state` is the state after the first. The number of iterations must have a bound for any
+    /// values of `free`, the register contents before the last microinstruction of the first iteration.
     ///
     /// Registers on which the loop's condition depends go from iteration to iteration as if every iteration took place. This
-    /// simplification saves muxes for a counter, and does no harm, because an iteration counts only if all iterations before it
-    /// took place.
+    /// saves muxes for a counter, and does no harm, because an iteration counts only if all iterations before it took place.
     ///
     /// # Errors
     /// Fails if the condition depends on more than 16 bits, if an iteration sets `valid`, or as [`Executor::follow`] does.
@@ -309,14 +281,13 @@ impl<'a> Executor<'a> {
         }
     }
 
-    /// Unrolls a loop whose number of iterations depends on an operand. The loop becomes blocks of 8, 4, 2 and 1 iterations, or
-    /// fewer or more blocks if the largest number of iterations is smaller or larger. The number of `conditions` that are 1 is
-    /// the number of further iterations after `first`, the state behind the first iteration. One bit of this number enables each
-    /// block. `counters` marks the registers that count iterations; their values in the returned state are wrong.
+    /// Unrolls a loop as blocks of iterations: 8, 4, 2 and 1, or fewer or more for another largest number. The number of
+    /// `conditions` that are 1 is the number of further iterations after `first`, the state behind the first iteration. One bit
+    /// of this number enables each block. `counters` marks the registers that count iterations; their values in the returned
+    /// state are wrong.
     ///
-    /// Returns `None` if an iteration depends on these registers or changes a memory's output, or if there are fewer than four
-    /// conditions. Returns `None` if the number depends on several nodes or on more than 6 bits, or if an iteration cannot be
-    /// executed.
+    /// Returns `None` if an iteration depends on these registers, changes a memory's output or cannot be executed. It is also
+    /// `None` with fewer than four conditions, and if the number depends on several nodes or on more than 6 bits.
     fn in_powers(
         &mut self,
         first: &State,
@@ -382,11 +353,9 @@ impl<'a> Executor<'a> {
         Some(now)
     }
 
-    /// Executes the microinstruction at `at`. Returns the state after it and, for a loop or a jump, the node of its condition. If
-    /// the microinstruction sets `valid`, `self.shown` gets the results, and the state stays as it was.
-    ///
-    /// # Errors
-    /// Fails if `valid` depends on a signal, or if the computation takes more than 4096 clocks.
+    /// Executes the microinstruction at `at`. Returns the state after it, and the condition of a loop or jump. If the
+    /// microinstruction sets `valid`, `self.shown` gets the results, and the state stays as it was. Fails if `valid` depends on a
+    /// signal, or if the computation takes more than 4096 clocks.
     fn execute(&mut self, at: &At) -> Result<(State, Option<NodeId>), Diagnostic> {
         let design = self.design;
         if self.unrolled.steps.len() == MOST_CLOCKS {
@@ -435,8 +404,7 @@ impl<'a> Executor<'a> {
         Ok((clock.edge(), condition))
     }
 
-    /// Returns a state whose registers and ROM outputs have the values in `yes` if `condition` is 1, and the values in `no`
-    /// otherwise.
+    /// Merges two states by muxes: `yes` if `condition` is 1.
     fn either(&mut self, condition: NodeId, yes: &State, no: &State) -> State {
         let design = self.design;
         let graph = &mut self.unrolled.graph;
@@ -460,11 +428,8 @@ impl<'a> Executor<'a> {
         Diagnostic::new(codes::UNROLL, message, microinstruction.location)
     }
 
-    /// Checks that no result depends on a value that an earlier computation has left. `what` is the predicate of the message,
-    /// such as "cannot be a pipeline".
-    ///
-    /// # Errors
-    /// Fails if a result depends on such a value. The error names the result and the register.
+    /// Checks that no result depends on a value that an earlier computation has left; the error names the result and the
+    /// register. `what` is the predicate of the message, such as "cannot be a pipeline".
     fn determined(&self, results: &[(NetId, NodeId)], what: &str) -> Result<(), Diagnostic> {
         let graph = &self.unrolled.graph;
         for &(port, value) in results {
@@ -484,13 +449,13 @@ impl<'a> Executor<'a> {
     }
 }
 
-/// Adds a node for the unknown value that `net` has at power-up.
+/// Adds the unknown value that `net` has at power-up.
 fn unknown(graph: &mut Graph, net: &Net) -> NodeId {
     let cell = Cell::Unknown(net.name.clone());
     graph.insert(cell, net.format, net.format.range(), &label(net))
 }
 
-/// Replaces the values of the registers that `counters` marks by their unknown values at power-up.
+/// Gives the registers that `counters` marks their unknown values at power-up.
 fn forget(state: &mut State, counters: &[bool], unknown: &State) {
     for (at, &counts) in counters.iter().enumerate() {
         if counts {
@@ -499,9 +464,9 @@ fn forget(state: &mut State, counters: &[bool], unknown: &State) {
     }
 }
 
-/// Returns the position of a bit in a node of `width` bits that always equals bit `bit` of a count. `counts` has the count for
-/// each value of the node, or `None` for a value that the node never has. Returns `None` if no bit has this property. For
-/// example, the counts 0, 1, 2 and 3 for the values 0 to 3 and bit 1 give position 1.
+/// Returns the position of a bit in a node of `width` bits that always equals bit `bit` of a count, if there is one. `counts` has
+/// the count for each value that the node can have. For example, the counts 0, 1, 2 and 3 for the values 0 to 3 and bit 1 give
+/// position 1.
 fn bit_with_count(width: u32, counts: &[Option<usize>], bit: u32) -> Option<u32> {
     (0..width).find(|place| {
         let mut values = counts.iter().enumerate();
@@ -509,8 +474,7 @@ fn bit_with_count(width: u32, counts: &[Option<usize>], bit: u32) -> Option<u32>
     })
 }
 
-/// Returns the node of a mux: `yes` if the condition is 1, and otherwise `no`. No mux is necessary if `yes` and `no` are the same
-/// node.
+/// Returns a mux, or the node itself if `yes` and `no` are the same.
 fn choose(graph: &mut Graph, condition: NodeId, yes: NodeId, no: NodeId, net: &Net) -> NodeId {
     if yes == no {
         return yes;

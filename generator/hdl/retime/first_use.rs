@@ -1,16 +1,15 @@
-//! Finds, for each net, the first clock of a computation in which its value is used. Logic that depends on operands alone, and is
-//! first used after the first microinstruction, may take several clocks. The module `operands` inserts registers into such logic.
+//! Finds, for each net, the first clock of a computation in which its value is used. `operands` thus knows how long the logic
+//! before it may take.
 
 use std::collections::{HashSet, VecDeque};
 
 use crate::netlist::{Design, Driver, NetId, Op, passed_on, setting_of};
 
-/// Returns for each net of the design the first clock in which its value is used. A value is used if it reaches an output, the
-/// sequencer, or a register that is loaded. The clock of the first microinstruction has the number 0. The result is `usize::MAX`
-/// for a net that is never used.
+/// Returns for each net the first clock in which its value reaches an output, the sequencer, or a register that is loaded. The
+/// first microinstruction is clock 0; a net that is never used has `usize::MAX`.
 ///
-/// If a microinstruction determines the select of a mux, only the chosen input counts as used. Outputs, enables and the sequencer
-/// use their nets in every clock.
+/// If a microinstruction determines the select of a mux, only the chosen input counts. Outputs, enables and the sequencer use
+/// their nets in every clock.
 pub fn needed(design: &Design) -> Vec<usize> {
     let mut walk = UseSearch {
         design,
@@ -50,13 +49,13 @@ struct UseSearch<'a> {
 }
 
 impl UseSearch<'_> {
-    /// Notes that `net` is used in every microinstruction.
+    /// Notes a use in every microinstruction.
     fn at_once(&mut self, net: NetId) {
         (0..self.design.control.microprogram.len()).for_each(|at| self.from(at, net));
     }
 
-    /// Notes that `net`, and every net on which it depends, is used in microinstruction `at`. The search goes through registers
-    /// without an enable and synchronous ROMs to the microinstructions before.
+    /// Notes a use of `net`, and of every net on which it depends, in microinstruction `at`. Registers without an enable and
+    /// synchronous ROMs lead to the microinstructions before.
     fn from(&mut self, at: usize, net: NetId) {
         let design = self.design;
         let mut pending = vec![(at, net)];
@@ -88,8 +87,7 @@ impl UseSearch<'_> {
     }
 }
 
-/// Returns the smallest number of clocks from microinstruction 0 to each microinstruction, or `usize::MAX` for a microinstruction
-/// that no path reaches.
+/// Returns the smallest number of clocks from microinstruction 0 to each microinstruction, or `usize::MAX` if no path reaches it.
 fn clocks_to(design: &Design) -> Vec<usize> {
     let mut clocks = vec![usize::MAX; design.control.microprogram.len()];
     let mut pending = VecDeque::from([(0, 0)]);

@@ -1,7 +1,7 @@
 //! Inserts registers into a sequential design where an operand has several clocks to reach its first reader.
 //!
-//! `first_use` finds the clock in which each net is first used. `operands` inserts the registers. No result comes later: for
-//! example, a product of two operands that is first used in the third clock may have a register behind it.
+//! No result comes later. For example, a product of two operands that is first used in the third clock may have a register
+//! behind it.
 
 mod first_use;
 mod operands;

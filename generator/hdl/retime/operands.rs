@@ -1,17 +1,16 @@
 //! Inserts registers into logic that depends only on operands, to shorten the longest path of a device.
 //!
 //! Operands cannot change while the device is busy. Logic that depends only on operands and constants is therefore *steady*: it
-//! may take several clocks, up to the microinstruction that first uses its value. A register in steady logic shortens a path
-//! without adding a clock. The module inserts no register before outputs, or before nets that the first microinstruction uses.
+//! may take several clocks, up to the microinstruction that first uses its value. The module inserts no register before outputs,
+//! or before nets that the first microinstruction uses.
 
 use std::collections::{BTreeMap, BTreeSet, HashSet};
 
 use super::first_use::needed;
 use crate::netlist::{Design, Driver, Net, NetId, Op, RegId, RegisterKind, Sequence};
 
-/// Inserts registers, named `<name>_held`, into steady logic so that the longest path from an operand becomes as short as the
-/// search finds. Among positions with an equally short path, the function chooses nets with the fewest bits. At most two
-/// registers lie on a path.
+/// Inserts registers `<name>_held` into steady logic, at most two on a path. They make the longest path from an operand as short
+/// as the search finds, with the fewest bits among equally short paths.
 ///
 /// A device that waits for `start` in the middle of its microprogram is not changed, because its operands may change there.
 pub fn register_held(design: &mut Design) {
@@ -40,10 +39,9 @@ pub fn register_held(design: &mut Design) {
     }
 }
 
-/// The largest number of positions that the search tries at a time, for each of the two registers on a path.
+/// The number of positions that the search tries at a time, for each of the two registers on a path.
 const TRIED: usize = 32;
 
-/// A cell or a register that reads a net.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum OperandReader {
     /// The data input of this register.
@@ -52,10 +50,10 @@ enum OperandReader {
     Cell(NetId),
 }
 
-/// Two limits that divide steady logic among three clocks, in ascending order. A limit is a delay from the operand registers in
-/// hundredths of a nanosecond. A cell whose value arrives by the first limit is computed in clock 0, by the second limit in clock
-/// 1, and any other cell in clock 2. The third entry is always 0. For example, with `[500, 900, 0]` a cell whose value arrives
-/// after 6 ns is computed in clock 1.
+/// Two ascending limits that divide steady logic among three clocks. A limit is a delay from the operand registers in hundredths
+/// of a nanosecond. A cell whose value arrives by the first limit is computed in clock 0, by the second in clock 1, and any other
+/// in clock 2. The third entry is always 0. For example, with `[500, 900, 0]` a cell whose value arrives after 6 ns is computed
+/// in clock 1.
 type CutPlaces = [u32; 3];
 
 /// The numbers that determine in which clock a cell is computed or a register is loaded. The clock is the number of entries that
@@ -63,40 +61,37 @@ type CutPlaces = [u32; 3];
 /// gives clock 1.
 type Thresholds = [u32; 3];
 
-/// Returns `thresholds` with 0 in the entries from index `needed` on. The net is then computed no later than in clock `needed`,
-/// in which it is first used.
+/// Replaces the entries from index `needed` on by 0, so that the net is computed no later than in clock `needed`, its first use.
 fn until(needed: usize, thresholds: Thresholds) -> Thresholds {
     std::array::from_fn(|clock| if needed > clock { thresholds[clock] } else { 0 })
 }
 
-/// Returns the clock in which a net with these thresholds is computed. The clock of the first microinstruction has the number 0.
+/// Returns the clock in which a net is computed, counted from the first microinstruction, 0.
 fn clock(thresholds: Thresholds, places: CutPlaces) -> usize {
     thresholds.iter().zip(places).filter(|(limit, place)| place < *limit).count()
 }
 
-/// A cell whose operands are nets of the design.
 struct OperandCell {
     net: NetId,
-    /// The delay of the cell, in hundredths of a nanosecond.
+    /// The cell's delay, in hundredths of a nanosecond.
     delay: u32,
-    /// The operands of the cell, without constants.
+    /// The operands that are not constants.
     operands: Vec<NetId>,
 }
 
 /// The steady nets of a design, which depend on operands alone, and the readers of all nets.
 struct Steady<'a> {
     design: &'a Design,
-    /// All cells, each after the cells on which it depends within a clock.
+    /// Each cell after the cells on which it depends within a clock.
     cells: Vec<OperandCell>,
-    /// The thresholds of each net, which determine the clock in which the net is computed.
+    /// Determine the clock in which each net is computed.
     thresholds: Vec<Thresholds>,
-    /// For each net, whether a register may follow it: the net is steady, and more than wiring lies between it and the operand
-    /// registers.
+    /// For each net, whether a register may follow it: the net is steady, and not mere wiring of an operand register.
     holds: Vec<bool>,
-    /// The registers, each with the net that it loads and the thresholds of its load.
+    /// Each register with the net that it loads and the thresholds of its load.
     registers: Vec<(RegId, NetId, Thresholds)>,
-    /// The estimated delays from the operand registers to the steady nets that may be computed later than in clock 0. The delays
-    /// are in hundredths of a nanosecond, in ascending order, and include 0.
+    /// The estimated delays from the operand registers to the steady nets that may be computed later than in clock 0. They are in
+    /// hundredths of a nanosecond, ascending from 0.
     places: Vec<u32>,
 }
 
@@ -107,7 +102,7 @@ impl<'a> Steady<'a> {
         };
         let count = design.nets.len();
         let needed = needed(design);
-        // For each net, whether it depends on operand registers and constants alone, and on at least one operand.
+        // For each net, whether it depends on operand registers and constants alone, with at least one operand.
         let mut steady = vec![false; count];
         let mut arrival = vec![0; count];
         let mut cells = Vec::new();
@@ -178,9 +173,9 @@ impl<'a> Steady<'a> {
         Self { design, cells, thresholds, holds, registers, places }
     }
 
-    /// Returns the pair of limits with the shortest longest path, and among several the fewest register bits. The function tries
-    /// all pairs if there are few. Otherwise the function tries pairs that are evenly spread, and then again pairs between the
-    /// neighbours of the best pair, so that it may miss a better pair.
+    /// Returns the limits with the shortest longest path, and among several the fewest register bits. Tries all pairs if there
+    /// are few. Otherwise it tries evenly spread pairs, and then pairs between the neighbours of the best one, so that it may
+    /// miss a better pair.
     fn best(&self) -> CutPlaces {
         let mut windows = [(0, self.places.len() - 1); 2];
         loop {
@@ -209,19 +204,16 @@ impl<'a> Steady<'a> {
         }
     }
 
-    /// Returns the two limits at the positions `first` and `second` in `self.places`, and 0 as the third entry.
     fn at(&self, [first, second]: [usize; 2]) -> CutPlaces {
         [self.places[first], self.places[second], 0]
     }
 
-    /// Returns whether a register follows `net` for a reader in clock `by`. Returns true if a register may follow the net, and if
-    /// the net is computed in an earlier clock than `by`.
+    /// Returns whether a reader in clock `by` gets a register behind `net`.
     fn is_cut(&self, net: NetId, by: usize, places: CutPlaces) -> bool {
         self.holds[net.index()] && by > clock(self.thresholds[net.index()], places)
     }
 
-    /// Returns the delay of the longest path from an operand register or an inserted register, in hundredths of a nanosecond, and
-    /// the number of bits of the inserted registers.
+    /// Returns the delay of the longest path, in hundredths of a nanosecond, and the number of bits of the inserted registers.
     fn cost(&self, places: CutPlaces) -> (u32, u32) {
         let mut arrival: Vec<Option<u32>> = vec![None; self.thresholds.len()];
         let mut held = vec![false; self.thresholds.len()];
@@ -255,8 +247,8 @@ impl<'a> Steady<'a> {
         (longest, bits)
     }
 
-    /// Returns the nets behind which registers are inserted. Each net has a list of the readers that take the output of the
-    /// register instead of the net, because they compute in a later clock.
+    /// Returns the nets behind which registers are inserted, each with the readers that compute in a later clock and so read the
+    /// register.
     fn cut(&self, places: CutPlaces) -> BTreeMap<NetId, Vec<OperandReader>> {
         let cells = self.cells.iter().flat_map(|cell| {
             let own = self.thresholds[cell.net.index()];
@@ -274,15 +266,14 @@ impl<'a> Steady<'a> {
     }
 }
 
-/// Notes a reader with the thresholds `by`. For each entry, `earliest` becomes the smaller of its number and the number in `by`.
-/// `earliest` is `None` before the first reader.
+/// Keeps the smaller of the thresholds in each entry; `earliest` is `None` before the first reader.
 fn note_reader(earliest: &mut Option<Thresholds>, by: Thresholds) {
     let known = earliest.unwrap_or([u32::MAX; 3]);
     *earliest = Some(std::array::from_fn(|at| known[at].min(by[at])));
 }
 
-/// Estimates the delay of a cell on an FPGA, with the wires to it, in hundredths of a nanosecond. The estimate only serves to
-/// compare positions of registers.
+/// Estimates the delay of a cell and the wires to it on an FPGA, in hundredths of a nanosecond, only to compare positions of
+/// registers.
 fn delay(design: &Design, op: &Op) -> u32 {
     let width = op.operands().iter().map(|&of| design.width(of)).max().unwrap_or(0);
     // The number of levels of a tree of look-up tables with four inputs each.
@@ -303,8 +294,7 @@ fn delay(design: &Design, op: &Op) -> u32 {
     }
 }
 
-/// Returns whether a net is a sum, a difference, or a product with a factor wider than 18 bits. Wiring and inversion behind it do
-/// not count.
+/// Returns whether a net is a sum, a difference, or a product with a factor wider than 18 bits, apart from wiring and inversion.
 fn ends_in_a_sum(design: &Design, net: NetId) -> bool {
     match &design.net(net).driver {
         Driver::Op(Op::Relabel(of) | Op::Extend(of) | Op::Not(of) | Op::Slice { of, .. }) => {
@@ -316,8 +306,7 @@ fn ends_in_a_sum(design: &Design, net: NetId) -> bool {
     }
 }
 
-/// Adds a register that loads `net` on every clock, and returns the net that it drives. Its name is `<name>_held`, with `_` added
-/// until no net in `taken` has the name.
+/// Adds a register `<name>_held` that loads `net` on every clock. `_` is added until no net in `taken` has the name.
 fn add_register(design: &mut Design, net: NetId, taken: &mut HashSet<String>) -> NetId {
     let of = design.net(net).clone();
     let mut name = format!("{}_held", of.name);
@@ -341,7 +330,7 @@ mod tests {
 
     const BYTE: Format = Format::unsigned(8, 0);
 
-    /// Describes a chain with thousands of positions for each of two registers. Trying all pairs would take too long.
+    /// Trying all pairs of thousands of positions would take too long.
     #[test]
     fn a_long_chain_is_cut_in_three() {
         let design = fixture::design(|d| {
@@ -383,8 +372,7 @@ mod tests {
         assert!(design.nets.iter().all(|net| !net.name.ends_with("_held")));
     }
 
-    /// Makes a device that shows the sum of two operands on an output without a clock. The microprogram loads the third power of
-    /// the sum into a register.
+    /// An output shows the sum of two operands without a clock, and the microprogram loads the third power of the sum.
     fn device(program: fn(Step, Step) -> Vec<Step>) -> Design {
         let d = Designer::new("device");
         let (a, b) = (d.operand("a", BYTE), d.operand("b", BYTE));
@@ -401,7 +389,6 @@ mod tests {
         d.finish().unwrap_or_else(|mistakes| panic!("{mistakes}"))
     }
 
-    /// Returns the names of the factors of the products `square` and `cube`.
     fn factors(design: &Design) -> [Vec<&str>; 2] {
         ["square", "cube"].map(|name| {
             let inputs = design.combinational_inputs(design.find(name).expect("a product"));

@@ -1,6 +1,5 @@
-//! Distributes the values of a compiled design over two banks of memory with slots of 32 and of 64 bits, and inserts conversions
-//! between the banks. Most values fit into 32 bits, and a vector of the processor holds twice as many 32-bit values as 64-bit
-//! values.
+//! Distributes the values of a compiled design over two banks of memory with slots of 32 and of 64 bits. Most values fit into 32
+//! bits, and a vector of the processor holds twice as many of them.
 
 use crate::sim::compiler::{Compiler, Ordered};
 use crate::sim::program::{
@@ -8,13 +7,10 @@ use crate::sim::program::{
     Sources, StepGroup, ValueSlot,
 };
 
-/// The width of a narrow slot in bits.
 const NARROW: u32 = u32::BITS;
 
-/// Gives every value a slot in one of the two banks; in `compiler`, every value has a slot of 64 bits. Inserts conversions before
-/// instructions that work on slots of both banks.
-///
-/// Within a bank, slots are numbered in the order in which they are computed.
+/// Gives every value of the compiler, which has a slot of 64 bits there, a slot in one of the two banks. Inserts conversions
+/// before instructions that work on both. Within a bank, slots are numbered in the order in which they are computed.
 pub(super) fn divide(
     compiler: &Compiler,
     reads: &[ReadEdge],
@@ -48,8 +44,8 @@ pub(super) fn divide(
     divider.program()
 }
 
-/// Returns an upper limit of the width of the value in each slot, in bits. The nets that share a slot are zero extensions of the
-/// narrowest of them.
+/// Returns an upper limit of the width of the value in each slot. The nets that share a slot are zero extensions of the narrowest
+/// of them.
 fn widths(compiler: &Compiler) -> Vec<u32> {
     let mut widths = vec![u64::BITS + 1; compiler.sources.len()];
     for (net, &slot) in compiler.of_net.iter().enumerate() {
@@ -81,11 +77,11 @@ fn widths(compiler: &Compiler) -> Vec<u32> {
 
 struct BankSplitter<'a> {
     compiler: &'a Compiler<'a>,
-    /// For each slot of the compiler, whether its value is wider than 32 bits and goes to the wide bank.
+    /// For each slot of the compiler, whether its value is wider than 32 bits.
     is_wide: Vec<bool>,
     narrow: Bank,
     wide: Bank,
-    /// For each slot of the compiler, its slot in the narrow bank (32 bits); `None` as long as the value has no narrow slot.
+    /// For each slot of the compiler, its slot in the narrow bank, if it has one.
     narrow_of: Vec<Option<Slot>>,
     wide_of: Vec<Option<Slot>>,
     steps: Vec<(Sources, SettlingStep)>,
@@ -93,14 +89,13 @@ struct BankSplitter<'a> {
 }
 
 impl BankSplitter<'_> {
-    /// Adds a slot with an initial value to the wide bank if `wide`, otherwise to the narrow bank, and returns it.
     fn fresh(&mut self, wide: bool, initial: u64) -> Slot {
         let bank = if wide { &mut self.wide } else { &mut self.narrow };
         bank.initial.push(initial);
         (bank.initial.len() - 1) as Slot
     }
 
-    /// Adds a slot for the value in the compiler's slot `slot` to the bank for the width of the value, and returns the new slot.
+    /// Adds a slot for the value in the compiler's slot `slot`, in the bank for its width.
     fn home(&mut self, slot: Slot) -> Slot {
         let wide = self.is_wide[slot as usize];
         let [initial] = self.compiler.initial[slot as usize];
@@ -118,8 +113,7 @@ impl BankSplitter<'_> {
         }
     }
 
-    /// Returns the bank and the slot of the value in the compiler's slot `slot`. Returns `None` if the value has no slot in a
-    /// bank yet.
+    /// Returns the bank and the slot of the value in the compiler's slot `slot`, if it has one yet.
     fn place(&self, slot: Slot) -> Option<ValueSlot> {
         let slot = slot as usize;
         if *self.is_wide.get(slot)? {
@@ -129,14 +123,9 @@ impl BankSplitter<'_> {
         }
     }
 
-    /// Returns the slot that has the value of the compiler's slot `slot`, in the wide bank if `wide`, otherwise in the narrow
-    /// bank.
-    ///
-    /// Constants, registers and ROMs get their slots at the first call. If a conversion to the wide bank is necessary, the
-    /// conversion becomes a step with these `sources`, and later calls use its result too.
-    ///
-    /// # Panics
-    /// Panics if a wide value is requested in the narrow bank.
+    /// Returns the slot of the compiler's slot `slot` in the wide or the narrow bank. Constants, registers and ROMs get their
+    /// slots at the first call. A necessary conversion to the wide bank becomes a step with these `sources`, whose result later
+    /// calls use too. Panics if a wide value is requested in the narrow bank.
     fn operand(&mut self, slot: Slot, wide: bool, sources: Sources) -> Slot {
         let of = if wide { &self.wide_of } else { &self.narrow_of };
         if let Some(there) = of[slot as usize] {
@@ -159,7 +148,7 @@ impl BankSplitter<'_> {
         to
     }
 
-    /// Adds a narrow slot with bits of the wide value in the compiler's slot `slot`: from bit `low` up, as many as `drop` says.
+    /// Adds a narrow slot with bits of a wide value: from bit `low` up, as many as `drop` says.
     fn cut(&mut self, slot: Slot, low: u8, drop: u8, sources: Sources) -> Slot {
         let a = self.operand(slot, true, sources);
         let to = self.fresh(false, 0);
@@ -223,7 +212,7 @@ impl BankSplitter<'_> {
         }
     }
 
-    /// Adds an instruction without change, in the wide bank if any of its slots is wide, otherwise in the narrow bank.
+    /// Adds an instruction without change, in the wide bank if any of its slots is wide.
     fn within_a_bank(&mut self, step: &Ordered, mut instruction: Instruction) {
         let sources = step.sources;
         let result_wide = self.is_wide[step.to as usize];
@@ -256,8 +245,8 @@ impl BankSplitter<'_> {
         }
     }
 
-    /// Adds the reads and loads of the clock edge, in the bank of the slots that they write. Conversions are steps of settling,
-    /// so that they have the values from before the edge.
+    /// Adds the reads and loads of the clock edge. Conversions are steps of settling, so that they have the values from before
+    /// the edge.
     fn edge(&mut self, reads: &[ReadEdge], registers: &[RegisterEdge]) {
         for edge in reads {
             let wide = self.is_wide[edge.to as usize];
@@ -284,7 +273,7 @@ impl BankSplitter<'_> {
         }
     }
 
-    /// Returns the slot in the wide or the narrow bank that has the value of the compiler's slot `slot` after settling.
+    /// Returns the slot of the compiler's slot `slot` after settling.
     fn settled(&mut self, slot: Slot, wide: bool) -> Slot {
         self.operand(slot, wide, self.compiler.sources[slot as usize])
     }

@@ -1,5 +1,5 @@
 //! Wraps a compiled design as one block of the simulation kernel rust_hdl. rust_hdl drives the clock, checks the ports and writes
-//! waveforms; Glint computes the nets.
+//! waveforms. Glint computes the nets.
 
 use std::sync::Arc;
 
@@ -13,30 +13,28 @@ use crate::sim::machine::Machine;
 use crate::sim::program::CompiledDesign;
 use crate::sim::wire::{Direction, ProbeView, Wire};
 
-/// `LANES` independent instances of a design as one rust_hdl [`Block`]. rust_hdl clocks the block, updates it until nothing
-/// changes, checks it, and writes the waveform of lane 0.
+/// `LANES` independent instances of a design as one rust_hdl [`Block`]. rust_hdl updates it until nothing changes, and writes the
+/// waveform of lane 0.
 ///
 /// The caller must change inputs together with the falling edge of [`Circuit::clock`]. Inputs that change together with the
 /// rising edge take effect only after it.
 #[derive(Debug)]
 pub struct Circuit<const LANES: usize = 1> {
-    /// The clock of the circuit. Registers change on its rising edge.
+    /// Registers change on its rising edge.
     pub clock: Signal<In, Clock>,
     pub(super) machine: Machine<LANES>,
-    /// The latest values of the input ports, one for each lane.
     inputs: Vec<[u64; LANES]>,
-    /// Whether the inputs were set and the machine has not yet read them.
+    /// Whether the machine has not yet read inputs that were set.
     input_set: bool,
     /// Whether the latest update had an edge or changed a value.
     changed: bool,
     connected: bool,
     ports: Vec<Observed>,
-    /// The scopes of the waveform: control unit and datapath, or the handshake and the stages of a pipeline.
+    /// Control unit and datapath, or the handshake and the stages of a pipeline.
     scopes: Vec<(String, Vec<Observed>)>,
     microprogram: MicroinstructionNames,
 }
 
-/// A net that rust_hdl's probes get as an atom.
 #[derive(Debug)]
 struct Observed {
     net: NetId,
@@ -48,7 +46,7 @@ struct Observed {
 }
 
 impl Observed {
-    /// Makes the atom of a net, with a number from rust_hdl's counter.
+    /// The number comes from rust_hdl's counter.
     fn new(design: &Design, net: NetId, direction: Direction) -> Self {
         Self {
             net,
@@ -61,11 +59,10 @@ impl Observed {
     }
 }
 
-/// The names of the microinstructions, and the nets that show which one is executed.
 #[derive(Debug)]
 struct MicroinstructionNames {
     names: Arc<[String]>,
-    /// The nets of the address counter and the run flag; `None` if the design has no microprogram.
+    /// The address counter and the run flag; `None` without a microprogram.
     state: Option<(NetId, NetId)>,
     id: usize,
 }
@@ -74,8 +71,7 @@ impl<const LANES: usize> Circuit<LANES> {
     /// Compiles a design and lets rust_hdl check the result. The circuit is in the state after power-up, with the clock low.
     ///
     /// # Errors
-    /// Fails if the design has mistakes in its structure, or 2^32 ROM words or more. Fails if rust_hdl's `check_all` finds a
-    /// fault.
+    /// Fails if the design has mistakes in its structure, or 2^32 ROM words or more, or if rust_hdl's `check_all` finds a fault.
     pub fn new(design: &Design) -> Result<Self> {
         let program = Arc::new(CompiledDesign::new(design)?);
         let inputs = vec![[0; LANES]; program.inputs()];
@@ -104,8 +100,8 @@ impl<const LANES: usize> Circuit<LANES> {
         Ok(circuit)
     }
 
-    /// Returns the values of the input ports for the caller to change, in the order of the ports, one value for each lane. The
-    /// circuit ignores bits beyond the width of a port. New values take effect at rust_hdl's next update.
+    /// Returns the values of the input ports for the caller to change, in the order of the ports. Bits beyond the width of a port
+    /// are ignored. New values take effect at rust_hdl's next update.
     pub fn inputs_mut(&mut self) -> &mut Vec<[u64; LANES]> {
         self.input_set = true;
         &mut self.inputs
@@ -125,8 +121,8 @@ impl<const LANES: usize> Circuit<LANES> {
     }
 }
 
-/// Returns the scopes of a waveform, each with its nets: the named nets that are no ports. The scopes are `control` and
-/// `datapath`; for a pipeline `control`, with the handshake, and `stage_0`, `stage_1` and so on.
+/// Returns the scopes of a waveform, each with its named nets that are no ports: `control` and `datapath`; for a pipeline
+/// `control`, with the handshake, and `stage_0`, `stage_1` and so on.
 pub(super) fn scopes(design: &Design) -> Vec<(String, Vec<NetId>)> {
     let mut names = vec!["control".to_owned()];
     match &design.pipeline {

@@ -14,10 +14,7 @@ use glint_base::diagnostic::Diagnostics;
 use glint_base::fixed::mask;
 
 impl CompiledDesign {
-    /// Compiles a design to instructions of the simulator.
-    ///
-    /// # Errors
-    /// Fails if [`Design::verify_structure`] finds mistakes, with these mistakes. Fails if the ROMs together have 2^32 words or
+    /// Compiles a design. Fails with the mistakes of [`Design::verify_structure`], or if the ROMs together have 2^32 words or
     /// more.
     pub fn new(design: &Design) -> Result<Self> {
         let mistakes = design.verify_structure();
@@ -36,7 +33,7 @@ impl CompiledDesign {
 impl<'a> Compiler<'a> {
     /// Returns a slot with a field of the control word, the `width` bits from bit `low` of the net `word`. The field becomes a
     /// source of its own, so that a change of another field does not evaluate its readers again. If the control word is a
-    /// constant, or if no source is left, the field becomes an ordinary slice.
+    /// constant, or no source is left, it becomes an ordinary slice.
     fn field(&mut self, word: NetId, low: u32, width: u32) -> Slot {
         let a = self.of_net[word.index()];
         if self.known_value(a).is_some() || self.next_field == Sources::BITS {
@@ -50,7 +47,7 @@ impl<'a> Compiler<'a> {
         to
     }
 
-    /// Returns the slot of a net. The nets on which it depends within a clock must already have slots.
+    /// The nets on which the net depends within a clock must already have slots.
     fn net(&mut self, id: NetId) -> Slot {
         let design = self.design;
         let width = design.width(id);
@@ -74,7 +71,7 @@ impl<'a> Compiler<'a> {
         }
     }
 
-    /// Compiles what happens at the clock edge, orders the instructions, and returns the compiled design.
+    /// Compiles the clock edge, and orders the instructions.
     fn finish(mut self) -> CompiledDesign {
         let design = self.design;
         let reset = design.port(|role| role == Role::Reset);
@@ -118,15 +115,15 @@ impl<'a> Compiler<'a> {
         banks::divide(&self, &reads, &registers)
     }
 
-    /// Returns the registers in an order in which each register comes before the registers that it reads, except in circles. A
-    /// value that is read before it is overwritten need not be copied by [`Compiler::stable`].
+    /// Returns each register before the registers that it reads, except in circles. A value that is read before it is overwritten
+    /// need not be copied by [`Compiler::stable`].
     fn readers_first(&self) -> Vec<&'a NetlistRegister> {
         let registers = &self.design.registers;
         let mut by_slot: HashMap<Slot, usize> = HashMap::new();
         for (at, register) in registers.iter().enumerate() {
             by_slot.insert(self.of_net[register.q.index()], at);
         }
-        // The other registers that each register reads, and the number of readers of each.
+        // For each register, the other registers that it reads, and the number of its readers.
         let mut read_by: Vec<Vec<usize>> = Vec::new();
         let mut readers = vec![0; registers.len()];
         for (at, register) in registers.iter().enumerate() {
@@ -163,8 +160,8 @@ impl<'a> Compiler<'a> {
         ordered
     }
 
-    /// Removes the instructions whose results neither the clock edge nor a named net nor a port needs. Unnamed nets with such a
-    /// result then have no slot.
+    /// Removes the instructions whose results neither the clock edge nor a named net nor a port needs. Unnamed nets may then have
+    /// no slot.
     fn drop_unneeded(&mut self, reads: &[ReadEdge], registers: &[RegisterEdge]) {
         let design = self.design;
         let mut needed = vec![false; self.sources.len()];
@@ -209,8 +206,7 @@ impl<'a> Compiler<'a> {
         }
     }
 
-    /// Returns the slot of an enable. Returns `None` if there is no enable or if it is always 1. `written` has the slots that the
-    /// edge has already written.
+    /// Returns the slot of an enable that is not always 1. `written` has the slots that the edge has already written.
     fn enable(&mut self, enable: Option<NetId>, written: &HashSet<Slot>) -> Option<Slot> {
         let slot = self.of_net[enable?.index()];
         if self.known_value(slot) == Some(1) {
@@ -219,9 +215,8 @@ impl<'a> Compiler<'a> {
         Some(self.stable(slot, written))
     }
 
-    /// Returns a slot that has the value of `a` from before the edge. The returned slot is a copy if the edge has already written
-    /// `a`, which is then in `written`. All registers of a design change at the same time, but the simulator writes them one
-    /// after the other.
+    /// Returns a slot with the value of `a` from before the edge: a copy if the edge has already written `a`. All registers of a
+    /// design change at the same time, but the simulator writes them one after the other.
     fn stable(&mut self, a: Slot, written: &HashSet<Slot>) -> Slot {
         if written.contains(&a) { self.emit(&[a], |to| Instruction::Copy { to, a }) } else { a }
     }

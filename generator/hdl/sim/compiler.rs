@@ -1,4 +1,4 @@
-//! Holds the state of the simulator's compiler while it compiles a design: slots, instructions, and facts about them.
+//! The state of the simulator's compiler: slots, instructions, and facts about them.
 
 use std::collections::{BTreeMap, HashMap};
 use std::mem;
@@ -8,46 +8,44 @@ use crate::sim::machine::execute;
 use crate::sim::program::{InputPort, Instruction, Slot, Sources, Span};
 use glint_base::fixed::mask;
 
-/// The largest number of sources for input ports. Input ports have the first numbers, because they change at another clock edge
-/// than registers and ROMs.
+/// The number of sources for input ports. They have the first numbers, because they change at another clock edge than registers
+/// and ROMs.
 const INPUTS: u32 = 16;
 
-/// Sources with smaller numbers are input ports, registers and ROM outputs. If there are more of these than numbers, several
-/// share a number. From this number on, each source is a field of the control word, numbered in the order of evaluation.
+/// From this number on, each source is a field of the control word, numbered in the order of evaluation. Smaller numbers are
+/// input ports, registers and ROM outputs. If there are more of these than numbers, several share a number.
 const FIRST_FIELD: u32 = 40;
 
-/// An instruction with the data by which the compiler orders instructions.
+/// An instruction, and the data by which the compiler orders instructions.
 pub(super) struct Ordered {
     pub(super) sources: Sources,
     pub(super) to: Slot,
-    /// All slots that the instruction reads, including the inputs of a mux.
+    /// All slots that the instruction reads, also the inputs of a mux.
     pub(super) operands: Vec<Slot>,
     pub(super) instruction: Instruction,
 }
 
-/// The compiler's state. All slots are 64 bits wide here; `banks` divides them into two banks later.
+/// The compiler's state. All slots have 64 bits here; `banks` divides them later.
 pub(super) struct Compiler<'a> {
     pub(super) design: &'a Design,
-    /// For each slot, the set of [`Sources`] on which the slot depends within one clock. The set is empty for constants.
+    /// For each slot, the [`Sources`] on which it depends within one clock; none for constants.
     pub(super) sources: Vec<Sources>,
     /// The number of sources that are input ports.
     input_sources: u32,
-    /// The number of the next source for a value that a rising edge writes.
+    /// The number of the source for the next value that a rising edge writes.
     next_source: u32,
-    /// For each enable, the source of the values that a rising edge writes only if this enable is 1.
+    /// For each enable, the source of the values that a rising edge writes only if it is 1.
     enabled: HashMap<NetId, u32>,
-    /// The next source for a field.
     pub(super) next_field: u32,
-    /// The initial value of each slot. Each slot has one lane, in which constant instructions are evaluated.
+    /// Each slot has one lane, in which constant instructions are evaluated.
     pub(super) initial: Vec<[u64; 1]>,
     constants: BTreeMap<u64, Slot>,
-    /// The instructions so far, each with the slot of its result. In the key, the result is slot 0, so that equal instructions
-    /// are found.
+    /// The instructions so far, each with the slot of its result. In the key the result is slot 0, so that equal instructions are
+    /// found.
     known: HashMap<Instruction, Slot>,
-    /// The instruction that writes each slot. Slots of fields of the control word, and slots that no instruction writes, have no
-    /// entry.
+    /// The instruction that writes each slot. Fields of the control word, and slots that no instruction writes, have no entry.
     made_by: HashMap<Slot, Instruction>,
-    /// The instructions in an order in which each follows the instructions that compute its operands.
+    /// Each instruction follows the instructions that compute its operands.
     pub(super) steps: Vec<Ordered>,
     pub(super) choices: Vec<Slot>,
     pub(super) words: Vec<u64>,
@@ -55,12 +53,12 @@ pub(super) struct Compiler<'a> {
     /// For each net, its slot; `Slot::MAX` until the net has been compiled.
     pub(super) of_net: Vec<Slot>,
     pub(super) inputs: Vec<InputPort>,
-    /// For each field of the control word, the position of its lowest bit.
+    /// For each field of the control word, its lowest bit.
     pub(super) fields: Vec<u32>,
 }
 
 impl<'a> Compiler<'a> {
-    /// Makes a compiler with the slots of the input ports and the contents of the ROMs. No other net has a slot yet.
+    /// Gives slots to the input ports and the contents of the ROMs.
     pub(super) fn new(design: &'a Design) -> Self {
         let input_sources = (design.inputs().count() as u32).clamp(1, INPUTS);
         let mut compiler = Self {
@@ -108,8 +106,8 @@ impl<'a> Compiler<'a> {
     }
 
     /// Returns a new slot for a value that the rising edge writes if `enable` is 1. All slots with the same enable share one
-    /// source, because they change together. An enable that is a field of the control word is an exception, because a
-    /// microinstruction seldom changes all the values that it loads.
+    /// source, because they change together. Fields of the control word are an exception, because a microinstruction seldom
+    /// changes all the values that it loads.
     pub(super) fn source(&mut self, enable: Option<NetId>) -> Slot {
         let shared = enable.filter(|net| !matches!(self.design.net(*net).driver, Driver::Field(_)));
         if let Some(enable) = shared
@@ -136,14 +134,14 @@ impl<'a> Compiler<'a> {
         slot
     }
 
-    /// Returns the value of a slot if it is a constant, otherwise `None`.
+    /// Returns the value of a slot if it is a constant.
     pub(super) fn known_value(&self, slot: Slot) -> Option<u64> {
         let constant = self.sources[slot as usize] == 0;
         constant.then(|| self.initial[slot as usize][0])
     }
 
     /// Returns the slot with the result of an instruction, which `make` builds for a given result slot. An equal earlier
-    /// instruction, or a constant if all operands are constant, is used instead of a new instruction.
+    /// instruction replaces it, or a constant if all operands are constant.
     pub(super) fn emit(&mut self, operands: &[Slot], make: impl Fn(Slot) -> Instruction) -> Slot {
         if let Some(slot) = self.known.get(&make(0)) {
             return *slot;
@@ -176,9 +174,9 @@ impl<'a> Compiler<'a> {
         sources.fold(0, |all, sources| all | sources)
     }
 
-    /// Returns the operand of the slice that makes `slot`, the lowest bit of the slice, and its width as a `drop` (64 less the
-    /// width). Returns `slot` itself with all its bits if no slice makes it. An instruction that can take bits of its operand
-    /// reads the operand directly, so that the slice may become unused.
+    /// Returns the operand of the slice that makes `slot`, the lowest bit, and the width as a `drop`; without a slice, all bits
+    /// of `slot`. An instruction that can take bits of its operand reads the operand directly, so that the slice may become
+    /// unused.
     pub(super) fn sliced(&self, slot: Slot) -> (Slot, u8, u8) {
         match self.made_by.get(&slot) {
             Some(Instruction::Slice { a, low, drop, .. }) => (*a, *low, *drop),
@@ -186,8 +184,8 @@ impl<'a> Compiler<'a> {
         }
     }
 
-    /// Returns the bits that `slot` tests for any 1: their slot, the lowest bit, and the width as a `drop`. Returns `None` if the
-    /// instruction of `slot` is no [`Instruction::Any`].
+    /// Returns the bits that `slot` tests for any 1: their slot, the lowest bit, and the width as a `drop`. Returns `None` unless
+    /// [`Instruction::Any`] makes it.
     pub(super) fn any(&self, slot: Slot) -> Option<(Slot, u8, u8)> {
         match self.made_by.get(&slot) {
             Some(Instruction::Any { a, low, drop, .. }) => Some((*a, *low, *drop)),
@@ -195,8 +193,8 @@ impl<'a> Compiler<'a> {
         }
     }
 
-    /// Returns the placement that makes `slot`. The result has the base, the slot of the added bits, the lowest of these bits,
-    /// their width as a `drop`, and the shift. A slice is a placement on the slot `zero`. Returns `None` for other instructions.
+    /// Returns the placement that makes `slot`: the base, the slot of the added bits, the lowest of them, their width as a
+    /// `drop`, and the shift. A slice is a placement on the slot `zero`.
     pub(super) fn placed(&self, slot: Slot, zero: Slot) -> Option<(Slot, Slot, u8, u8, u8)> {
         match *self.made_by.get(&slot)? {
             Instruction::Place { base, a, low, drop, shift, .. } => {

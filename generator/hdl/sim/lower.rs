@@ -6,7 +6,7 @@ use crate::sim::program::{Instruction, Slot, drop_of};
 use glint_base::fixed::{MAX_WIDTH, mask};
 
 impl Compiler<'_> {
-    /// Returns the slot with the result of the cell `op`, which drives the net `id`. The operands must already have slots.
+    /// Compiles the cell `op`, which drives the net `id`. The operands must already have slots.
     pub(super) fn op(&mut self, op: &Op, id: NetId) -> Slot {
         let design = self.design;
         let width = design.width(id);
@@ -92,7 +92,7 @@ impl Compiler<'_> {
         }
     }
 
-    /// Returns the slot with `width` bits of the net `of`, from bit `low` up.
+    /// Returns `width` bits of the net `of`, from bit `low` up.
     pub(super) fn slice(&mut self, of: NetId, low: u32, width: u32) -> Slot {
         let whole = self.design.width(of);
         if width == whole {
@@ -112,15 +112,14 @@ impl Compiler<'_> {
         self.emit(&[a], |to| Instruction::Slice { to, a, low, drop })
     }
 
-    /// Returns the width of the value in a slot: the width of the narrowest net that has this slot. All other nets with this slot
-    /// extend this net by zeros. The width is 64 if no net has this slot.
+    /// Returns the width of the narrowest net in a slot; the others extend it by zeros. Without a net, it is 64.
     fn held(&self, slot: Slot) -> u32 {
         let nets = self.of_net.iter().zip(&self.design.nets);
         let widths = nets.filter(|(own, _)| **own == slot).map(|(_, net)| net.format.width());
         widths.min().unwrap_or(MAX_WIDTH)
     }
 
-    /// Returns the slot with the bits of all parts joined, the first part in the top bits. Together they have at most 64 bits.
+    /// Joins the bits of all parts, at most 64, the first part in the top bits.
     fn concat(&mut self, parts: &[NetId]) -> Slot {
         let mut known = 0;
         let mut others = Vec::new();
@@ -145,7 +144,6 @@ impl Compiler<'_> {
         all
     }
 
-    /// Returns the slot with the sum of two slots and a carry, with the width that `drop` gives.
     fn add_carry(&mut self, [a, b, carry]: [Slot; 3], drop: u8) -> Slot {
         self.emit(&[a, b, carry], |to| Instruction::AddCarry { to, a, b, carry, drop })
     }
@@ -162,9 +160,8 @@ impl Compiler<'_> {
         })
     }
 
-    /// Returns the slot with `a` if `select` is 0, and with `b` otherwise. If `select` tests bits of a slot for any 1, the same
-    /// instruction makes this test. If `b` is also made by placing bits of that slot, the same instruction places them too.
-    /// Chains of such muxes find the range of a value.
+    /// Returns `a` if `select` is 0, and `b` otherwise. If `select` tests bits of a slot for any 1, the same instruction makes
+    /// this test. If `b` places bits of that slot, it places them too. Chains of such muxes find the range of a value.
     fn choose(&mut self, select: Slot, a: Slot, b: Slot) -> Slot {
         let Some((of, low, drop)) = self.any(select) else {
             return self.emit(&[select, a, b], |to| Instruction::Choose { to, select, a, b });

@@ -11,7 +11,7 @@ use crate::sim::program::{
 use crate::sim::slots::Slots;
 use crate::sim::word::LaneWord;
 
-/// The state of `LANES` independent instances of a design, which one pass over the [`CompiledDesign`] advances together.
+/// The state of `LANES` independent instances of a design.
 ///
 /// On x86-64 the pass is compiled three times: for any processor, for AVX2 and for AVX-512. The machine chooses one of them at
 /// run time; all three compute the same values.
@@ -20,13 +20,12 @@ pub struct Machine<const LANES: usize = 1> {
     program: Arc<CompiledDesign>,
     narrow: Slots<u32, LANES>,
     wide: Slots<u64, LANES>,
-    /// The sources that have changed since the machine last evaluated all nets.
+    /// The sources that have changed since all nets were last evaluated.
     changed: Sources,
 }
 
 impl<const LANES: usize> Machine<LANES> {
-    /// Makes a machine in the state after power-up: registers, outputs of synchronous ROMs and inputs are 0, and all nets are up
-    /// to date.
+    /// Makes a machine after power-up: registers, outputs of synchronous ROMs and inputs are 0, and all nets are up to date.
     pub fn new(program: Arc<CompiledDesign>) -> Self {
         let mut machine = Self {
             narrow: power_up(&program.narrow),
@@ -38,11 +37,8 @@ impl<const LANES: usize> Machine<LANES> {
         machine
     }
 
-    /// Inverts the bits of a ROM word that are 1 in `bits`, which models a fault. A second call with the same arguments restores
-    /// the word. Words are numbered through all ROMs, in the order of the design: word 0 is the first word of the first ROM.
-    ///
-    /// # Panics
-    /// Panics if `word` is not less than the number of words of all ROMs.
+    /// Inverts the bits of a ROM word that are 1 in `bits`, which models a fault; a second call restores the word. Words are
+    /// numbered through all ROMs, in the order of the design. Panics if `word` is too large.
     pub fn invert(&mut self, word: usize, bits: u64) {
         Arc::make_mut(&mut self.program).words[word] ^= bits;
         self.changed = Sources::MAX;
@@ -51,8 +47,8 @@ impl<const LANES: usize> Machine<LANES> {
     /// Performs a rising edge if `edge` is true, then applies `inputs` if there are any, and then evaluates all nets. Returns
     /// whether the value of any source (input, register or ROM output) has changed, or a ROM word has been inverted.
     ///
-    /// At the edge, registers and synchronous ROMs load the values of their operands. `inputs` must have the bit pattern of each
-    /// input port, in order of declaration; bits beyond the width of a port are ignored.
+    /// `inputs` must have the bit pattern of each input port, in order of declaration; bits beyond the width of a port are
+    /// ignored.
     pub fn update(&mut self, edge: bool, inputs: Option<&[[u64; LANES]]>) -> bool {
         #[cfg(target_arch = "x86_64")]
         match VectorLevel::here() {
@@ -140,8 +136,8 @@ impl<const LANES: usize> Machine<LANES> {
         }
     }
 
-    /// Returns for each lane a bit pattern that is 0 exactly if every net has its expected value. `expected` has the value of
-    /// each net in each lane. Only the bits that are 1 in `known` are compared, or all bits if `known` is `None`.
+    /// Returns for each lane a bit pattern that is 0 exactly if every net has its value in `expected`. Only the bits that are 1
+    /// in `known` are compared, if it is given.
     ///
     /// # Panics
     /// Panics if the compiler has optimised a net away, which it may do only if the net has no name.
@@ -200,10 +196,7 @@ impl<const LANES: usize> Machine<LANES> {
         differences
     }
 
-    /// Returns the bit pattern of a net for each lane.
-    ///
-    /// # Panics
-    /// Panics if the compiler has optimised the net away, which it may do only if the net has no name.
+    /// Returns the bit pattern of a net in each lane. Panics as [`Machine::differences`] does.
     pub fn lanes(&self, net: NetId) -> [u64; LANES] {
         match self.program.place(net) {
             ValueSlot::Narrow(slot) => self.narrow[slot as usize].map(u64::from),
@@ -211,11 +204,8 @@ impl<const LANES: usize> Machine<LANES> {
         }
     }
 
-    /// Returns the bit pattern of a net in one lane.
-    ///
-    /// # Panics
-    /// Panics if `lane` is not less than `LANES`. Panics if the compiler has optimised the net away, which it may do only if the
-    /// net has no name.
+    /// Returns the bit pattern of a net in one lane. Panics if `lane` is not less than `LANES`, and as [`Machine::differences`]
+    /// does.
     pub fn lane(&self, net: NetId, lane: usize) -> u64 {
         match self.program.place(net) {
             ValueSlot::Narrow(slot) => self.narrow[slot as usize][lane].into(),
@@ -224,13 +214,12 @@ impl<const LANES: usize> Machine<LANES> {
     }
 }
 
-/// The vector instructions that the processor has.
 #[cfg(target_arch = "x86_64")]
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum VectorLevel {
     Base,
     Avx2,
-    /// AVX-512, and AVX2 too.
+    /// Implies AVX2.
     Avx512,
 }
 
@@ -256,8 +245,7 @@ fn power_up<W: LaneWord, const LANES: usize>(bank: &Bank) -> Slots<W, LANES> {
     Slots::new(bank.initial.iter().map(|&bits| [W::low(bits); LANES]))
 }
 
-/// Stores the inputs in their slots. Returns `news`, the set of sources that have already changed, together with the input ports
-/// whose value has changed in any lane.
+/// Stores the inputs. Returns `news`, the sources that have already changed, with the input ports that change in any lane.
 #[inline(always)]
 fn take_inputs<W: LaneWord, const LANES: usize>(
     bank: &Bank,
@@ -273,8 +261,8 @@ fn take_inputs<W: LaneWord, const LANES: usize>(
     news
 }
 
-/// Performs the rising edge in one bank. Returns `news`, the set of sources that have already changed, together with the sources
-/// whose value has changed in any lane.
+/// Performs the rising edge in one bank. Returns `news`, the sources that have already changed, with the sources that change in
+/// any lane.
 #[inline(always)]
 fn clock<W: LaneWord, const LANES: usize>(
     bank: &Bank,
@@ -298,7 +286,7 @@ fn clock<W: LaneWord, const LANES: usize>(
             }
             _ => None,
         };
-        // Most registers of a pipeline have an enable and no reset. They are loaded in place.
+        // Most registers of a pipeline have an enable and no reset, and can be loaded in place.
         if let Some([q, data, enable]) = disjoint {
             news |= load(q, data, enable, edge.source, news);
             continue;
@@ -315,8 +303,7 @@ fn clock<W: LaneWord, const LANES: usize>(
     news
 }
 
-/// Loads a register in the lanes whose `enable` is 1. Returns `source` if the register's value changes in any lane, and otherwise
-/// 0. Returns 0 if `source` is already in `news`.
+/// Loads a register in the lanes whose `enable` is 1. Returns the source if [`changed`].
 #[inline(always)]
 fn load<W: LaneWord, const LANES: usize>(
     q: &mut [W; LANES],
@@ -334,8 +321,7 @@ fn load<W: LaneWord, const LANES: usize>(
     changed
 }
 
-/// Returns the value of `slot` after the edge: `new` in the lanes whose enable is 1, and the old value in all others. Without an
-/// enable, the value is `new` in all lanes.
+/// Returns `new` in the lanes whose enable is 1, and the old value in all others. Without an enable, all lanes are `new`.
 #[inline(always)]
 fn enabled<W: LaneWord, const LANES: usize>(
     slots: &[[W; LANES]],
@@ -352,8 +338,7 @@ fn enabled<W: LaneWord, const LANES: usize>(
     new
 }
 
-/// Stores a value. Returns `source` if the value changes in any lane, and otherwise 0. Returns 0 if `source` is already in
-/// `news`.
+/// Stores a value. Returns the source if [`changed`].
 #[inline(always)]
 fn store<W: LaneWord, const LANES: usize>(
     slot: &mut [W; LANES],
@@ -366,7 +351,7 @@ fn store<W: LaneWord, const LANES: usize>(
     changed
 }
 
-/// Returns `source` if `difference` is not 0 in any lane, and otherwise 0. Returns 0 if `source` is already in `news`.
+/// Returns `source` if `difference` is not 0 in any lane, unless `source` is already in `news`; and otherwise 0.
 #[inline(always)]
 fn changed<W: LaneWord, const LANES: usize>(
     source: Sources,
@@ -383,8 +368,7 @@ fn changed<W: LaneWord, const LANES: usize>(
     if differences == W::ZERO { 0 } else { source }
 }
 
-/// Executes one instruction in all lanes. Returns the source of a field of the control word if the instruction is
-/// [`Instruction::Field`] and the field has changed; otherwise 0.
+/// Executes one instruction in all lanes. Returns the source of an [`Instruction::Field`] that has changed, or 0.
 #[inline(always)]
 pub(super) fn execute<W: LaneWord, const LANES: usize>(
     instruction: Instruction,
@@ -464,26 +448,25 @@ pub(super) fn execute<W: LaneWord, const LANES: usize>(
     0
 }
 
-/// Returns a word in which only the sign bit of a value is 1. `drop` is 64 less the width of the value.
+/// Returns a word in which only the sign bit is 1. `drop` is 64 less the width of the value.
 #[inline(always)]
 fn sign<W: LaneWord>(drop: u8) -> W {
     W::low(1 << 63 >> drop)
 }
 
-/// Returns a two's complement number of the width given by `drop`, extended by its sign to the whole word.
+/// Extends a two's complement number of the width given by `drop` to the whole word.
 #[inline(always)]
 fn sign_extended<W: LaneWord>(bits: W, drop: u8) -> W {
     (bits ^ sign(drop)).wrapping_sub(sign(drop))
 }
 
-/// Returns the word of a ROM at `address`, or 0 behind the last word.
+/// Returns a word, or 0 behind the last one.
 #[inline(always)]
 fn read(words: &[u64], span: Span, address: u64) -> u64 {
     if address < u64::from(span.len) { words[span.start as usize + address as usize] } else { 0 }
 }
 
-/// Stores the chosen slot's value in each lane of `to`. The number in `select` chooses among `choices`; a number beyond the last
-/// choice selects the last choice.
+/// Stores the chosen slot's value in each lane of `to`. A number in `select` beyond the last choice selects the last choice.
 #[inline(always)]
 fn mux<W: LaneWord, const LANES: usize>(
     slots: &mut [[W; LANES]],
@@ -511,12 +494,11 @@ fn mux<W: LaneWord, const LANES: usize>(
     }
 }
 
-/// The smallest number of lanes for which a mux compares the select in all lanes with each input number. With fewer lanes, a
-/// look-up in each lane is faster.
+/// From this number of lanes on, a mux compares the select in all lanes with each input number. With fewer lanes, a look-up in
+/// each lane is faster.
 const VECTOR: usize = 8;
 
-/// The largest number of inputs of a mux that compares the select in all lanes with each input number. A mux with more inputs
-/// looks up each lane's input.
+/// A mux with more inputs looks up each lane's input, however many lanes there are.
 const COMPARED: usize = 16;
 
 #[inline(always)]

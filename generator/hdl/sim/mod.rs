@@ -1,8 +1,8 @@
 //! The built-in simulator: runs many independent instances of a design clock by clock, and writes waveforms.
 //!
-//! The compiler turns a [`Design`] into a [`CompiledDesign`], a list of instructions in evaluation order. A [`Machine`]
-//! executes the instructions for several instances at once, called lanes. A [`Circuit`] wraps the machine as one block of the
-//! simulation kernel rust_hdl, which writes waveforms, and a [`Simulator`] adds the clock.
+//! The compiler turns a [`Design`] into a [`CompiledDesign`], a list of instructions in evaluation order. A [`Machine`] executes
+//! them for several instances at once, called lanes. A [`Circuit`] wraps the machine as one block of the simulation kernel
+//! rust_hdl, which writes waveforms, and a [`Simulator`] adds the clock.
 
 mod banks;
 mod circuit;
@@ -32,11 +32,10 @@ pub use machine::Machine;
 pub use program::CompiledDesign;
 pub use vcd::VcdWriter;
 
-/// Half a clock in waveforms, in picoseconds.
+/// Half a clock in picoseconds, for waveforms.
 const HALF_CLOCK: u64 = 5_000;
 
-/// The largest number of updates of rust_hdl for one change. Two are enough: the change itself, and an update that changes
-/// nothing.
+/// Two updates of rust_hdl are enough: the change itself, and an update that changes nothing.
 const UPDATES: usize = 4;
 
 /// `LANES` independent instances of a design, clocked by rust_hdl.
@@ -63,11 +62,8 @@ pub struct Simulator<const LANES: usize = 1> {
 }
 
 impl<const LANES: usize> Simulator<LANES> {
-    /// Makes a simulator at power-up: all inputs, registers and outputs of synchronous ROMs are 0.
-    ///
-    /// # Errors
-    /// Fails if the design has mistakes in its structure, or 2^32 ROM words or more. Fails if rust_hdl's `check_all` finds a
-    /// fault.
+    /// Makes a simulator at power-up: all inputs, registers and outputs of synchronous ROMs are 0. Fails as [`Circuit::new`]
+    /// does.
     pub fn new(design: &Design) -> Result<Self> {
         Ok(Self {
             circuit: Circuit::new(design)?,
@@ -78,53 +74,38 @@ impl<const LANES: usize> Simulator<LANES> {
         })
     }
 
-    /// Returns the position of the input port `name` among [`Design::inputs`], or `None` if the design has no such input.
+    /// Returns the position of the input port `name` among [`Design::inputs`].
     pub fn input(&self, name: &str) -> Option<usize> {
         self.inputs.iter().position(|input| input == name)
     }
 
-    /// Returns the names of the input ports, in the order of their positions.
+    /// Returns the names of the input ports by position.
     pub fn inputs(&self) -> &[String] {
         &self.inputs
     }
 
-    /// Sets an input port in every lane for the next clock. `input` is the position of the port among the inputs. The simulator
-    /// ignores bits beyond the width of the port.
-    ///
-    /// # Panics
+    /// Sets the input port at position `input` in every lane for the next clock. Bits beyond the width of the port are ignored.
     /// Panics if no input port has this position.
     pub fn set_lanes(&mut self, input: usize, lanes: [u64; LANES]) {
         self.circuit.inputs_mut()[input] = lanes;
     }
 
-    /// Returns the values of all input ports for the caller to change, in order of position, one value for each lane. A caller
-    /// that sets many inputs uses this method instead of [`Simulator::set_lanes`].
+    /// Returns the values of all input ports by position, for a caller that sets many.
     pub fn inputs_mut(&mut self) -> &mut [[u64; LANES]] {
         self.circuit.inputs_mut()
     }
 
-    /// Returns the bit pattern of a net in each lane, after the latest clock.
-    ///
-    /// # Panics
-    /// Panics if the compiler has optimised the net away, which it may do only if the net has no name.
+    /// Returns the bit pattern of a net in each lane, after the latest clock. Panics as [`Machine::lanes`] does.
     pub fn lanes(&self, net: NetId) -> [u64; LANES] {
         self.circuit.machine.lanes(net)
     }
 
-    /// Returns the bit pattern of a net in one lane, after the latest clock.
-    ///
-    /// # Panics
-    /// Panics if `lane` is not less than `LANES`. Panics if the compiler has optimised the net away, which it may do only if the
-    /// net has no name.
+    /// Returns the bit pattern of a net in one lane, after the latest clock. Panics as [`Machine::lane`] does.
     pub fn lane(&self, net: NetId, lane: usize) -> u64 {
         self.circuit.machine.lane(net, lane)
     }
 
-    /// Returns for each lane a bit pattern that is 0 exactly if every net has its expected value. `expected` has the value of
-    /// each net in each lane. Only the bits that are 1 in `known` are compared, or all bits if `known` is `None`.
-    ///
-    /// # Panics
-    /// Panics if the compiler has optimised a net away, which it may do only if the net has no name.
+    /// Compares nets with expected values, as [`Machine::differences`] does.
     pub fn differences(
         &self,
         nets: &[NetId],
@@ -137,21 +118,16 @@ impl<const LANES: usize> Simulator<LANES> {
     /// Runs one clock: the falling edge, with which inputs change, and then the rising edge, at which registers load.
     ///
     /// # Errors
-    /// Fails if the waveform cannot be written. Fails if the circuit still changes after all updates, which would be a bug.
+    /// Fails if the waveform cannot be written, or if the circuit still changes after all updates, which would be a bug.
     #[inline]
     pub fn clock(&mut self) -> Result<()> {
         self.half(false)?;
         self.half(true)
     }
 
-    /// Runs one clock in which the input ports, in order of position, have the bit patterns `inputs`, which are not copied. From
-    /// the next clock on, the inputs have their earlier values again.
-    ///
-    /// # Errors
-    /// Fails if the waveform cannot be written, or if the circuit still changes after all updates.
-    ///
-    /// # Panics
-    /// Panics unless `inputs` has exactly one entry for each input port.
+    /// Runs one clock in which the input ports, by position, have the bit patterns `inputs`, without a copy. From the next clock
+    /// on, the inputs have their earlier values again. Fails as [`Simulator::clock`] does. Panics unless `inputs` has exactly one
+    /// entry for each input port.
     #[inline]
     pub fn clock_with(&mut self, inputs: &mut Vec<[u64; LANES]>) -> Result<()> {
         assert_eq!(inputs.len(), self.inputs.len(), "one for each input port");
@@ -162,10 +138,7 @@ impl<const LANES: usize> Simulator<LANES> {
     }
 
     /// Evaluates all nets for inputs that were set since the last clock, without a rising edge. The next clock does not depend on
-    /// whether this method was called.
-    ///
-    /// # Errors
-    /// Fails if the waveform cannot be written, or if the circuit still changes after all updates.
+    /// this call. Fails as [`Simulator::clock`] does.
     pub fn settle(&mut self) -> Result<()> {
         self.half(false)
     }
@@ -187,11 +160,8 @@ impl<const LANES: usize> Simulator<LANES> {
         }
     }
 
-    /// Writes the waveform of lane 0 from this call on, as VCD. A clock takes 10 ns, and the waveform starts at time 0. The new
-    /// waveform replaces an earlier waveform that the caller has not ended.
-    ///
-    /// # Errors
-    /// Fails if the file cannot be written.
+    /// Writes the waveform of lane 0 from this call on, as VCD. A clock takes 10 ns, and the waveform starts at time 0. An
+    /// earlier waveform that the caller has not ended is replaced. Fails if the file cannot be written.
     pub fn trace(&mut self, file: impl Write + Send + 'static) -> Result<()> {
         self.time = 0;
         let file: Box<dyn Write + Send> = Box::new(file);
@@ -199,10 +169,7 @@ impl<const LANES: usize> Simulator<LANES> {
         Ok(())
     }
 
-    /// Ends the waveform and flushes the file. Does nothing if no waveform is being written.
-    ///
-    /// # Errors
-    /// Fails if the file cannot be written.
+    /// Ends the waveform, if one is being written, and flushes the file. Fails if the file cannot be written.
     pub fn end_trace(&mut self) -> Result<()> {
         if let Some(trace) = self.trace.take() {
             trace.finish(self.time + HALF_CLOCK)?;
@@ -212,20 +179,13 @@ impl<const LANES: usize> Simulator<LANES> {
 }
 
 impl Simulator {
-    /// Sets an input port for the next clock. `input` is the position of the port among the inputs. The simulator ignores bits
-    /// beyond the width of the port.
-    ///
-    /// # Panics
-    /// Panics if no input port has this position.
+    /// Sets an input port for the next clock, as [`Simulator::set_lanes`] does.
     #[inline]
     pub fn set(&mut self, input: usize, bits: u64) {
         self.set_lanes(input, [bits]);
     }
 
-    /// Returns the bit pattern of a net after the latest clock.
-    ///
-    /// # Panics
-    /// Panics if the compiler has optimised the net away, which it may do only if the net has no name.
+    /// Returns the bit pattern of a net after the latest clock. Panics as [`Machine::lane`] does.
     #[inline]
     pub fn value(&self, net: NetId) -> u64 {
         self.lane(net, 0)

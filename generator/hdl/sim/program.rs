@@ -11,16 +11,16 @@ use glint_base::fixed::MAX_WIDTH;
 /// unnamed slice has no slot if all its readers take the bits from its operand themselves.
 pub(super) type Slot = u32;
 
-/// A set of sources, with one bit for each source. A *source* is a value that changes outside settling: an input port, or a value
-/// that the edge writes. Each field of the control word is a source too, because most fields stay the same from one control word
-/// to the next. If there are too many input ports, or too many values that the edge writes, several share a bit. A field for
-/// which no bit is left is no source.
+/// A set of sources, with one bit for each. A *source* is a value that changes outside settling: an input port, or a value that
+/// the edge writes. Each field of the control word is a source too, because most fields stay the same from one control word to
+/// the next. If there are too many input ports, or too many values that the edge writes, several share a bit. A field for which
+/// no bit is left is no source.
 pub(super) type Sources = u64;
 
 /// A computation within one bank: the slot `to` from the slots `a`, `b` and so on, which have smaller numbers.
 ///
-/// Widths are given as `drop`, 64 less the width: `u64::MAX >> drop` is the mask, and shifting up by `drop` brings the sign bit
-/// to the top. For example, a width of 21 has the `drop` 43.
+/// Widths are given as `drop`, 64 less the width: `u64::MAX >> drop` is the mask, and a shift to the left by `drop` brings the
+/// sign bit to the top. For example, a width of 21 has the `drop` 43.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Instruction {
     /// The value of `a` from before the coming edge, which may overwrite `a`.
@@ -42,7 +42,7 @@ pub(super) enum Instruction {
     /// Sum modulo 2^width, with the width given by `drop`.
     Add { to: Slot, a: Slot, b: Slot, drop: u8 },
     /// Sum of bits of `a` and bits of `b`, each from its `low` up with the width that its `drop` gives, modulo 2^width of the
-    /// result. For example, the instruction adds the rounding bit to a truncated value.
+    /// result. For example, it adds the rounding bit to a truncated value.
     AddSlices { to: Slot, a: Slot, b: Slot, low_a: u8, drop_a: u8, low_b: u8, drop_b: u8, drop: u8 },
     /// Sum of `a`, `b` and the bit `carry`, modulo 2^width.
     AddCarry { to: Slot, a: Slot, b: Slot, carry: Slot, drop: u8 },
@@ -84,8 +84,7 @@ pub(super) enum Instruction {
 }
 
 impl Instruction {
-    /// Returns the slots of the instruction, the result first. The inputs of a mux are not among them, because they are in the
-    /// table of choices.
+    /// Returns the slots, the result first. The inputs of a mux are not among them, because they are in the table of choices.
     pub(super) fn slots_mut(&mut self) -> Vec<&mut Slot> {
         match self {
             Self::Copy { to, a }
@@ -115,7 +114,7 @@ impl Instruction {
     }
 }
 
-/// One step of settling: an instruction within a bank, or the conversion of a value from one bank to the other.
+/// An instruction within a bank, or the conversion of a value from one bank to the other.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum SettlingStep {
     /// An instruction whose slots are all narrow.
@@ -132,31 +131,29 @@ pub(super) enum SettlingStep {
     SignedProduct { to: Slot, a: Slot, b: Slot, drop_a: u8, drop_b: u8, drop: u8 },
 }
 
-/// The slot of a value, in one of the two banks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ValueSlot {
     Narrow(Slot),
     Wide(Slot),
 }
 
-/// The place of a ROM's contents in [`CompiledDesign::words`]: the first index and the number of words.
+/// A range of [`CompiledDesign::words`]: the first index and the number of words of a ROM.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) struct Span {
     pub start: u32,
     pub len: u32,
 }
 
-/// A number of consecutive steps that depend on the same sources. Settling skips the group if none of its sources has changed.
+/// Consecutive steps that depend on the same sources. Settling skips them if none of the sources has changed.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct StepGroup {
     pub sources: Sources,
     pub len: u32,
 }
 
-/// An input port: its position, its slot, its source, and the mask of its width.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct InputPort {
-    /// The position of the port among the input ports.
+    /// Among the input ports.
     pub at: u32,
     pub slot: Slot,
     pub source: Sources,
@@ -169,71 +166,65 @@ pub(super) struct ReadEdge {
     pub to: Slot,
     pub source: Sources,
     pub address: Slot,
-    /// The slot of the read enable; `None` if the ROM reads at every edge.
+    /// `None` if the ROM reads at every edge.
     pub enable: Option<Slot>,
     pub words: Span,
 }
 
-/// A register. At the edge, `q` gets the reset value if `rst_n`, the slot in `reset`, is 0, and otherwise `data` if `enable` is
-/// 1.
+/// A register: at the edge, `q` gets the reset value if `rst_n` is 0, and otherwise `data` if `enable` is 1.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RegisterEdge {
     pub q: Slot,
     pub source: Sources,
     pub data: Slot,
-    /// The slot of the load enable; `None` if the register loads at every edge.
+    /// `None` if the register loads at every edge.
     pub enable: Option<Slot>,
-    /// The slot of `rst_n`, and the value that the register loads if `rst_n` is 0. `None` if the register has no reset.
+    /// The slot of `rst_n`, and the value that the register loads if it is 0.
     pub reset: Option<(Slot, u64)>,
 }
 
-/// One of the two banks: the slots that change outside settling, and the contents at power-up. The narrow bank has slots of 32
-/// bits, so that a vector of the processor holds twice as many lanes; the wide bank has slots of 64 bits.
+/// The slots of one width that change outside settling, and the contents at power-up. The narrow bank has slots of 32 bits, the
+/// wide bank of 64.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Bank {
     pub inputs: Vec<InputPort>,
-    /// The reads of synchronous ROMs, which an edge performs before it loads `registers`. No read or load overwrites a slot that
-    /// a later read or load uses.
+    /// An edge performs the reads before it loads `registers`. No read or load overwrites a slot that a later one uses.
     pub reads: Vec<ReadEdge>,
     pub registers: Vec<RegisterEdge>,
-    /// The contents of the slots at power-up, before settling.
+    /// The values at power-up, before settling.
     pub initial: Vec<u64>,
 }
 
 /// A compiled [`Design`](crate::netlist::Design), without state. Several machines may share it.
 #[derive(Clone, Debug)]
 pub struct CompiledDesign {
-    /// The steps, in an order in which each follows the steps that compute its operands.
+    /// Each step follows the steps that compute its operands.
     pub(super) steps: Vec<SettlingStep>,
-    /// The groups of consecutive steps with the same sources. Together they contain all steps, in order.
+    /// Consecutive steps with the same sources. Together the groups contain all steps, in order.
     pub(super) segments: Vec<StepGroup>,
     pub(super) narrow: Bank,
     pub(super) wide: Bank,
-    /// The table of choices: the inputs of all muxes with more than two inputs, as slots in the bank of the mux.
+    /// The inputs of all muxes with more than two inputs, as slots in the bank of the mux.
     pub(super) choices: Vec<Slot>,
-    /// The contents of all ROMs.
+    /// The words of all ROMs.
     pub(super) words: Vec<u64>,
-    /// For each net, the slot of its value; `None` for an unnamed net that the compiler has optimised away.
+    /// For each net, its slot; `None` for an unnamed net that the compiler has optimised away.
     pub(super) places: Vec<Option<ValueSlot>>,
 }
 
 impl CompiledDesign {
-    /// Returns the number of input ports.
     pub fn inputs(&self) -> usize {
         self.narrow.inputs.len() + self.wide.inputs.len()
     }
 
-    /// Returns the slot of a net.
-    ///
-    /// # Panics
-    /// Panics if the compiler has optimised the net away, which it may do only if the net has no name.
+    /// Panics as [`Machine::differences`](super::Machine::differences) does.
     pub(super) fn place(&self, net: NetId) -> ValueSlot {
         let place = self.places[net.index()];
         place.unwrap_or_else(|| panic!("{net:?} is unnamed and not simulated"))
     }
 }
 
-/// Returns 64 less `width`, the form in which instructions state a width. For example, 21 gives 43.
+/// Returns 64 less `width`.
 pub(super) fn drop_of(width: u32) -> u8 {
     (MAX_WIDTH - width) as u8
 }

@@ -1,16 +1,16 @@
-//! Stores the slots of a bank in memory, aligned so that vector instructions of the processor load them fast.
+//! Stores the slots of a bank in memory, aligned for vector instructions of the processor.
 
 use std::ops::{Deref, DerefMut};
 
-/// The number of bytes in a line of the processor's cache, which is also the length of its longest vector. A vector that lies
-/// across two lines is slow.
+/// The number of bytes in a cache line, and in the longest vector of the processor. A vector that lies across two lines is
+/// slow.
 const LINE: usize = 64;
 
-/// The values of all slots of a bank. A slot has `LANES` values, one for each lane. The first value is aligned to a cache line.
+/// The values of all slots of a bank, `LANES` values each. The first value is aligned to a cache line.
 #[derive(Debug)]
 pub(super) struct Slots<W, const LANES: usize> {
     words: Vec<W>,
-    /// The number of unused values in front of the first slot, which align it.
+    /// Unused values in front of the first slot, which align it.
     before: usize,
 }
 

@@ -1,5 +1,4 @@
-//! Writes the waveform of a circuit to a VCD file during the simulation. rust_hdl formats the waveform, and this module writes it
-//! to the file step by step.
+//! Writes the waveform of a circuit to a VCD file during the simulation. rust_hdl formats the waveform.
 
 use std::io::{self, Write};
 use std::mem;
@@ -13,20 +12,17 @@ use rust_hdl::core::vcd_probe::{VCDProbe, write_vcd_change, write_vcd_dump, writ
 
 /// Writes the waveform of a circuit step by step. Times are in picoseconds.
 ///
-/// rust_hdl panics if a write fails, so the writer gives rust_hdl a buffer in memory, to which every write succeeds. After each
-/// step the writer copies the buffer to the file.
+/// rust_hdl panics if a write fails. The writer therefore gives it a buffer in memory, and copies the buffer to the file after
+/// each step. All methods fail if the file cannot be written.
 pub struct VcdWriter<W: Write> {
-    /// The probe of rust_hdl; `None` only while rust_hdl writes.
+    /// `None` only while rust_hdl writes.
     probe: Option<VCDProbe<Page>>,
     page: Page,
     file: W,
 }
 
 impl<W: Write> VcdWriter<W> {
-    /// Writes the header, in which the outermost scope is called `name`, and all values at `time`, in picoseconds.
-    ///
-    /// # Errors
-    /// Fails if the file cannot be written.
+    /// Writes the header, in which the outermost scope is called `name`, and all values at `time`.
     pub fn new(file: W, name: &str, time: u64, circuit: &dyn Block) -> Result<Self> {
         let page = Page::default();
         let mut probe = write_vcd_header(page.clone(), &Named { name, circuit });
@@ -39,10 +35,7 @@ impl<W: Write> VcdWriter<W> {
         Ok(writer)
     }
 
-    /// Writes the values that have changed since the last step, at `time` in picoseconds.
-    ///
-    /// # Errors
-    /// Fails if the file cannot be written.
+    /// Writes the values that have changed since the last step.
     pub fn step(&mut self, time: u64, circuit: &dyn Block) -> Result<()> {
         if let Some(mut probe) = self.probe.take() {
             probe.timestamp(time)?;
@@ -51,10 +44,7 @@ impl<W: Write> VcdWriter<W> {
         self.write_out()
     }
 
-    /// Ends the waveform at `time`, in picoseconds, flushes the file and returns it.
-    ///
-    /// # Errors
-    /// Fails if the file cannot be written.
+    /// Ends the waveform at `time`, flushes the file and returns it.
     pub fn finish(mut self, time: u64) -> Result<W> {
         if let Some(probe) = &mut self.probe {
             probe.timestamp(time)?;
@@ -64,10 +54,6 @@ impl<W: Write> VcdWriter<W> {
         Ok(self.file)
     }
 
-    /// Writes the buffered text to the file, and empties the buffer.
-    ///
-    /// # Errors
-    /// Fails if the file cannot be written.
     fn write_out(&mut self) -> Result<()> {
         self.file.write_all(&self.page.take()).context(CANNOT_WRITE)
     }
@@ -78,7 +64,7 @@ const STRING: &str = "$var string 1 ";
 
 const CANNOT_WRITE: &str = "cannot write the waveform";
 
-/// A buffer with text that is not yet in the file. Its copies share the text.
+/// Text that is not yet in the file. Copies share the text.
 #[derive(Clone, Default)]
 struct Page(Arc<Mutex<Vec<u8>>>);
 
@@ -100,7 +86,7 @@ impl Write for Page {
     }
 }
 
-/// A circuit with a name for its scope. Without this struct, rust_hdl would call the scope `uut`.
+/// Names the scope, which rust_hdl would otherwise call `uut`.
 struct Named<'a> {
     name: &'a str,
     circuit: &'a dyn Block,

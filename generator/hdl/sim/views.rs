@@ -1,5 +1,5 @@
-//! Writes files for the waveform viewers GTKWave and Surfer. With such a file, a viewer lists each port and each named net under
-//! its module or pipeline stage. GTKWave also shows numbers with their binary points.
+//! Writes files for the waveform viewers GTKWave and Surfer. With them, a viewer lists each port and each named net under its
+//! module or pipeline stage. GTKWave also shows numbers with their binary points.
 
 use std::fmt::Write;
 
@@ -14,7 +14,7 @@ const SIGNED: u32 = 1 << 10 | 1 << 5;
 const POINT: u32 = 1 << 30;
 const TEXT: u32 = 1 << 9;
 
-/// Returns the scopes of a waveform by their full names, each with its nets. The first scope has the ports.
+/// Returns the scopes of a waveform by their full names; the first one has the ports.
 fn shown(design: &Design) -> Vec<(String, Vec<&Net>)> {
     let ports = design.ports.iter().map(|port| design.net(port.net)).collect();
     let mut shown = vec![(design.name.clone(), ports)];
@@ -25,8 +25,8 @@ fn shown(design: &Design) -> Vec<(String, Vec<&Net>)> {
     shown
 }
 
-/// Returns the save file with which GTKWave shows a waveform of the design: `gtkwave FILE.vcd FILE.gtkw`. For example, a net of
-/// the format `u1.20` gets the line `[fpshift_count] 20`, which states its 20 fraction bits.
+/// Returns the save file for GTKWave: `gtkwave FILE.vcd FILE.gtkw`. For example, a net of the format `u1.20` gets the line
+/// `[fpshift_count] 20`, which states its 20 fraction bits.
 pub fn gtkwave(design: &Design) -> String {
     // With this zoom, a clock is about twenty pixels wide.
     let mut text = format!("*-17.000000 0\n@{BINARY:x}\n{}.clk\n", design.name);
@@ -59,8 +59,8 @@ pub fn gtkwave(design: &Design) -> String {
     text
 }
 
-/// Returns the command file with which Surfer shows a waveform of the design: `surfer --command-file FILE.sucl FILE.vcd`. The
-/// file lists the ports, and then the nets of each module or stage.
+/// Returns the command file for Surfer: `surfer --command-file FILE.sucl FILE.vcd`. It lists the ports, and then the nets of
+/// each module or stage.
 pub fn surfer(design: &Design) -> String {
     let mut text = format!("variable_add {}.clk\n", design.name);
     for (scope, nets) in shown(design) {

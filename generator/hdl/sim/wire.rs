@@ -1,10 +1,9 @@
-//! Shows the ports and the named nets of a circuit to rust_hdl's probes, as atoms (rust_hdl's term for a signal) whose widths are
-//! known only at run time.
+//! Shows the ports and the named nets of a circuit to rust_hdl's probes, as atoms (rust_hdl's term for a signal). Their widths
+//! are known only at run time.
 //!
-//! A probe that visits the circuit gets an atom for each port and each named net, with its value in lane 0. If the design has a
-//! microprogram, a further atom shows the name of the executed microinstruction. New atoms are made at every visit; the id of a
-//! net's atom stays the same. rust_hdl visits a new circuit to check its ports. Later, rust_hdl visits the circuit only for a
-//! waveform.
+//! A probe that visits the circuit gets an atom for each port and each named net, with its value in lane 0. A further atom shows
+//! the name of the executed microinstruction. New atoms are made at every visit. The id of a net's atom stays the same. rust_hdl
+//! visits a new circuit to check its ports, and later only for a waveform.
 
 use rust_hdl::core::ast::VerilogLiteral;
 use rust_hdl::core::atom::{Atom, AtomKind};
@@ -12,7 +11,7 @@ use rust_hdl::core::constraint::PinConstraint;
 use rust_hdl::core::synth::VCDValue;
 use rust_hdl::core::type_descriptor::{TypeDescriptor, TypeKind};
 
-/// The direction of a net at the border of the circuit: an input port, an output port, or a net inside.
+/// Whether a net is a port of the circuit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Direction {
     Input,
@@ -20,20 +19,18 @@ pub(super) enum Direction {
     Local,
 }
 
-/// The description of an atom for a probe.
 #[derive(Debug)]
 pub(super) enum ProbeView<'a> {
-    /// A net, with its width, sign and direction.
+    /// A net inside the circuit, or one of its ports.
     Net { width: u32, signed: bool, direction: Direction },
-    /// The name of the executed microinstruction, or `idle` if `run` is false. The bits of the atom are the address, an index of
-    /// `names`.
+    /// The name of the executed microinstruction, or `idle` if `run` is false. The bits are the address, an index of `names`.
     Microinstruction { names: &'a [String], run: bool },
 }
 
-/// An atom: the value of one net in lane 0, for rust_hdl's probes.
+/// The value of one net in lane 0.
 #[derive(Debug)]
 pub(super) struct Wire<'a> {
-    /// The id of the net, from rust_hdl's counter, so that it differs from the ids of rust_hdl's own signals.
+    /// The id comes from rust_hdl's counter, so that it differs from the ids of rust_hdl's own signals.
     pub id: usize,
     pub connected: bool,
     pub changed: bool,
@@ -41,8 +38,7 @@ pub(super) struct Wire<'a> {
     pub seen: ProbeView<'a>,
 }
 
-/// Returns `text` with `_` in place of spaces and other characters that a VCD string cannot contain. For example, `12 <- sin`
-/// becomes `12_<-_sin`.
+/// Replaces characters that a VCD string cannot contain: `12 <- sin` becomes `12_<-_sin`.
 fn vcd_text(text: &str) -> String {
     text.chars().map(|c| if c.is_ascii_graphic() { c } else { '_' }).collect()
 }
@@ -110,7 +106,7 @@ impl Atom for Wire<'_> {
         self.id
     }
 
-    /// Returns the value alone. rust_hdl never emits Verilog from this circuit.
+    /// rust_hdl never emits Verilog from this circuit.
     fn verilog(&self) -> VerilogLiteral {
         self.bits.into()
     }

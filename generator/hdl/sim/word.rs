@@ -1,11 +1,8 @@
-//! Defines the arithmetic on the values in the simulator's memory.
-//!
-//! The memory has slots of 32 bits and slots of 64 bits, and a slot has one value for each lane. These slots are places in the
-//! memory, not the slots of a pipeline.
+//! Defines the arithmetic on the slots of 32 and of 64 bits in the simulator's memory (not the slots of a pipeline).
 
 use std::ops::{BitAnd, BitOr, BitXor, Shl, Shr};
 
-/// The value of a slot in one lane, an unsigned integer of 32 or 64 bits.
+/// The value of a slot in one lane.
 pub(super) trait LaneWord:
     Copy
     + Default
@@ -19,7 +16,7 @@ pub(super) trait LaneWord:
     + Shr<u8, Output = Self>
 {
     const ZERO: Self;
-    /// Returns the low bits of `bits`, as many as the type has.
+    /// Keeps the low bits, as many as the type has.
     fn low(bits: u64) -> Self;
     fn wrapping_add(self, other: Self) -> Self;
     fn wrapping_sub(self, other: Self) -> Self;

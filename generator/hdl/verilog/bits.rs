@@ -1,44 +1,38 @@
 //! Reduces wiring to a normal form: every word (the bits of a net) becomes a list of bit ranges of nets and constants.
 //!
-//! Slices, extensions, concatenations, renamed nets and constants are wiring, which needs no hardware. [`Bits`] represents any
-//! mixture of such wiring as pieces of declared nets, constants, and copies of a sign bit. For example, the emitter finds
-//! `a[5:2]` behind three nets of wiring, and the bits of a net that no logic reads.
+//! Slices, extensions, concatenations, renamed nets and constants need no hardware. [`Bits`] represents any mixture of them as
+//! pieces of declared nets, constants, and copies of a sign bit. For example, the emitter finds `a[5:2]` behind three nets of
+//! wiring.
 
 use crate::netlist::NetId;
 use glint_base::fixed::mask;
 
-/// Adjacent bits of a word (the bits of a net) with the same origin: bits of a net, constant bits, or copies of one bit.
+/// Adjacent bits of a word with the same origin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BitRun {
     /// `width` adjacent bits of a net, from bit `low` up.
     Net {
-        /// The net from which the bits come.
         net: NetId,
         /// The position of the lowest bit in the net.
         low: u32,
-        /// The number of bits.
         width: u32,
     },
     /// Adjacent bits of a constant.
     Constant {
-        /// The bit pattern of the constant bits.
+        /// The bit pattern.
         value: u64,
-        /// The number of bits.
         width: u32,
     },
-    /// `count` copies of one bit of a net; there are at least two.
+    /// Two or more copies of one bit of a net.
     Copies {
-        /// The net from which the bit comes.
         net: NetId,
         /// The position of the copied bit in the net.
         bit: u32,
-        /// The number of copies.
         count: u32,
     },
 }
 
 impl BitRun {
-    /// Returns the number of bits in this run.
     pub fn width(self) -> u32 {
         match self {
             Self::Net { width, .. } | Self::Constant { width, .. } => width,
@@ -46,7 +40,7 @@ impl BitRun {
         }
     }
 
-    /// Returns `width` bits of this run, from bit `low` up.
+    /// Returns `width` bits from bit `low` up.
     fn slice(self, low: u32, width: u32) -> Self {
         match self {
             Self::Net { net, low: from, .. } => Self::Net { net, low: from + low, width },
@@ -58,8 +52,7 @@ impl BitRun {
         }
     }
 
-    /// Joins two runs into one, `self` above `below`. Returns `None` unless they are adjacent bits of one net, or constants of at
-    /// most 64 bits together.
+    /// Joins `self` above `below`, if they are adjacent bits of one net, or constants of at most 64 bits together.
     fn join(self, below: Self) -> Option<Self> {
         match (self, below) {
             (Self::Net { net, low, width }, Self::Net { net: other, low: from, width: count })
@@ -77,28 +70,26 @@ impl BitRun {
     }
 }
 
-/// The bits of a word as a list of runs, the most significant first. For example, `{a[5:2], 1'b0}` has two: four bits of net `a`,
-/// and a constant bit.
+/// The bits of a word as runs, the most significant first. `{a[5:2], 1'b0}` has two: four bits of net `a`, and a constant bit.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Bits(Vec<BitRun>);
 
 impl Bits {
-    /// Returns the word that has all bits of a net, which is `width` bits wide.
+    /// Returns all bits of a net.
     pub fn net(net: NetId, width: u32) -> Self {
         Self(vec![BitRun::Net { net, low: 0, width }])
     }
 
-    /// Returns the word for a constant of `width` bits with the bit pattern `value`.
     pub fn constant(value: u64, width: u32) -> Self {
         Self(vec![BitRun::Constant { value, width }])
     }
 
-    /// Returns the runs of bits that form the word, the most significant first.
+    /// Returns the runs, the most significant first.
     pub fn pieces(&self) -> &[BitRun] {
         &self.0
     }
 
-    /// Returns the run of bits if the word has exactly one run, otherwise `None`.
+    /// Returns the run of a word with exactly one.
     pub fn single(&self) -> Option<BitRun> {
         match self.0[..] {
             [piece] => Some(piece),
@@ -106,12 +97,11 @@ impl Bits {
         }
     }
 
-    /// Returns the number of bits of the word.
     pub fn width(&self) -> u32 {
         self.0.iter().map(|piece| piece.width()).sum()
     }
 
-    /// Returns `width` bits of the word, from bit `low` up. For example, the bits from 1 up of `{a[5:2], 1'b0}` are `a[5:2]`.
+    /// Returns `width` bits from bit `low` up: the bits from 1 up of `{a[5:2], 1'b0}` are `a[5:2]`.
     pub fn slice(&self, low: u32, width: u32) -> Self {
         let mut taken = Self::default();
         let mut top = self.width();
@@ -126,7 +116,7 @@ impl Bits {
         taken
     }
 
-    /// Returns a longer word: this word in the high bits, and the word `lower` below it.
+    /// Appends the word `lower` below this one.
     pub fn followed_by(mut self, lower: &Self) -> Self {
         for piece in &lower.0 {
             self.append(*piece);
@@ -134,8 +124,7 @@ impl Bits {
         self
     }
 
-    /// Returns the word extended to `width` bits: by copies of its top bit if `signed`, otherwise by zeros. A word that has
-    /// `width` bits or more stays as it is.
+    /// Extends the word to `width` bits, by copies of its top bit if `signed`, otherwise by zeros. A wider word stays as it is.
     pub fn extend(&self, width: u32, signed: bool) -> Self {
         let count = width.saturating_sub(self.width());
         if count == 0 {

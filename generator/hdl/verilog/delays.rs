@@ -1,5 +1,5 @@
-//! Writes the delay lines of a pipeline as Verilog. A delay line carries a value that no logic reads for several stages; a memory
-//! in a separate module replaces its registers.
+//! Writes the delay lines of a pipeline as Verilog. A memory in a separate module replaces the registers that carry a value which
+//! no logic reads for several stages.
 
 use std::collections::BTreeMap;
 
@@ -13,12 +13,10 @@ use crate::netlist::{DelayLine, NetId};
 const TITLE: &str =
     "Delay lines: a small memory delays values that no logic reads for several stages";
 
-/// The number of words of a delay line's memory, and the net that enables the steps of the delay line. The net is `None` if the
-/// delay line steps on every clock.
+/// The number of words of a delay line's memory, and the net that enables its steps; `None` if it steps on every clock.
 type Pace = (usize, Option<NetId>);
 
-/// Returns the Verilog section that instantiates the delay lines, with one instance for all lines of the same length and enable.
-/// The section is empty if the pipeline has no delay lines.
+/// Returns the Verilog section of the delay lines, with one instance for all lines of the same length and enable.
 pub fn section(builder: &mut Builder<'_>, naming: &Naming) -> Vec<String> {
     let plan = builder.plan;
     let mut paces: BTreeMap<Pace, Vec<&DelayLine>> = BTreeMap::new();

@@ -1,8 +1,8 @@
 //! Writes the cells of a netlist as Verilog expressions, such as `a + b` for a sum.
 //!
-//! The operands of a sum or a difference have the same width as the result, so that no context can extend or truncate a carry. As
-//! an exception, a product is only written as the whole right-hand side of a net of its full width. The carry into an adder is
-//! extended to the adder's width. Operands of products and comparisons are written with `$signed` or `$unsigned` if necessary.
+//! The operands of a sum or a difference have the same width as the result, so that no context can extend or truncate a carry.
+//! Only a product is instead written as the whole right-hand side of a net of its full width. The carry into an adder is extended
+//! to the adder's width. Operands of products and comparisons are written with `$signed` or `$unsigned` if necessary.
 
 use super::bits::{BitRun, Bits};
 use super::plan::{NetForm, Plan, Reader};
@@ -10,45 +10,41 @@ use super::text::{Names, constant_name, literal, together};
 use crate::netlist::{Driver, NetId, NetlistRom, Op};
 use glint_base::fixed::mask;
 
-/// A constant that the Verilog declares as a localparam. For example, `COS_GAMMA_MOST` is `21'h100000`, with the note `1.0 in
-/// u1.20`.
+/// A localparam, such as `COS_GAMMA_MOST` for `21'h100000`, with the note `1.0 in u1.20`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Constant {
-    /// The name of the localparam in the Verilog.
+    /// The name of the localparam.
     pub name: String,
-    /// The name in the description. If the description language generated the name, the number at its end is removed.
+    /// The name in the description, without the number of a generated name.
     base: String,
-    /// The value of the constant as a bit pattern.
+    /// The value as a bit pattern.
     pub bits: u64,
-    /// The number of bits of the constant.
     pub width: u32,
-    /// The comment behind the localparam: the constant's value as text. The comment is empty if the bit pattern itself is the
-    /// value.
+    /// The comment behind the localparam: the value as text, unless the bit pattern itself is the value.
     pub note: String,
 }
 
-/// A writer of the Verilog expressions for one module. The writer collects the constants that the expressions use.
+/// Writes the expressions of one module, and collects the constants that they use.
 pub struct Expressions<'a> {
     plan: &'a Plan<'a>,
     names: Names,
-    /// The constants that the expressions use, in the order of use.
+    /// The constants, in the order of use.
     pub constants: Vec<Constant>,
 }
 
 impl<'a> Expressions<'a> {
-    /// Makes a writer of expressions for one module. `names` are the identifiers that the module uses already.
+    /// `names` are the identifiers that the module uses already.
     pub fn new(plan: &'a Plan<'a>, names: Names) -> Self {
         Self { plan, names, constants: Vec::new() }
     }
 
-    /// Returns a new identifier for the module: `wish` itself if no other identifier has this name, otherwise a similar name such
-    /// as `wish_2`.
+    /// Returns an identifier that is new in the module: `wish`, or a similar name such as `wish_2`.
     pub fn fresh(&mut self, wish: &str) -> String {
         self.names.fresh(wish)
     }
 
-    /// Returns the right-hand side of the assignment that drives a net, such as `a + b`. For a register, a ROM, an input, or a
-    /// mux of more than two inputs, the function returns the name of the net.
+    /// Returns the right-hand side of the assignment that drives a net, such as `a + b`. A register, a ROM, an input, or a mux of
+    /// more than two inputs gives the name of the net.
     pub fn driver(&mut self, id: NetId) -> String {
         match &self.plan.design.net(id).driver {
             Driver::Op(op) => self.cell(id, op),
@@ -61,8 +57,7 @@ impl<'a> Expressions<'a> {
         }
     }
 
-    /// Returns the Verilog text that reads a net, for use as a complete right-hand side. The text has no parentheses around it,
-    /// such as `a + b`.
+    /// Returns the text that reads a net as a complete right-hand side, without parentheses.
     pub fn whole(&mut self, id: NetId) -> String {
         match self.inline(id) {
             Some(cell) => self.driver(cell),
@@ -70,7 +65,7 @@ impl<'a> Expressions<'a> {
         }
     }
 
-    /// Returns the Verilog text that reads a net within a larger expression: a name, a selection, a concatenation, or a cell in
+    /// Returns the text that reads a net within a larger expression. It is a name, a selection, a concatenation, or a cell in
     /// parentheses, such as `(a + b)`.
     pub fn operand(&mut self, id: NetId) -> String {
         if let Some(constant) = self.constant(id) {
@@ -85,15 +80,14 @@ impl<'a> Expressions<'a> {
         }
     }
 
-    /// Returns the text of an operand of a unary operator. An inverted operand is put into parentheses.
+    /// A unary operator needs an inverted operand in parentheses.
     fn primary(&mut self, id: NetId) -> String {
         let text = self.operand(id);
         if text.starts_with('~') { format!("({text})") } else { text }
     }
 
-    /// Returns the name of the localparam for a net that is a constant, possibly extended or relabelled, and collects the
-    /// constant. Returns `None` for any other net, and for unnamed constants that are clear as literals: 0, 1, and all ones from
-    /// 8 bits on.
+    /// Returns the name of the localparam for a net that is a constant, possibly extended or relabelled, and collects it. Unnamed
+    /// constants that are clear as literals have none: 0, 1, and all ones from 8 bits on.
     fn constant(&mut self, id: NetId) -> Option<String> {
         let design = self.plan.design;
         let Some(BitRun::Constant { value, width }) = self.plan.bits[id.index()].single() else {
@@ -141,8 +135,7 @@ impl<'a> Expressions<'a> {
         Some(name)
     }
 
-    /// Returns the Verilog text of a ROM's address, with exactly as many bits as the ROM's number of words needs. For example,
-    /// the address of 584 words has 10 bits.
+    /// Returns the text of a ROM's address, with exactly as many bits as its number of words needs: 10 for 584 words.
     pub fn address(&mut self, rom: &NetlistRom) -> String {
         let width = super::plan::address_width(rom.words.len());
         let bits = &self.plan.bits[rom.address.index()];
@@ -151,9 +144,8 @@ impl<'a> Expressions<'a> {
         self.bits(&exact)
     }
 
-    /// Returns the net whose expression is written where the Verilog reads the net `id`: `id` itself, or the net whose bits
-    /// `id` passes on unchanged. Returns `None` if no expression is written there, because `id` is declared, is a constant, or
-    /// is other wiring.
+    /// Returns the net whose expression is written where the Verilog reads the net `id`: `id` itself, or the net whose bits it
+    /// passes on unchanged. Returns `None` if `id` is declared, a constant, or other wiring.
     fn inline(&self, id: NetId) -> Option<NetId> {
         match self.plan.bits[id.index()].single() {
             Some(BitRun::Net { net, .. }) if self.plan.forms[net.index()] == NetForm::Inline => {
@@ -163,7 +155,7 @@ impl<'a> Expressions<'a> {
         }
     }
 
-    /// Returns the Verilog text of bits that need no logic: a selection such as `a[5:2]`, or a concatenation of several.
+    /// Returns the text of bits that need no logic: a selection such as `a[5:2]`, or a concatenation of several.
     pub fn bits(&self, bits: &Bits) -> String {
         together(bits.pieces().iter().map(|piece| self.piece(*piece)).collect())
     }
@@ -250,7 +242,7 @@ impl<'a> Expressions<'a> {
         if width == 1 { carry } else { format!("{{{}, {carry}}}", literal(0, width - 1)) }
     }
 
-    /// Returns the text of an operand, with `$signed` or `$unsigned` if the text would not have the sign of the net's format.
+    /// Adds `$signed` or `$unsigned` if the text would not have the sign of the net's format.
     fn with_sign(&mut self, id: NetId) -> String {
         let text = self.operand(id);
         let wanted = self.plan.design.net(id).format.signed;
@@ -268,7 +260,7 @@ impl<'a> Expressions<'a> {
     }
 }
 
-/// Returns a name without an underscore and a number at its end. For example, `one_2` gives `one`, and `base2` stays as it is.
+/// Removes an underscore and a number at the end: `one_2` becomes `one`, and `base2` stays.
 fn unnumbered(name: &str) -> &str {
     let base = name.trim_end_matches(|sign: char| sign.is_ascii_digit());
     match base.strip_suffix('_') {
@@ -277,15 +269,14 @@ fn unnumbered(name: &str) -> &str {
     }
 }
 
-/// Returns whether a text needs no parentheses as an operand: it is a name, a selection or a concatenation, possibly inverted.
+/// Returns whether a text needs no parentheses as an operand: a name, a selection or a concatenation, possibly inverted.
 fn is_primary(text: &str) -> bool {
     let inner = text.strip_prefix('~').unwrap_or(text);
     !inner.starts_with(['~', '|', '&', '-'])
         && (!inner.contains(' ') || (inner.starts_with('{') && closes_at_end(inner)))
 }
 
-/// Returns whether the brace at the beginning of `text` closes with its last character. For example, this is false for
-/// `{a} + {b}`.
+/// Returns whether the brace at the beginning of `text` closes with its last character, unlike in `{a} + {b}`.
 fn closes_at_end(text: &str) -> bool {
     let mut depth = 0usize;
     for (at, sign) in text.char_indices() {

@@ -6,17 +6,17 @@ use super::text::comment;
 use crate::netlist::{Design, HandshakeTiming, NetId, Partition, Pipeline, Role, Sequence};
 use glint_base::fixed::Format;
 
-/// The facts in the header comment of a Verilog file that the design itself does not state.
+/// The facts in the header comment that the design itself does not state.
 #[derive(Clone, Copy)]
 pub struct Origin<'a> {
-    /// The command that generates the file again. If it is empty, the header does not mention a command.
+    /// The command that generates the file again, or an empty text.
     pub regenerate: &'a str,
-    /// The numbers of clocks between the events of the handshake, for the line on latency.
+    /// The header's line on latency states this timing.
     pub timing: &'a HandshakeTiming,
 }
 
-/// Returns the lines of the header comment for the top module's Verilog file: title, formula, source, latency, formats, ports and
-/// notes, and the lines of [`regenerated`]. The ports of a pipeline are left out, because they have comments of their own.
+/// Returns the header comment of the top module's file: title, formula, source, latency, formats, ports, notes and
+/// [`regenerated`]. The ports of a pipeline are left out, because they have comments of their own.
 pub fn top(design: &Design, origin: &Origin) -> Vec<String> {
     let about = &design.about;
     let mut lines = comment(0, &format!("{}: {}", design.name, about.title));
@@ -30,7 +30,6 @@ pub fn top(design: &Design, origin: &Origin) -> Vec<String> {
     }
     lines.push("//".to_owned());
     lines.extend(comment(0, &formats(design)));
-    // The module of a pipeline has a comment at each port instead.
     if design.pipeline.is_none() {
         lines.extend(ports(design));
     }
@@ -41,8 +40,7 @@ pub fn top(design: &Design, origin: &Origin) -> Vec<String> {
     lines
 }
 
-/// Returns the lines of the header comment for the Verilog file of the control unit or the datapath. The control unit's comment
-/// lists the microprogram.
+/// Returns the header comment of the control unit, with the microprogram, or of the datapath.
 pub fn partition(
     design: &Design,
     partition: Partition,
@@ -70,8 +68,7 @@ fn paragraph(text: &str) -> Vec<String> {
     lines
 }
 
-/// Returns the comment lines at the end of a header: that Glint generated the file, with which command (unless `regenerate` is
-/// empty), and that the file belongs to its user.
+/// Returns the end of a header: that Glint generated the file, with which command, and that it belongs to its user.
 pub fn regenerated(origin: &Origin) -> Vec<String> {
     let again = match origin.regenerate {
         "" => String::new(),
@@ -99,7 +96,6 @@ fn latency(timing: &HandshakeTiming) -> Vec<String> {
     paragraph(&format!("Latency: {}.", facts.join(", ")))
 }
 
-/// Returns the paragraph on a pipeline's interval, latency, clock frequency and stalls.
 fn stages(pipeline: &Pipeline) -> String {
     let (clocks, clock) = (pipeline.stages.len(), pipeline.clock_mhz);
     let stall = if pipeline.stall {
@@ -120,7 +116,6 @@ fn stages(pipeline: &Pipeline) -> String {
     )
 }
 
-/// Returns the paragraph that explains the formats `uI.F` and `sI.F`.
 fn formats(design: &Design) -> String {
     let mut text = "Formats: uI.F is unsigned with I integer bits and F fraction bits. sI.F is two's \
                     complement with one sign bit more. The value of a signal is its integer times 2^-F."
@@ -131,7 +126,7 @@ fn formats(design: &Design) -> String {
     text
 }
 
-/// Returns comment lines for the ports except strobes, with name, format and role in columns.
+/// Leaves out strobes; name, format and role are in columns.
 fn ports(design: &Design) -> Vec<String> {
     let name = |net: NetId| design.net(net).name.as_str();
     let width = design.ports.iter().map(|port| name(port.net).len()).max().unwrap_or(0);
@@ -168,7 +163,6 @@ fn ports(design: &Design) -> Vec<String> {
     lines
 }
 
-/// Returns comment lines for the microprogram, with address, name and jump of each microinstruction.
 fn program(design: &Design) -> Vec<String> {
     let mut lines = vec!["//".to_owned(), "// Microprogram:".to_owned()];
     for (address, it) in design.control.microprogram.iter().enumerate() {

@@ -4,21 +4,18 @@ use super::plan::{NetForm, Plan};
 use crate::netlist::{Driver, NetId, Partition, RomId};
 use glint_base::fixed::mask;
 
-/// The ports and ROMs of one of the two Verilog modules below the top module: the control unit or the datapath. The nets of a
-/// pipeline all belong to the datapath.
+/// The ports and ROMs of the control unit's or the datapath's module. All nets of a pipeline belong to the datapath.
 pub struct Interface {
-    /// Whether the module has a register or a synchronous ROM, and therefore the input `clk`.
+    /// Whether a register or a synchronous ROM needs the input `clk`.
     pub clocked: bool,
-    /// The inputs: ports of the top module in their order, followed by nets from the other module.
+    /// Ports of the top module in their order, followed by nets from the other module.
     pub inputs: Vec<NetId>,
-    /// The outputs: ports of the top module in their order, followed by nets for the other module.
+    /// Ports of the top module in their order, followed by nets for the other module.
     pub outputs: Vec<NetId>,
-    /// The ROMs that the Verilog of this module contains.
     pub roms: Vec<RomId>,
 }
 
 impl Interface {
-    /// Finds the ports and ROMs of one of the two modules below the top module: the control unit or the datapath.
     pub fn new(plan: &Plan, partition: Partition) -> Self {
         let design = plan.design;
         let other = match partition {
@@ -27,7 +24,7 @@ impl Interface {
         };
         let mut inputs = Vec::new();
         for port in design.inputs() {
-            // An input that no module reads still must be connected: to the module to which it belongs.
+            // An input that no module reads still must be connected, to the module to which it belongs.
             let ends_here =
                 plan.partition(port.net) == partition && !is_read(plan, other, port.net);
             if is_read(plan, partition, port.net) || ends_here {
@@ -62,8 +59,7 @@ fn is_read(plan: &Plan, partition: Partition, net: NetId) -> bool {
     plan.reads.contains_key(&(partition, net))
 }
 
-/// Returns the nets that the module `from` declares and the module `to` reads, in the order of the design. Input ports are not
-/// among them.
+/// Returns the nets that the module `from` declares and the module `to` reads, in the order of the design, without input ports.
 fn crossing(plan: &Plan, from: Partition, to: Partition) -> Vec<NetId> {
     let mut crossing = Vec::new();
     for net in (0..plan.design.nets.len() as u32).map(NetId) {
@@ -75,8 +71,8 @@ fn crossing(plan: &Plan, from: Partition, to: Partition) -> Vec<NetId> {
     crossing
 }
 
-/// Returns the bits of nets in a module that no logic in the module reads, as ranges of net, lowest bit and number of bits. The
-/// Verilog connects them to one net, which linters accept as unread. For example, `(net, 0, 3)` means the bits 0 to 2.
+/// Returns the bits that no logic in the module reads, as ranges: `(net, 0, 3)` means the bits 0 to 2. The Verilog connects
+/// them to one net, which linters accept as unread.
 pub fn unread(plan: &Plan, partition: Partition, interface: &Interface) -> Vec<(NetId, u32, u32)> {
     let design = plan.design;
     let mut nets = interface.inputs.clone();

@@ -1,12 +1,12 @@
-//! Writes assertions for the Verilog of a control unit or datapath, which only formal tools read. The proof of the handshake
-//! relies on these assertions. For example, the control unit of `rough` asserts that `word_address` is 0 while `run` is 0.
+//! Writes assertions on which the proof of the handshake relies. For example, the control unit of `rough` asserts that
+//! `word_address` is 0 while `run` is 0.
 
 use super::naming::Naming;
 use super::text::literal;
 use crate::netlist::{Design, Partition, RegisterKind};
 
-/// Returns assertions about the control unit or the datapath as lines of Verilog. The list is empty for a datapath without
-/// operands. The caller must put the lines between `` `ifdef FORMAL `` and `` `endif ``, so that only formal tools read them.
+/// Returns assertions about the control unit or the datapath. The caller must put them between `` `ifdef FORMAL `` and ``
+/// `endif ``, so that only formal tools read them.
 pub fn invariants(design: &Design, naming: &Naming, partition: Partition) -> Vec<String> {
     let mut names = naming.names.clone();
     let lines = match partition {
@@ -16,7 +16,7 @@ pub fn invariants(design: &Design, naming: &Naming, partition: Partition) -> Vec
     lines.into_iter().map(|line| format!("    {line}")).collect()
 }
 
-/// Writes the assertions on the sequencer. The assertions hold in every clock but the first, in which the design is reset.
+/// The assertions on the sequencer hold in every clock but the first, in which the design is reset.
 fn control(design: &Design) -> Vec<String> {
     let name = |register| design.net(design.register(register).q).name.as_str();
     let (address, run) = (name(design.control.address), name(design.control.run));
@@ -36,7 +36,7 @@ fn control(design: &Design) -> Vec<String> {
     lines
 }
 
-/// Writes the assertion that no operand register changes in the clock after one in which the device was busy (`idle` was 0).
+/// No operand register changes in the clock after one in which the device was busy (`idle` was 0).
 fn datapath(design: &Design, was_busy: &str) -> Vec<String> {
     let operands: Vec<&str> = design
         .registers

@@ -8,8 +8,7 @@ use super::words::{in_fields, in_hex, word_note};
 use crate::netlist::{Design, RomId};
 use glint_base::fixed::mask;
 
-/// Returns the text of the memory file of a ROM: comments, and one line for each word. The words of the control ROM are binary
-/// for `$readmemb`, all others hexadecimal for `$readmemh`.
+/// Returns the memory file of a ROM: comments, and one line for each word, binary for the control ROM, otherwise hexadecimal.
 ///
 /// # Errors
 /// Fails if a word is wider than its ROM, or if the words of the control ROM are not as wide as all fields together.
@@ -43,8 +42,7 @@ pub fn contents(design: &Design, id: RomId) -> Result<String> {
     Ok(lines.join("\n") + "\n")
 }
 
-/// Returns the comment with the names of the fields, in the order of the digits of a control word. Fails if the fields together
-/// are not `width` bits wide.
+/// Names the fields in the order of the digits of a control word. Fails if they are not `width` bits wide together.
 fn fields(design: &Design, width: u32) -> Result<Vec<String>> {
     let fields = &design.control.fields;
     let total: u32 = fields.iter().map(|field| design.width(field.net)).sum();

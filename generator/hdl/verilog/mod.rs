@@ -28,12 +28,12 @@ use interface::Interface;
 use naming::Naming;
 use plan::Plan;
 
-/// Returns the files for a design as pairs of file name and text: the Verilog modules (`.v`), and the contents of ROMs (`.mem`)
-/// for `$readmemh` and `$readmemb`.
+/// Returns the files for a design as pairs of file name and text. They are the Verilog modules (`.v`), and the contents of ROMs
+/// (`.mem`) for `$readmemh` and `$readmemb`.
 ///
 /// # Errors
-/// Fails if [`Design::verify_structure`] finds mistakes; the error lists them. Fails if the words of the control ROM are not as
-/// wide as all fields together.
+/// Fails with the mistakes of [`Design::verify_structure`], or if the words of the control ROM are not as wide as all fields
+/// together.
 pub fn files(design: &Design) -> Result<Vec<(String, String)>> {
     let (plan, naming) = (Plan::new(design)?, Naming::new(design));
     let origin = Origin { regenerate: "", timing: &HandshakeTiming::default() };
@@ -45,16 +45,15 @@ pub fn files(design: &Design) -> Result<Vec<(String, String)>> {
     Ok(files)
 }
 
-/// The text of one Verilog file, with the names of the modules that it defines.
+/// The text of one Verilog file.
 pub struct ModuleFile {
-    /// The names of the Verilog modules in the file, the main one first.
+    /// The names of the modules that the file defines, the main one first.
     pub modules: Vec<String>,
-    /// The whole text of the Verilog file.
     pub text: String,
 }
 
-/// Returns the Verilog files of a design, the top module first. A pipeline has one file for its module, and another one if it has
-/// delay lines. Any other design has three files: the top module, the control unit and the datapath.
+/// Returns the Verilog files of a design, the top module first. A pipeline has one file for its module, and another one for delay
+/// lines. Other designs have the top module, the control unit and the datapath.
 pub fn modules(plan: &Plan, naming: &Naming, origin: &Origin) -> Vec<ModuleFile> {
     if let Some(pipeline) = &plan.design.pipeline {
         let name = &plan.design.name;
@@ -78,11 +77,8 @@ pub fn modules(plan: &Plan, naming: &Naming, origin: &Origin) -> Vec<ModuleFile>
     files
 }
 
-/// Returns the memory files for the ROMs of a design as pairs of file name and text. The list is empty if the style of `naming`
-/// puts the words into the Verilog. The second read port of a memory has no file of its own.
-///
-/// # Errors
-/// Fails if a word is wider than its ROM, or if the words of the control ROM are not as wide as all fields together.
+/// Returns the memory files for the ROMs of a design as pairs of file name and text. There are none if the style of `naming` puts
+/// the words into the Verilog. The second read port of a memory has no file of its own. Fails as [`memory::contents`] does.
 pub fn memories(design: &Design, naming: &Naming) -> Result<Vec<(String, String)>> {
     let mut memories = Vec::new();
     for (id, file) in (0..).map(RomId).zip(&naming.files) {

@@ -16,21 +16,20 @@ use crate::netlist::{
     Design, Driver, Multiplier, NetId, NetlistRegister, Op, Partition, RegId, RomId,
 };
 
-/// A writer of the Verilog for one module: the control unit, the datapath or a pipeline.
+/// Writes one module: the control unit, the datapath or a pipeline.
 pub struct Builder<'a> {
     pub(super) plan: &'a Plan<'a>,
     naming: &'a Naming,
     interface: &'a Interface,
     partition: Partition,
     pub(super) expressions: Expressions<'a>,
-    /// The choices of select fields that are labels of case statements, as pairs of field number and value.
+    /// The choices of select fields that are labels of case statements, as field number and value.
     labels: BTreeSet<(usize, usize)>,
-    /// The comment of the previous assignment, so that it is not repeated.
+    /// The previous assignment's comment is not repeated.
     last_note: String,
 }
 
 impl<'a> Builder<'a> {
-    /// Makes the writer of the module `partition`, control unit or datapath, with the ports of `interface`.
     pub fn new(
         plan: &'a Plan<'a>,
         naming: &'a Naming,
@@ -48,9 +47,9 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Returns the complete Verilog text of the module, with its header comment.
+    /// Returns the complete text of the module, with its header comment.
     pub fn module(mut self, origin: &Origin) -> String {
-        // The statements come first, because they determine which constants and choices are declared.
+        // The statements determine which constants and choices are declared, and so come first.
         let items = self.items(&|_| true);
         let groups = self.groups(&|_| true);
         let initial = if self.naming.style.initial { self.initial() } else { Vec::new() };
@@ -94,7 +93,7 @@ impl<'a> Builder<'a> {
         Row::ports(&rows)
     }
 
-    /// Returns `reg` if a procedural block assigns the net, and otherwise `wire`.
+    /// A net that a procedural block assigns is a `reg`.
     fn kind(&self, net: NetId) -> &'static str {
         match &self.plan.design.net(net).driver {
             Driver::Register(register) if self.plan.delayed(*register).is_some() => "wire",
@@ -105,8 +104,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Returns the outputs of the module's registers that the Verilog declares. Registers inside multipliers, and registers of
-    /// delay lines except the last register, are not declared.
+    /// Returns the outputs of the registers that the Verilog declares: not inside multipliers, and of delay lines only the last.
     fn registers(&self) -> impl Iterator<Item = NetId> {
         let design = self.plan.design;
         let written = (0..).map(RegId).zip(&design.registers).filter(|(id, register)| {
@@ -117,8 +115,7 @@ impl<'a> Builder<'a> {
         written.map(|(_, register)| register.q)
     }
 
-    /// Returns the Verilog declarations of registers and of synchronous ROMs' output words. The function declares the nets for
-    /// which `wanted` returns true and that are no output ports.
+    /// Declares the registers and the words of synchronous ROMs that are `wanted` and no output ports.
     pub(super) fn state(&self, wanted: &dyn Fn(NetId) -> bool) -> Vec<Row> {
         let mut nets: Vec<NetId> = self.registers().collect();
         for rom in &self.plan.design.roms {
@@ -135,8 +132,8 @@ impl<'a> Builder<'a> {
         rows
     }
 
-    /// Returns the statements of an initial block that set registers to 0. The statements leave out the words of synchronous
-    /// ROMs, which are known after the first clock; on some targets block memories have no initial values.
+    /// Sets registers to 0 in an initial block. The words of synchronous ROMs are known after the first clock, and on some
+    /// targets block memories have no initial values.
     fn initial(&self) -> Vec<String> {
         let design = self.plan.design;
         let mut lines = Vec::new();
@@ -161,8 +158,7 @@ impl<'a> Builder<'a> {
         lines
     }
 
-    /// Returns a list with the Verilog lines of each declared cell, each memory and each registered multiplier of the module. The
-    /// function leaves out every cell, memory and multiplier whose output net `wanted` rejects.
+    /// Returns the lines of each `wanted` declared cell, memory and registered multiplier of the module.
     pub(super) fn items(&mut self, wanted: &dyn Fn(NetId) -> bool) -> Vec<Vec<String>> {
         let design = self.plan.design;
         let mut items = Vec::new();
@@ -231,7 +227,7 @@ impl<'a> Builder<'a> {
         words.join(" ")
     }
 
-    /// Returns the case statement for a mux of more than two inputs, with the declaration of its net.
+    /// Writes a mux of more than two inputs as a case statement, with the declaration of its net.
     fn case(&mut self, id: NetId, select: NetId, inputs: &[NetId]) -> Vec<String> {
         let design = self.plan.design;
         let name = &design.net(id).name;
@@ -254,8 +250,8 @@ impl<'a> Builder<'a> {
         lines
     }
 
-    /// Returns the labels of a case statement for the select values from 0 up to `count` − 1. The labels are localparams if the
-    /// select is a field of the control word, and otherwise numbers. A value beyond the choices of the field is a number too.
+    /// Returns the labels for the select values below `count`: localparams for the choices of a field of the control word, and
+    /// otherwise numbers.
     fn case_labels(&mut self, select: NetId, count: usize) -> Vec<String> {
         let design = self.plan.design;
         let width = design.width(select);
@@ -276,8 +272,7 @@ impl<'a> Builder<'a> {
         labels
     }
 
-    /// Returns the lines of a ROM: its memory and its read port. The memory is left out if the ROM is the second read port of
-    /// another ROM's memory.
+    /// Returns the memory and the read port of a ROM. A second read port of another ROM's memory has no memory of its own.
     fn rom(&mut self, id: RomId) -> Vec<String> {
         let rom = self.plan.design.rom(id);
         let case = self.naming.style.case;
@@ -305,9 +300,8 @@ impl<'a> Builder<'a> {
         lines
     }
 
-    /// Returns the lines that declare a memory and fill it: with its words in an `initial` block if `style.inline` is true, and
-    /// otherwise from a memory file by `$readmemh` or `$readmemb`. If `style.case` is true, returns a function with a case
-    /// statement instead.
+    /// Declares a memory and fills it: with its words in an `initial` block if `style.inline`, and otherwise from a memory file.
+    /// With `style.case`, returns a function with a case statement instead.
     fn memory(&mut self, id: RomId) -> Vec<String> {
         let design = self.plan.design;
         let rom = design.rom(id);
@@ -376,11 +370,10 @@ impl<'a> Builder<'a> {
         lines
     }
 
-    /// Returns the lines of each `always` block of the module, for the registers for whose output net `wanted` returns true.
-    /// Registers inside multipliers and delay lines are left out. Registers with the same enable share a block if all of them
-    /// have a reset or none has one; their reset values may differ.
+    /// Returns the lines of each `always` block, for the `wanted` registers. Those with the same enable share a block if all of
+    /// them have a reset or none has one; their reset values may differ.
     pub(super) fn groups(&mut self, wanted: &dyn Fn(NetId) -> bool) -> Vec<Vec<String>> {
-        /// The enable of the registers, and whether the reset sets them.
+        /// The enable, and whether the reset sets the registers.
         type ResetGroup = (Option<NetId>, bool);
         let design = self.plan.design;
         let mut groups: Vec<(ResetGroup, Vec<RegId>)> = Vec::new();
@@ -399,8 +392,7 @@ impl<'a> Builder<'a> {
         blocks
     }
 
-    /// Returns the registers of the module that always blocks assign, and for whose output net `wanted` returns true. Registers
-    /// inside multipliers and delay lines are not among them.
+    /// Returns the `wanted` registers that always blocks assign: not inside multipliers and delay lines.
     fn written(&self, wanted: &dyn Fn(NetId) -> bool) -> Vec<RegId> {
         let design = self.plan.design;
         let mut written = Vec::new();
@@ -416,7 +408,7 @@ impl<'a> Builder<'a> {
         written
     }
 
-    /// Returns the assignments by which the registers `members` load their data, such as `y <= sum;`.
+    /// Returns the loads of the registers `members`, such as `y <= sum;`.
     fn takes(&mut self, members: &[RegId], indent: usize) -> Vec<String> {
         let mut takes = Vec::new();
         for &member in members {
@@ -428,8 +420,7 @@ impl<'a> Builder<'a> {
         takes
     }
 
-    /// Returns the `always` blocks for the registers of a pipeline for whose output net `wanted` returns true. Registers with the
-    /// same enable share one block.
+    /// Returns the `always` blocks for the `wanted` registers of a pipeline, one block for each enable.
     pub(super) fn stage(&mut self, wanted: &dyn Fn(NetId) -> bool) -> Vec<String> {
         let mut groups: BTreeMap<Option<NetId>, Vec<RegId>> = BTreeMap::new();
         for id in self.written(wanted) {
@@ -489,8 +480,7 @@ impl<'a> Builder<'a> {
         lines
     }
 
-    /// Returns the Verilog lines of a net that reads all bits which no other logic in the module reads, so that linters do not
-    /// complain. Returns no lines if there are no such bits.
+    /// Declares a net that reads all otherwise unread bits, so that linters do not complain.
     pub(super) fn unused(&self) -> Vec<String> {
         let ranges = unread(self.plan, self.partition, self.interface);
         if ranges.is_empty() {
@@ -510,8 +500,8 @@ impl<'a> Builder<'a> {
     }
 }
 
-/// Returns an assignment for each word of a ROM, such as `rom[3] = 8'h1f;`. `place` returns the left side of the assignment, from
-/// the number of the word and the width of this number in bits.
+/// Returns an assignment for each word of a ROM, such as `rom[3] = 8'h1f;`. `place` returns its left side, from the number of the
+/// word and the width of this number in bits.
 fn words(
     design: &Design,
     id: RomId,
@@ -534,8 +524,7 @@ fn words(
     lines
 }
 
-/// Returns the declarations of the Verilog parameters with the names of the ROMs' memory files, separated by commas. The list is
-/// empty if the Verilog itself contains the words.
+/// Returns the parameters with the names of the ROMs' memory files, separated by commas. Words in the Verilog itself need none.
 pub fn parameters(naming: &Naming, roms: &[RomId]) -> Vec<String> {
     let mut texts = Vec::new();
     for rom in roms {

@@ -1,56 +1,52 @@
-//! Chooses the names and comments that the Verilog has in addition to the names of nets: for instances, memories, files and
-//! parameters.
+//! Chooses the names that the Verilog has in addition to the names of nets.
 
 use super::text::{Names, constant_name};
 use crate::netlist::{
     Control, Design, Driver, FieldKind, Net, NetId, NetlistRom, Op, Partition, RomId,
 };
 
-/// The names that the Verilog of a design has in addition to the names of nets: modules, instances, memories, files and
-/// parameters.
+/// The names that the Verilog has in addition to the names of nets.
 pub struct Naming {
-    /// The name of the control unit's instance in the top module.
+    /// The control unit's instance in the top module.
     pub control_instance: String,
-    /// The name of the datapath's instance in the top module.
+    /// The datapath's instance in the top module.
     pub datapath_instance: String,
-    /// For each ROM, the name of its memory in the Verilog. For example, `control_rom`.
+    /// For each ROM, its memory, such as `control_rom`.
     pub memories: Vec<String>,
-    /// For each ROM, the name of the Verilog parameter with the name of its memory file. For example, `SINE_FILE`.
+    /// For each ROM, the parameter with the name of its memory file, such as `SINE_FILE`.
     pub parameters: Vec<String>,
-    /// For each ROM, the name of the memory file with its words. For example, `rough_sine.mem`.
+    /// For each ROM, its memory file, such as `rough_sine.mem`.
     pub files: Vec<String>,
-    /// The style in which the Verilog writes memories and registers.
     pub style: Style,
-    /// The ROMs that are the second read port of another ROM's memory.
+    /// The second read ports of other ROMs' memories.
     pub second: Vec<RomId>,
-    /// For each field of the control word, the names of the localparams for its values, from 0 on. The list is empty for a field
-    /// that is no select. For example, `OPERAND_SELECT_COSINES` is 0.
+    /// For each select field of the control word, the localparams of its values from 0 on: `OPERAND_SELECT_COSINES` is 0. Other
+    /// fields have none.
     pub choices: Vec<Vec<String>>,
-    /// The name of the net that reads all unread bits. Linters accept an unread net if its name contains `unused`.
+    /// The net that reads all unread bits. Linters accept an unread net if its name contains `unused`.
     pub unused: String,
-    /// The name of the shift register that has a bit for each stage of a pipeline, which is 1 if the stage has a point.
+    /// The shift register with a bit for each stage of a pipeline, which is 1 if the stage has a point.
     pub valid: String,
-    /// The identifiers that the Verilog of the design already uses: names of nets, and the names in this structure.
+    /// All names of nets, and the names in this structure.
     pub names: Names,
     design: String,
 }
 
-/// The style in which the Verilog writes memories and registers.
+/// How the Verilog writes memories and registers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Style {
-    /// Whether the Verilog itself contains the words of ROMs. If it is false, memory files contain them.
+    /// Whether the Verilog itself contains the words of ROMs, instead of memory files.
     pub inline: bool,
-    /// Whether the Verilog writes the words of a ROM as a case statement in a function.
+    /// Whether a ROM is a case statement in a function.
     pub case: bool,
-    /// The Verilog attribute before the memories of synchronous ROMs, without `(*` and `*)`. `None` omits it.
+    /// The attribute before the memories of synchronous ROMs, without `(*` and `*)`.
     pub rom_style: Option<&'static str>,
     /// Whether an initial block sets registers to 0.
     pub initial: bool,
 }
 
 impl Naming {
-    /// Chooses names for everything that the Verilog of a design has in addition to its nets. None of them is the name of a net.
-    /// The style is the default one.
+    /// Chooses names that no net has, with the default style.
     pub fn new(design: &Design) -> Self {
         let mut names = Names::new(design.nets.iter().map(|net| net.name.as_str()));
         names.fresh("clk");
@@ -88,13 +84,11 @@ impl Naming {
         }
     }
 
-    /// Returns the same names with the style `style` of memories and registers.
     pub fn styled(self, style: Style) -> Self {
         Self { style, ..self }
     }
 
-    /// Returns the name of the control unit's or the datapath's module. For example, `rough` has `rough_control` and
-    /// `rough_datapath`.
+    /// Returns the name of a module, such as `rough_control` or `rough_datapath`.
     pub fn module(&self, partition: Partition) -> String {
         match partition {
             Partition::Control => format!("{}_control", self.design),
@@ -102,17 +96,17 @@ impl Naming {
         }
     }
 
-    /// Returns the name of the module of a multiplier with an output register. For example, `blinn_pipelined_multiplier`.
+    /// Returns the module of a multiplier with an output register, such as `blinn_pipelined_multiplier`.
     pub fn multiplier(&self) -> String {
         format!("{}_multiplier", self.design)
     }
 
-    /// Returns the name of the module of delay lines. For example, `rough_pipelined_delay`.
+    /// Returns the module of delay lines, such as `rough_pipelined_delay`.
     pub fn delay(&self) -> String {
         format!("{}_delay", self.design)
     }
 
-    /// Returns the name of the control unit's or the datapath's instance in the top module.
+    /// Returns the name of a module's instance in the top module.
     pub fn instance(&self, partition: Partition) -> &str {
         match partition {
             Partition::Control => &self.control_instance,
@@ -136,14 +130,13 @@ fn choices(control: &Control, names: &mut Names) -> Vec<Vec<String>> {
     all
 }
 
-/// Returns whether a ROM is the control ROM.
 pub fn is_control_rom(design: &Design, rom: RomId) -> bool {
     design.control.rom == rom
 }
 
-/// Returns the Verilog comment behind the declaration of a net: its block number, format and description, as far as the net has
-/// them. For example, `mux 8, s1.20: first operand`. A field of the control word has its lines in place of a block number, such
-/// as `line 4`. The text is empty for a net that has none of them; the format of an unsigned integer is omitted.
+/// Returns the comment behind the declaration of a net, such as `mux 8, s1.20: first operand`. It has the net's block number,
+/// format and description, as far as they exist. A field of the control word has its lines in place of a block number, such as
+/// `line 4`.
 pub fn remark(design: &Design, id: NetId) -> String {
     let net = design.net(id);
     // The declared width already states the format of an unsigned integer.
@@ -175,8 +168,7 @@ pub fn remark(design: &Design, id: NetId) -> String {
     }
 }
 
-/// Returns the name of a ROM for comments: `ROM 18` if the block diagram of the device's source numbers it, otherwise `ROM sine`
-/// with its name.
+/// Returns the name of a ROM for comments: `ROM 18` with its number in the source's block diagram, or `ROM sine` with its name.
 pub fn rom_label(rom: &NetlistRom) -> String {
     match rom.block {
         Some(number) => format!("ROM {number}"),
@@ -193,8 +185,7 @@ fn field_label(control: &Control, field: usize) -> String {
     }
 }
 
-/// Returns the word for the kind of block that drives a net, such as `adder`, as the block diagram of the device's source uses
-/// it.
+/// Returns the kind of block that drives a net, such as `adder`, as a source's block diagram calls it.
 fn kind(design: &Design, net: &Net) -> &'static str {
     match &net.driver {
         Driver::Register(_) => "register",

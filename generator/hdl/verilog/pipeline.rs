@@ -11,14 +11,13 @@ use super::text::{ascii, comment, literal, range};
 use super::writer;
 use crate::netlist::{Design, Driver, NetId, Partition, Pipeline, Role, Unit};
 
-/// The Verilog text of the module of delay lines, in which the module has the name `delay`.
+/// The module of delay lines, under the name `delay`.
 const DELAY: &str = include_str!("delay.v");
 
-/// The comment on the module of delay lines.
 const DELAY_COMMENT: &str = "Delays a value by WORDS + 1 enabled clocks. The memory is a circular buffer: each enabled clock \
                              reads the oldest word, replaces it by the new value, and advances slot to the next word.";
 
-/// Returns the text of the Verilog file with the module of the delay lines of a pipeline, whose module is `pipeline`.
+/// Returns the file with the module of the delay lines; `pipeline` is the pipeline's module.
 pub fn delay_module(pipeline: &str, naming: &Naming, origin: &Origin) -> String {
     let name = naming.delay();
     let mut lines = comment(0, &format!("{name}: delay line of {pipeline}"));
@@ -33,15 +32,13 @@ pub fn delay_module(pipeline: &str, naming: &Naming, origin: &Origin) -> String 
     )
 }
 
-/// Returns the text of the Verilog file for a pipeline's module.
 pub fn module(plan: &Plan, naming: &Naming, pipeline: &Pipeline, origin: &Origin) -> String {
     let design = plan.design;
     let interface = Interface::new(plan, Partition::Datapath);
     let mut builder = Builder::new(plan, naming, &interface, Partition::Datapath);
     let is_word = |net: NetId| matches!(design.net(net).driver, Driver::Rom(_));
     let mut stages = handshake(plan, naming, pipeline);
-    // The register behind a shared multiplier is declared before the stages, because stages read it before its section is
-    // written.
+    // Stages read the register behind a shared multiplier before its section is written, so it is declared first.
     let behind = |net: NetId| pipeline.units.iter().any(|unit| unit.nets.last() == Some(&net));
     stages.extend(Row::declarations(&builder.state(&behind)));
     for (number, stage) in pipeline.stages.iter().enumerate() {
@@ -51,7 +48,7 @@ pub fn module(plan: &Plan, naming: &Naming, pipeline: &Pipeline, origin: &Origin
         let registers = Row::together(builder.state(&|net| here(net) && !is_word(net)));
         lines.extend(Row::declarations(&registers));
         lines.extend(builder.stage(&here));
-        // A stage may have no section, for example if only shared multipliers work in it, or if all its values are in memories.
+        // For example, only shared multipliers work in the stage, or all its values are in memories.
         if !lines.is_empty() {
             stages.push(String::new());
             stages.extend(title(number, &stage.microinstructions));
@@ -77,8 +74,8 @@ pub fn module(plan: &Plan, naming: &Naming, pipeline: &Pipeline, origin: &Origin
     writer::module(header, &design.name, &parameters, builder.ports(), body)
 }
 
-/// Returns whether the section of stage number `stage` contains a net. A register or a synchronous ROM belongs to the stage that
-/// computes its value. Nets of the handshake and of shared multipliers are in no stage's section.
+/// Returns whether the section of a stage contains a net. A register or a synchronous ROM belongs to the stage that computes its
+/// value. Nets of the handshake and of shared multipliers are in no stage's section.
 fn is_written_in(design: &Design, pipeline: &Pipeline, net: NetId, stage: usize) -> bool {
     if pipeline.handshake.contains(&net) || pipeline.is_shared(net) {
         return false;
@@ -105,7 +102,6 @@ fn reservations(unit: &Unit) -> Vec<String> {
     comment(4, &ascii(&text))
 }
 
-/// Returns the name of the port with a role, or an empty text if the design has no such port.
 fn port_name(design: &Design, role: Role) -> &str {
     match design.port(|it| it == role) {
         Some(port) => &design.net(port.net).name,
@@ -113,7 +109,7 @@ fn port_name(design: &Design, role: Role) -> &str {
     }
 }
 
-/// Returns the Verilog lines of the handshake. A shift register takes the place of the netlist's single valid bits.
+/// A shift register takes the place of the netlist's single valid bits.
 fn handshake(plan: &Plan, naming: &Naming, pipeline: &Pipeline) -> Vec<String> {
     let design = plan.design;
     let in_valid = port_name(design, Role::InValid);
@@ -214,8 +210,7 @@ fn enable(design: &Design, pipeline: &Pipeline) -> Option<NetId> {
     design.registers.iter().find(|it| pipeline.valid.contains(&it.q))?.enable
 }
 
-/// Returns the comment above a stage, such as `Stage 3, from the microinstructions: accumulator <- base^2`. A stage without
-/// microinstructions only passes values on.
+/// Returns the comment above a stage, such as `Stage 3, from the microinstructions: accumulator <- base^2`.
 fn title(number: usize, microinstructions: &[String]) -> Vec<String> {
     let what = match microinstructions {
         [] => ": only delays values".to_owned(),

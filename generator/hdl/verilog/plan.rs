@@ -1,10 +1,9 @@
-//! Decides how each net appears in the Verilog: declared under its name, written into the expression that uses it, as wiring,
-//! or not at all.
+//! Decides how each net appears in the Verilog.
 //!
-//! Wiring (slices, extensions, concatenations) that the description's author did not name is written as [`Bits`] wherever it is
-//! used, and so is a constant that is no port. Any other cell without such a name is written into the expression that uses it,
-//! if it is used once, as a whole and in the same module, and if the expression stays short. In a pipeline, some named wiring
-//! and cells are treated in the same way. Cells without a name that no written part reads are left out, and so are products and
+//! Wiring (slices, extensions, concatenations) without a name from the description's author is written as [`Bits`] wherever it is
+//! used. So is a constant that is no port. Any other cell without such a name is written into the expression that uses it. It
+//! must be used once, as a whole and in the same module, and the expression must stay short. In a pipeline, some named wiring and
+//! cells are treated in the same way. Cells without a name that no written part reads are left out, and so are products and
 //! registers inside multipliers and delay lines. All other nets are declared.
 
 use std::collections::{BTreeMap, HashSet};
@@ -17,62 +16,52 @@ use crate::netlist::{DelayLine, Design, Driver, NetId, Op, Partition, RegId, Rol
 use glint_base::diagnostic::Diagnostics;
 use glint_base::fixed::mask;
 
-/// The way in which a net of the design appears in the Verilog.
+/// How a net appears in the Verilog.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NetForm {
-    /// The net is wiring: its [`Bits`] are written wherever it is used.
+    /// Its [`Bits`] are written wherever it is used.
     Wiring,
-    /// The net is declared as a `wire`, `reg` or port.
+    /// As a `wire`, `reg` or port.
     Declared,
-    /// The net's expression is written within the one expression that uses the net.
+    /// Within the one expression that uses the net.
     Inline,
-    /// The net is not written at all, because it is the product inside a multiplier with an output register.
+    /// Not at all: the product inside a multiplier with an output register.
     Inside,
 }
 
-/// A part of the Verilog that reads nets: the right-hand side of a net, a register, or a ROM.
+/// A part of the Verilog that reads nets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Reader {
-    /// The cell or the field of the control word that drives this net; its right-hand side reads other nets.
+    /// The right-hand side of this net, a cell or a field of the control word.
     Cell(NetId),
-    /// A register, which reads its data and its enable.
+    /// Reads its data and its enable.
     Register(RegId),
-    /// A ROM, which reads its address.
+    /// Reads its address.
     Rom(RomId),
 }
 
-/// The decisions on how each net of a design appears in the Verilog: declared under a name, within another expression, or as
-/// wiring.
+/// How each net of a design appears in the Verilog.
 pub struct Plan<'a> {
-    /// The design that is written as Verilog.
     pub design: &'a Design,
-    /// For each net of the design, how it appears in the Verilog.
     pub forms: Vec<NetForm>,
-    /// For each net of the design, the bits that the Verilog writes where the net is used. For example, `a[5:2]` for a slice of
-    /// `a` without a name.
+    /// For each net, the bits that the Verilog writes where it is used, such as `a[5:2]` for an unnamed slice of `a`.
     pub bits: Vec<Bits>,
-    /// For each net of the design, the origin of its bits: cells, registers, ROMs, inputs and constants. Bits are traced through
-    /// declared wiring too.
+    /// For each net, the origin of its bits, traced through declared wiring too: cells, registers, ROMs, inputs and constants.
     pub roots: Vec<Bits>,
-    /// The nets of the design whose cells the Verilog writes, operands before their readers.
+    /// The nets whose cells the Verilog writes, operands before their readers.
     pub live: Vec<NetId>,
-    /// For each net and each Verilog module (control unit or datapath), a mask of the bits of the net that the module reads.
+    /// For each net and each module, a mask of the bits that the module reads.
     pub reads: BTreeMap<(Partition, NetId), u64>,
-    /// The net of the reset input; `None` if no register has a reset.
+    /// The reset input, if a register has a reset.
     pub reset: Option<NetId>,
-    /// The delay lines of a pipeline that the Verilog writes as memories.
     pub delays: Vec<DelayLine>,
-    /// The nets that repeat the value of an earlier net: the names of both nets differ only in the stage. Only the first
-    /// declaration of a value gets the comment.
+    /// The nets that repeat the value of an earlier net, with names that differ only in the stage. Only the first declaration of
+    /// a value gets the comment.
     repeats: HashSet<NetId>,
 }
 
 impl<'a> Plan<'a> {
-    /// Decides for each net whether the Verilog declares it, writes its expression where it is used, writes it as wiring, or
-    /// omits it.
-    ///
-    /// # Errors
-    /// Fails if [`Design::verify_structure`] finds mistakes; the error lists them.
+    /// Decides for each net. Fails with the mistakes of [`Design::verify_structure`].
     pub fn new(design: &'a Design) -> Result<Self> {
         let mistakes = design.verify_structure();
         ensure!(mistakes.is_empty(), Diagnostics(mistakes));
@@ -101,8 +90,7 @@ impl<'a> Plan<'a> {
         Ok(plan)
     }
 
-    /// Returns the Verilog module, control unit or datapath, that declares a net. Fields of the control word belong to the
-    /// control unit, whatever they control.
+    /// Returns the module that declares a net. Fields of the control word belong to the control unit, whatever they control.
     pub fn partition(&self, net: NetId) -> Partition {
         match self.design.net(net).driver {
             Driver::Field(_) => Partition::Control,
@@ -110,25 +98,22 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Returns whether a net is a port of the design.
     pub fn is_port(&self, net: NetId) -> bool {
         self.design.ports.iter().any(|port| port.net == net)
     }
 
-    /// Returns whether a net is an input port of the design.
     pub fn is_input(&self, net: NetId) -> bool {
         self.design.net(net).driver == Driver::Input
     }
 
-    /// Returns `None` if a register belongs to no delay line that the Verilog writes as a memory. Otherwise returns whether it is
-    /// the last register of its line, from which the value is read.
+    /// Returns whether a register is the last of a delay line in memory, from which the value is read; `None` outside such lines.
     pub fn delayed(&self, register: RegId) -> Option<bool> {
         let mut values = self.delays.iter().flat_map(|line| &line.values);
         let value = values.find(|it| it.registers.contains(&register))?;
         Some(value.last() == register)
     }
 
-    /// Returns the Verilog module, control unit or datapath, that contains a reader of nets, such as a register.
+    /// Returns the module that contains a reader.
     pub fn home(&self, reader: Reader) -> Partition {
         match reader {
             Reader::Cell(net) => self.partition(net),
@@ -137,8 +122,7 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Returns the nets that a reader, such as a cell or a register, reads in the Verilog. The read enable of a ROM, which only a
-    /// pipeline has, is left out.
+    /// Returns the nets that a reader reads, without the read enable of a ROM, which only a pipeline has.
     pub fn operands(&self, reader: Reader) -> Vec<NetId> {
         match reader {
             Reader::Cell(net) => match &self.design.net(net).driver {
@@ -162,8 +146,8 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Returns the bits of the net `operand` that a reader uses in the Verilog. A reader uses all bits, unless the reader is a
-    /// slice, a field of the control word or the address of a ROM.
+    /// Returns the bits of `operand` that a reader uses: all, except for a slice, a field of the control word or the address of a
+    /// ROM.
     pub fn operand_bits(&self, reader: Reader, operand: NetId) -> Bits {
         let bits = &self.bits[operand.index()];
         match reader {
@@ -183,8 +167,8 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Returns the value of the comparison `a < b` (1 or 0) if constants or the range of the format decide it. For example,
-    /// `a < 0` is 0 for an unsigned `a`. Linters reject such comparisons. Returns `None` for any other comparison.
+    /// Returns the value of the comparison `a < b` (1 or 0) if constants or the range of the format decide it. Linters reject
+    /// such comparisons. For example, `a < 0` is 0 for an unsigned `a`.
     pub fn constant_comparison(&self, a: NetId, b: NetId) -> Option<u64> {
         let format = self.design.net(a).format;
         let constants = [a, b].map(|id| match self.roots[id.index()].single() {
@@ -199,7 +183,6 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Returns everything in the Verilog that reads nets: cells, fields of the control word, registers and ROMs.
     pub fn readers(&self) -> Vec<Reader> {
         let mut readers = Vec::new();
         for &net in &self.live {
@@ -216,8 +199,7 @@ impl<'a> Plan<'a> {
         readers
     }
 
-    /// Returns the bits that form a net if it is wiring: bits of its operands, or of a constant. `known` has the bits of each
-    /// net. Returns `None` if the net needs logic.
+    /// Returns the bits that form a net if it is wiring. `known` has the bits of each net.
     fn wired(&self, id: NetId, known: &[Bits]) -> Option<Bits> {
         let width = self.design.width(id);
         let of = |operand: &NetId| &known[operand.index()];
@@ -239,7 +221,7 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Returns the bits of other nets and constants that form a net. Returns `None` if the net is no wiring.
+    /// Returns the bits that form a net if it is wiring.
     pub fn wiring(&self, id: NetId) -> Option<Bits> {
         self.wired(id, &self.bits)
     }
@@ -267,8 +249,7 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Finds the cells that the Verilog writes. The function leaves out cells without a name from the description that no written
-    /// cell, register or ROM reads.
+    /// Finds the cells that the Verilog writes. Unnamed cells that no written cell, register or ROM reads are left out.
     fn find_live(&mut self, order: &[NetId]) {
         let mut live = vec![false; self.design.nets.len()];
         // The search starts from registers and ROMs, since no cell is known to be written yet.
@@ -299,7 +280,7 @@ impl<'a> Plan<'a> {
         self.live = order.iter().copied().filter(|net| live[net.index()]).collect();
     }
 
-    /// Finds the cells that are written inside the one expression that uses them, because this expression stays short.
+    /// Finds the cells that are written inside the one expression that uses them, because it stays short.
     fn place_expressions(&mut self) {
         let mut uses: BTreeMap<NetId, Vec<(Reader, bool)>> = BTreeMap::new();
         for reader in self.readers() {
@@ -315,7 +296,7 @@ impl<'a> Plan<'a> {
                 }
             }
         }
-        // The size of an expression: the number of declared nets and constants in it.
+        // The number of declared nets and constants in an expression.
         let mut size = vec![1usize; self.design.nets.len()];
         for &id in &self.live {
             let net = self.design.net(id);
@@ -346,7 +327,7 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Returns whether a net of a pipeline is wiring of at most three pieces that is not declared. The net must have no comment,
+    /// Returns whether a pipeline's net is wiring of at most three pieces that need not be declared. It must have no comment,
     /// unless the register behind it carries the same value and shows the comment.
     fn is_plain(&self, id: NetId, bits: &Bits) -> bool {
         const MOST_PIECES: usize = 3;
@@ -374,8 +355,7 @@ impl<'a> Plan<'a> {
             && self.design.multiplier(register).is_none()
     }
 
-    /// Finds the nets that repeat the value of an earlier net, such as the registers that carry a value from stage to stage.
-    /// Both nets have the same name without the stage.
+    /// Finds the nets with the same name as an earlier net but for the stage.
     fn find_repeats(&mut self) {
         let Some(pipeline) = &self.design.pipeline else { return };
         let mut passed: HashSet<NetId> = HashSet::new();
@@ -405,8 +385,7 @@ impl<'a> Plan<'a> {
         self.repeats = repeats;
     }
 
-    /// Returns the comment that the Verilog shows at the declaration of a net. The comment is empty if the net only repeats a
-    /// value of an earlier pipeline stage.
+    /// Returns the comment at the declaration of a net; none if the net only repeats a value of an earlier stage.
     pub fn remark(&self, id: NetId) -> String {
         if self.repeats.contains(&id) { String::new() } else { remark(self.design, id) }
     }
@@ -484,8 +463,7 @@ impl<'a> Plan<'a> {
     }
 }
 
-/// Returns the number of address bits for `depth` words, at least 1. For example, one word has 1 address bit, and 584 words have
-/// 10.
+/// Returns the number of address bits for `depth` words, at least 1: 584 words have 10.
 pub fn address_width(depth: usize) -> u32 {
     depth.max(2).next_power_of_two().trailing_zeros()
 }

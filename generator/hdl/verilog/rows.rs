@@ -4,7 +4,7 @@ use super::plan::Plan;
 use super::text::{COLUMNS, annotated, range};
 use crate::netlist::{Design, NetId};
 
-/// Returns the texts with a comma after each text except the last. For example, `a` and `b` become `a,` and `b`.
+/// Appends a comma to each text except the last.
 pub fn separated(mut texts: Vec<String>) -> Vec<String> {
     let last = texts.len().saturating_sub(1);
     for text in texts.iter_mut().take(last) {
@@ -13,15 +13,14 @@ pub fn separated(mut texts: Vec<String>) -> Vec<String> {
     texts
 }
 
-/// Returns the port connections of an instance of a design to nets with the same names, the clock first, separated by commas. For
-/// example, `.clk(clk),`.
+/// Returns the connections of an instance to nets with the same names, such as `.clk(clk),`, the clock first.
 pub fn connections(design: &Design) -> Vec<String> {
     let ports = design.ports.iter().map(|port| design.net(port.net).name.as_str());
     separated(std::iter::once("clk").chain(ports).map(|name| format!(".{name}({name})")).collect())
 }
 
-/// Returns a declaration for each port of a design except the clock: a variable (`reg`) for each input, a `wire` for each output.
-/// If `with_signs` is true, a declaration is signed if its port is; otherwise none is signed.
+/// Declares each port except the clock: a `reg` for each input, a `wire` for each output. Only `with_signs` declares signed ports
+/// as signed.
 pub fn variables(design: &Design, with_signs: bool) -> Vec<String> {
     let mut rows = Vec::new();
     for port in &design.ports {
@@ -33,8 +32,8 @@ pub fn variables(design: &Design, with_signs: bool) -> Vec<String> {
     Row::declarations(&rows)
 }
 
-/// The Verilog declaration of one net or port, or of several nets whose declarations differ only in their names. Its parts are
-/// aligned in columns with the declarations around it.
+/// The declaration of one net or port, or of several nets whose declarations differ only in their names. Its parts are aligned in
+/// columns with the declarations around it.
 pub struct Row {
     head: String,
     range: String,
@@ -43,8 +42,8 @@ pub struct Row {
 }
 
 impl Row {
-    /// Makes the Verilog declaration of a net, with the comment from the plan. `direction` is `input` or `output` for a port,
-    /// otherwise empty; `kind` is `wire` or `reg`.
+    /// Declares a net, with the comment from the plan. `direction` is `input` or `output` for a port, otherwise empty; `kind` is
+    /// `wire` or `reg`.
     pub fn net(plan: &Plan, direction: &str, kind: &str, id: NetId) -> Self {
         let net = plan.design.net(id);
         let format = net.format;
@@ -52,8 +51,7 @@ impl Row {
         Self::port(direction, kind, format.width(), format.signed, &net.name, &note)
     }
 
-    /// Makes a Verilog declaration from its parts: direction, kind (`wire` or `reg`), width in bits, sign, name, and the comment
-    /// behind it.
+    /// Makes a declaration from its parts; `note` is the comment behind it.
     pub fn port(
         direction: &str,
         kind: &str,
@@ -75,15 +73,14 @@ impl Row {
         }
     }
 
-    /// Returns the declaration without the comment behind it.
     #[must_use]
     pub fn without_note(mut self) -> Self {
         self.note.clear();
         self
     }
 
-    /// Merges Verilog declarations without a comment that differ only in their names into one, such as `wire [7:0] a, b;`. A
-    /// merged declaration keeps to one line. Declarations with a comment come first.
+    /// Merges declarations without a comment that differ only in their names into one line, such as `wire [7:0] a, b;`.
+    /// Declarations with a comment come first.
     pub fn together(rows: Vec<Self>) -> Vec<Self> {
         let (mut all, plain): (Vec<_>, Vec<_>) =
             rows.into_iter().partition(|row| !row.note.is_empty());
@@ -105,12 +102,12 @@ impl Row {
         all
     }
 
-    /// Returns the Verilog lines of a port list from these declarations, aligned in columns, with commas between the ports.
+    /// Returns a port list, aligned in columns, with commas.
     pub fn ports(rows: &[Self]) -> Vec<String> {
         Self::set(rows, |at| if at + 1 < rows.len() { "," } else { "" })
     }
 
-    /// Returns the Verilog lines of these declarations, aligned in columns, with a semicolon behind each declaration.
+    /// Returns declarations, aligned in columns, with semicolons.
     pub fn declarations(rows: &[Self]) -> Vec<String> {
         Self::set(rows, |_| ";")
     }

@@ -7,8 +7,7 @@ use crate::netlist::Design;
 /// The largest number of columns in a line of Verilog.
 pub const COLUMNS: usize = 100;
 
-/// Returns `text` in ASCII. Mathematical signs are spelled out, and unknown characters become `?`. For example, `cos²γ ≤ ½`
-/// becomes `cos^2gamma <= 1/2`.
+/// Returns `text` in ASCII: `cos²γ ≤ ½` becomes `cos^2gamma <= 1/2`, and unknown characters become `?`.
 pub fn ascii(text: &str) -> String {
     let mut plain = String::with_capacity(text.len());
     for sign in text.chars() {
@@ -70,8 +69,7 @@ pub fn ascii(text: &str) -> String {
     plain
 }
 
-/// Returns `text` as an upper-case identifier; each run of other characters becomes one underscore. For example, `cos γ` becomes
-/// `COS_GAMMA`.
+/// Returns `text` as an upper-case identifier; each run of other characters becomes one underscore: `cos γ` becomes `COS_GAMMA`.
 pub fn constant_name(text: &str) -> String {
     let mut name = String::new();
     for sign in ascii(text).chars() {
@@ -84,8 +82,8 @@ pub fn constant_name(text: &str) -> String {
     name.trim_end_matches('_').to_owned()
 }
 
-/// Returns a Verilog literal with its width: binary for one bit, decimal below 1024, and otherwise hexadecimal. For example, 9 in
-/// 4 bits is `4'd9`, and 1048576 in 21 bits is `21'h100000`.
+/// Returns a literal with its width: binary for one bit, decimal below 1024, and otherwise hexadecimal. 9 in 4 bits is `4'd9`,
+/// and 1048576 in 21 bits is `21'h100000`.
 pub fn literal(value: u64, width: u32) -> String {
     match (width, value) {
         (1, _) => format!("1'b{value}"),
@@ -94,8 +92,7 @@ pub fn literal(value: u64, width: u32) -> String {
     }
 }
 
-/// Returns the only one of the Verilog texts, or the concatenation of several, the first in the top bits. For example, `a` and
-/// `b` give `{a, b}`.
+/// Returns the only text, or the concatenation of several, the first in the top bits: `a` and `b` give `{a, b}`.
 pub fn together(words: Vec<String>) -> String {
     match &words[..] {
         [only] => only.clone(),
@@ -103,7 +100,7 @@ pub fn together(words: Vec<String>) -> String {
     }
 }
 
-/// Returns the range of a Verilog declaration of `width` bits, such as `[7:0]`, or an empty text for one bit.
+/// Returns the range of a declaration, such as `[7:0]`, or an empty text for one bit.
 pub fn range(width: u32) -> String {
     match width {
         1 => String::new(),
@@ -111,13 +108,12 @@ pub fn range(width: u32) -> String {
     }
 }
 
-/// Returns the lines of a Verilog statement with `indent` spaces before it. A statement longer than [`COLUMNS`] is broken at
-/// spaces, and further lines are indented by 8 more.
+/// Returns the lines of a statement, broken at spaces to at most [`COLUMNS`]; further lines are indented by 8 more.
 pub fn statement(indent: usize, text: &str) -> Vec<String> {
     broken(&" ".repeat(indent), &" ".repeat(indent + 8), text)
 }
 
-/// Returns `text` as the lines of a Verilog comment with `indent` spaces before it, or no lines for an empty text.
+/// Returns `text` as the lines of a comment; none for an empty text.
 pub fn comment(indent: usize, text: &str) -> Vec<String> {
     // Some tools read a comment that begins with their name as a command.
     let text = ascii(text).replace("verilator", "Verilator").replace("synopsys", "Synopsys");
@@ -128,8 +124,7 @@ pub fn comment(indent: usize, text: &str) -> Vec<String> {
     broken(&margin, &margin, &text)
 }
 
-/// Returns the lines of a Verilog declaration with `indent` spaces before it and the comment `note` behind it. The comment is
-/// above the declaration if the line would exceed [`COLUMNS`].
+/// Returns the lines of a declaration with the comment `note` behind it, or above it if the line would exceed [`COLUMNS`].
 pub fn annotated(code: &str, indent: usize, note: &str) -> Vec<String> {
     let code = format!("{}{code}", " ".repeat(indent));
     let note = ascii(note);
@@ -166,24 +161,22 @@ fn broken(first: &str, further: &str, text: &str) -> Vec<String> {
     lines
 }
 
-/// The identifiers that one Verilog module already uses.
+/// The identifiers that one module already uses.
 #[derive(Clone, Debug, Default)]
 pub struct Names(HashSet<String>);
 
 impl Names {
-    /// Makes the set of a module's identifiers from the names `taken`, which are already in use.
     pub fn new<'a>(taken: impl IntoIterator<Item = &'a str>) -> Self {
         Self(taken.into_iter().map(str::to_owned).collect())
     }
 
-    /// Makes the set of a module's identifiers from the names of a design's ports and its clock `clk`.
+    /// The names of a design's ports and its clock `clk`.
     pub fn of_ports(design: &Design) -> Self {
         let ports = design.ports.iter().map(|port| design.net(port.net).name.as_str());
         Self::new(ports.chain(["clk"]))
     }
 
-    /// Returns a name that the module does not use yet, and adds it to the set. The name is `wish`, or `wish_2`, `wish_3` and so
-    /// on if `wish` is taken. For example, if `control` is taken, the next names are `control_2` and `control_3`.
+    /// Adds a name that the module does not use yet: `wish`, or `wish_2`, `wish_3` and so on.
     pub fn fresh(&mut self, wish: &str) -> String {
         let mut name = wish.to_owned();
         let mut number = 1;

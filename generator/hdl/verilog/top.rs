@@ -10,8 +10,7 @@ use super::rows::{Row, separated};
 use super::writer;
 use crate::netlist::Partition;
 
-/// Returns the Verilog text of a device's top module: an instance of the control unit, an instance of the datapath, and the wires
-/// between them. `units` has both modules with their ports.
+/// `units` has both modules with their ports.
 pub fn module(
     plan: &Plan,
     naming: &Naming,
@@ -68,8 +67,7 @@ fn instance(
     )
 }
 
-/// Returns the connection of a port, or of a parameter, with a net or parameter of the same name. For example, `clk` gives
-/// `.clk(clk)`.
+/// Connects a port or a parameter to its namesake: `.clk(clk)`.
 fn connected(name: &str) -> String {
     format!(".{name}({name})")
 }

@@ -5,8 +5,8 @@ use super::text::ascii;
 use crate::netlist::{Design, RomId};
 use glint_base::fixed::mask;
 
-/// Returns the comment for the word at `address` of a ROM, for the Verilog or the memory file. A word of the control ROM without
-/// a comment gets the name of the microinstruction. Returns `None` if the word has no comment.
+/// Returns the comment for the word at `address`, if it has one. A word of the control ROM without a comment gets the name of the
+/// microinstruction.
 pub fn word_note(design: &Design, id: RomId, address: usize) -> Option<String> {
     if let Some(comment) = design.rom(id).comments.get(address) {
         return Some(ascii(comment));
@@ -18,8 +18,8 @@ pub fn word_note(design: &Design, id: RomId, address: usize) -> Option<String> {
     Some(ascii(&executed.name))
 }
 
-/// Returns a word of the control ROM in binary, with `_` between its fields, the first field in front. For example, word 3 of
-/// `rough` is `01_1_0_0_1_0_0_1`.
+/// Writes a word of the control ROM in binary, with `_` between its fields, the first field in front. Word 3 of `rough` is
+/// `01_1_0_0_1_0_0_1`.
 pub fn in_fields(design: &Design, word: u64) -> String {
     let positions = design.field_positions();
     let digits = design.control.fields.iter().zip(positions).map(|(field, low)| {
@@ -29,7 +29,7 @@ pub fn in_fields(design: &Design, word: u64) -> String {
     digits.collect::<Vec<_>>().join("_")
 }
 
-/// Returns a word of a ROM in hexadecimal, with as many digits as `width` bits need. For example, a word of 35 bits has 9 digits.
+/// Writes a word of a ROM in hexadecimal, with as many digits as `width` bits need: 9 for 35 bits.
 pub fn in_hex(word: u64, width: u32) -> String {
     format!("{word:0digits$x}", digits = width.div_ceil(4) as usize)
 }

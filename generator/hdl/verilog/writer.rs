@@ -1,6 +1,6 @@
 //! Writes the frames of Verilog modules, instances and blocks around lines of text.
 
-/// Returns the text of a Verilog file with the module `name`, behind the comment `header`.
+/// Returns a Verilog file with the module `name`, behind the comment `header`.
 pub fn module(
     header: Vec<String>,
     name: &str,
@@ -14,8 +14,7 @@ pub fn module(
     format!("{}\nendmodule\n\n`default_nettype wire\n", lines.join("\n"))
 }
 
-/// Returns the Verilog lines of an instance `name` of a module. Each text in `parameters` and `connections` must include its
-/// comma.
+/// Each text in `parameters` and `connections` must include its comma.
 pub fn instance(
     module: &str,
     parameters: &[String],
@@ -50,13 +49,13 @@ fn head(
     lines
 }
 
-/// Returns Verilog lines under a comment with the title, with an empty line above. Returns no lines if `lines` is empty.
+/// Puts lines under a comment with the title, with an empty line above. No lines stay no lines.
 pub fn section(title: &str, lines: Vec<String>) -> Vec<String> {
     let title = format!("    // {title}");
     if lines.is_empty() { lines } else { [vec![String::new(), title], lines].concat() }
 }
 
-/// Returns Verilog lines between the lines `begin` and `end`, with an empty line above. Returns no lines if `lines` is empty.
+/// Puts lines between `begin` and `end`, with an empty line above. No lines stay no lines.
 pub fn block(begin: &str, lines: Vec<String>, end: &str) -> Vec<String> {
     match lines.is_empty() {
         true => lines,

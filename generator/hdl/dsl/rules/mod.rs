@@ -1,6 +1,5 @@
 //! Checks rules of the description language that a netlist alone does not express: on operands, shared products and the
-//! microprogram. For example, a register may load a product of a shared multiplier only while the microinstruction selects the
-//! operands of this product.
+//! microprogram. For example, an operand on which no output depends is a mistake.
 
 mod operands;
 mod products;
@@ -15,8 +14,8 @@ use glint_base::diagnostic::Diagnostic;
 pub(super) use operands::read_by;
 pub(super) use unused::warnings;
 
-/// Returns a diagnostic for every rule that `design` breaks. `views` has the nets that carry a product of a shared multiplier,
-/// each with the selection under which it is this product. `picked` has the fields to which some microinstruction gives a value.
+/// `views` has the nets that carry a product of a shared multiplier, each with the selection under which it is this product.
+/// `picked` has the fields to which some microinstruction gives a value.
 pub(super) fn check(
     design: &Design,
     views: &HashMap<NetId, SelectedProduct>,

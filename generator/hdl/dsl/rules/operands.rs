@@ -7,7 +7,6 @@ use glint_base::codes;
 use glint_base::cone::reached;
 use glint_base::diagnostic::Diagnostic;
 
-/// Returns a diagnostic for each operand on which no output depends. The list is empty if every operand affects an output.
 pub(super) fn check(design: &Design) -> Vec<Diagnostic> {
     let used = used(design);
     let mut found = Vec::new();
@@ -21,12 +20,12 @@ pub(super) fn check(design: &Design) -> Vec<Diagnostic> {
     found
 }
 
-/// Returns all nets on which outputs depend, directly or through any number of registers and memories.
+/// Returns all nets on which outputs depend, also through registers and memories.
 pub(super) fn used(design: &Design) -> HashSet<NetId> {
     reached(design.outputs().map(|port| port.net), |id| read_by(design, id))
 }
 
-/// Returns the nets on which a net depends directly: within one clock, or as the inputs of the register or ROM that drives it.
+/// Returns the nets on which a net depends within one clock, or the inputs of the register or ROM that drives it.
 pub(in crate::dsl) fn read_by(design: &Design, id: NetId) -> Vec<NetId> {
     match design.net(id).driver {
         Driver::Register(register) => {

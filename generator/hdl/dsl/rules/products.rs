@@ -8,8 +8,6 @@ use crate::netlist::{Design, Driver, FieldKind, NetId, passed_on};
 use glint_base::codes;
 use glint_base::diagnostic::Diagnostic;
 
-/// Finds registers of `design` that load a product of a shared multiplier while the selection is for another product. `views` has
-/// the nets that carry a product, each with the selection under which it is this product.
 pub(super) fn check(design: &Design, views: &HashMap<NetId, SelectedProduct>) -> Vec<Diagnostic> {
     let mut checker = Checker { design, views, found: Vec::new() };
     for at in 0..design.control.microprogram.len() {
@@ -25,9 +23,9 @@ struct Checker<'a> {
 }
 
 impl Checker<'_> {
-    /// Checks every register that microinstruction `at` loads. If the data of a register depends on a shared product,
-    /// microinstruction `at` must select the operands of this product. If n registers lie behind the selecting mux, the
-    /// microinstructions n clocks earlier must select the operands.
+    /// Checks every register that microinstruction `at` loads. If its data depends on a shared product, microinstruction `at`
+    /// must select the operands of this product. With n registers behind the selecting mux, the microinstructions n clocks
+    /// earlier must select them.
     fn selections(&mut self, at: usize) {
         let design = self.design;
         let microprogram = &design.control.microprogram;
@@ -72,8 +70,7 @@ impl Checker<'_> {
         }
     }
 
-    /// Returns the diagnostic for a wrong selection: microinstruction `at` loads `register` with the product `view`, but
-    /// microinstruction `under` selects the operands of another product.
+    /// Microinstruction `at` loads `register` with the product `view`, but `under` selects the operands of another product.
     fn wrong_product(
         &self,
         at: usize,

@@ -1,5 +1,5 @@
-//! Checks the microprogram of a description. The microprogram must raise `valid`, but only after the result is loaded. For the
-//! select lines of every mux, some microinstruction must make a choice. Every loop must be able to end.
+//! Checks the microprogram of a description: it must raise `valid`, but only after the result is loaded. Some microinstruction
+//! must choose an input of every mux, and every loop must be able to end.
 
 use std::collections::HashSet;
 
@@ -11,8 +11,7 @@ use glint_base::codes;
 use glint_base::cone::reached;
 use glint_base::diagnostic::Diagnostic;
 
-/// Returns the mistakes of the microprogram: microinstructions that raise `valid` too early, or none that raises it, select lines
-/// without a choice, and loops that cannot end. `picked` has the fields to which some microinstruction gives a value.
+/// `picked` has the fields to which some microinstruction gives a value.
 pub(super) fn check(design: &Design, picked: &HashSet<FieldId>) -> Vec<Diagnostic> {
     let mut found = early(design);
     found.extend(silent(design));
@@ -21,8 +20,7 @@ pub(super) fn check(design: &Design, picked: &HashSet<FieldId>) -> Vec<Diagnosti
     found
 }
 
-/// Returns a mistake if the design has a result, but no microinstruction raises `valid`. Returns `None` for a design whose
-/// `valid` follows a signal.
+/// A design with a result must raise `valid`, unless `valid` follows a signal.
 fn silent(design: &Design) -> Option<Diagnostic> {
     let control = &design.control;
     let result = design.port(|role| role == Role::Result)?;
@@ -38,7 +36,6 @@ fn silent(design: &Design) -> Option<Diagnostic> {
     })
 }
 
-/// Finds select lines for which no microinstruction makes a choice, because they are not in `picked`.
 fn unpicked(design: &Design, picked: &HashSet<FieldId>) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     for (at, field) in design.control.fields.iter().enumerate() {
@@ -58,9 +55,8 @@ fn unpicked(design: &Design, picked: &HashSet<FieldId>) -> Vec<Diagnostic> {
     found
 }
 
-/// Finds microinstructions that raise `valid` while they load a register that a result shows, so that the output shows the loaded
-/// value only in the next clock. If every path to the microinstruction loads the register before, the microinstruction is
-/// accepted.
+/// Finds microinstructions that raise `valid` while they load a register that a result shows: the output shows the loaded value
+/// only in the next clock. Such a microinstruction is accepted if every path to it loads the register before.
 fn early(design: &Design) -> Vec<Diagnostic> {
     let control = &design.control;
     let mut found = Vec::new();
@@ -98,7 +94,6 @@ fn early(design: &Design) -> Vec<Diagnostic> {
     found
 }
 
-/// Returns the register that drives a net, or `None` if another kind of driver drives the net.
 fn register(design: &Design, id: NetId) -> Option<RegId> {
     match design.net(id).driver {
         Driver::Register(register) => Some(register),
@@ -106,8 +101,8 @@ fn register(design: &Design, id: NetId) -> Option<RegId> {
     }
 }
 
-/// Returns 1 if microinstruction `at` loads a register, 0 if it does not, and `None` if signals besides the control word decide.
-/// A register without an enable gives 1.
+/// Returns whether microinstruction `at` loads a register, as 1 or 0, and `None` if signals besides the control word decide. A
+/// register without an enable gives 1.
 fn loads(design: &Design, at: usize, register: RegId) -> Option<u64> {
     match design.register(register).enable {
         Some(enable) => setting_of(design, &design.control.microprogram[at], enable),
@@ -115,21 +110,19 @@ fn loads(design: &Design, at: usize, register: RegId) -> Option<u64> {
     }
 }
 
-/// Returns whether a path leads from microinstruction 0 to microinstruction `at` through microinstructions that do not load the
-/// register.
+/// Returns whether a path leads from microinstruction 0 to `at` through microinstructions that do not load the register.
 fn comes_without_load(design: &Design, at: usize, register: RegId) -> bool {
     let goes = |from: usize| loads(design, from, register) == Some(0);
     at == 0 || goes(0) && controlled(&design.control, 0, goes).contains(&at)
 }
 
-/// Returns the microinstructions that control can reach from microinstruction `from`, including `from` itself. The search
-/// continues only behind microinstructions for which `goes` returns true.
+/// Returns the microinstructions that control can reach from `from`, itself included, if only those with `goes` continue.
 fn controlled(control: &Control, from: usize, goes: impl Fn(usize) -> bool) -> HashSet<usize> {
     reached([from], |now| if goes(now) { control.successors(now) } else { Vec::new() })
 }
 
-/// Returns `net` and all nets on which it depends within the clock of microinstruction `at`. If the microinstruction determines
-/// the select of a mux, only the chosen input counts. The search stops at fields, whose values the microinstruction gives.
+/// Returns `net` and all nets on which it depends in the clock of microinstruction `at`. If this microinstruction determines the
+/// select of a mux, only the chosen input counts.
 fn cone(design: &Design, at: usize, net: NetId) -> HashSet<NetId> {
     reached([net], |id| match design.net(id).driver {
         Driver::Field(_) => Vec::new(),
@@ -137,8 +130,8 @@ fn cone(design: &Design, at: usize, net: NetId) -> HashSet<NetId> {
     })
 }
 
-/// Finds loops that cannot end: no microinstruction of the loop changes a register on which the condition depends, and no other
-/// microinstruction leaves the loop or waits for `start`.
+/// Finds loops that cannot end. In such a loop, no microinstruction changes a register on which the condition depends, and no
+/// other one leaves the loop or waits for `start`.
 fn endless(design: &Design) -> Vec<Diagnostic> {
     let control = &design.control;
     let mut found = Vec::new();
@@ -191,8 +184,8 @@ fn endless(design: &Design) -> Vec<Diagnostic> {
     found
 }
 
-/// Returns whether the value of the net `id` may change while the microinstructions `body` of a loop are executed. Cells count as
-/// unchanged; the caller looks at their operands.
+/// Returns whether the net `id` may change while a loop executes the microinstructions `body`. Cells count as unchanged; the
+/// caller looks at their operands.
 fn changes(design: &Design, body: &[usize], id: NetId) -> bool {
     match design.net(id).driver {
         Driver::Input => true,

@@ -1,5 +1,5 @@
-//! Finds superfluous hardware in a description without mistakes: logic on which no output depends, muxes that always pass the
-//! same input, and choices that no microinstruction makes.
+//! Finds superfluous hardware in a description without mistakes. It is logic on which no output depends, a mux that always
+//! passes the same input, or a choice that no microinstruction makes.
 
 use std::collections::HashSet;
 
@@ -9,8 +9,7 @@ use glint_base::codes;
 use glint_base::cone::reached;
 use glint_base::diagnostic::Diagnostic;
 
-/// Returns a warning for each of these: logic on which no output depends, a mux that always passes the same input, and select
-/// lines with choices that no microinstruction makes. The select lines in `partly_used` may have such choices.
+/// Select lines in `partly_used` may have choices that no microinstruction makes.
 pub(in crate::dsl) fn warnings(design: &Design, partly_used: &HashSet<FieldId>) -> Vec<Diagnostic> {
     let mut found = dead(design);
     found.extend(constant(design));
@@ -18,8 +17,8 @@ pub(in crate::dsl) fn warnings(design: &Design, partly_used: &HashSet<FieldId>) 
     found
 }
 
-/// Finds registers, memories and named cells on which no output depends. A cell or memory is left out if other unused logic reads
-/// it, so that one mistake gives one warning.
+/// Finds registers, memories and named cells on which no output depends. It leaves out the ones that other unused
+/// logic reads, so that one mistake gives one warning.
 fn dead(design: &Design) -> Vec<Diagnostic> {
     let used = used(design);
     let mut dead: Vec<(NetId, &Net)> = Vec::new();
@@ -64,7 +63,6 @@ fn constant(design: &Design) -> Vec<Diagnostic> {
     found
 }
 
-/// Finds select lines with choices that no microinstruction makes, except the select lines in `partly_used`.
 fn unmade(design: &Design, partly_used: &HashSet<FieldId>) -> Vec<Diagnostic> {
     let control = &design.control;
     let mut found = Vec::new();

@@ -1,4 +1,4 @@
-//! Executes one clock of a design symbolically: finds the node of each net, and the node of each register after the rising edge.
+//! Executes one clock of a design symbolically.
 
 use std::collections::HashMap;
 
@@ -7,21 +7,20 @@ use crate::netlist::{self, Driver, Net, NetId, RegId, RegisterKind, Role, RomId,
 use crate::pipeline::graph::{Cell, Graph, Label, NodeId, NodeOp};
 use glint_base::fixed::Format;
 
-/// The symbolic contents of a design's registers and synchronous ROM outputs between two clocks, as nodes of the computation's
-/// graph.
+/// The symbolic contents of registers and synchronous ROM outputs between two clocks.
 #[derive(Clone)]
 pub(super) struct State {
     pub(super) registers: Vec<NodeId>,
-    /// The output word of each ROM. The entry of a ROM without a clock is unused.
+    /// The entry of a ROM without a clock is unused.
     pub(super) roms: Vec<NodeId>,
 }
 
-/// One clock of the symbolic execution of a design. The struct finds the node of each net's value in this clock.
+/// One clock of the symbolic execution, which finds the node of each net.
 pub(super) struct Clock<'e, 'a> {
     executor: &'e mut Executor<'a>,
     state: &'e State,
-    /// The address of the executed microinstruction; `None` if it is unknown, and the registers of the sequencer have nodes
-    /// instead of constants.
+    /// The executed microinstruction; `None` if it is unknown, and the registers of the sequencer have nodes instead of
+    /// constants.
     address: Option<usize>,
     /// Whether this clock accepts `start`.
     first: bool,
@@ -38,7 +37,7 @@ impl<'e, 'a> Clock<'e, 'a> {
         Self { executor, state, address, first, values: HashMap::new() }
     }
 
-    /// Returns the node with the value of a net in this clock. Adds the nodes that the graph does not have.
+    /// Returns the node of a net in this clock.
     pub(super) fn value(&mut self, id: NetId) -> NodeId {
         if let Some(&value) = self.values.get(&id) {
             return value;
@@ -86,9 +85,8 @@ impl<'e, 'a> Clock<'e, 'a> {
         value
     }
 
-    /// Returns the value of a register of the sequencer while the microinstruction at `self.address` is executed. The address
-    /// counter has this address, and the run flag is 0 only in the clock that accepts `start`. Returns `None` for any other
-    /// register, and if the address is unknown.
+    /// Returns the value of a register of the sequencer: the counter has `self.address`, and the run flag is 0 only in the clock
+    /// that accepts `start`. Returns `None` for any other register, and if the address is unknown.
     fn of_sequencer(&self, register: RegId) -> Option<u64> {
         let (control, address) = (&self.executor.design.control, self.address?);
         match register {
@@ -131,7 +129,7 @@ impl<'e, 'a> Clock<'e, 'a> {
         let address = self.value(design.rom(rom).address);
         let net = design.net(design.rom(rom).data);
         let words = &design.rom(rom).words;
-        // Several ROMs may have the same words. All of them become reads of the first such ROM, so that equal reads are merged.
+        // ROMs with the same words become reads of the first one, so that equal reads are merged.
         let first = design
             .roms
             .iter()
@@ -140,12 +138,12 @@ impl<'e, 'a> Clock<'e, 'a> {
         self.graph().read(rom, address, words, net.format, &label(net))
     }
 
-    /// Performs the rising edge at the end of this clock: returns the contents of registers and synchronous ROM outputs after it.
+    /// Performs the rising edge at the end of this clock.
     pub(super) fn edge(&mut self) -> State {
         let design = self.executor.design;
         let mut after = self.state.clone();
         for (number, register) in design.registers.iter().enumerate() {
-            // If the microinstruction is known, the caller decides which one follows. The sequencer's registers play no part.
+            // If the microinstruction is known, the caller decides which one follows.
             if register.kind == RegisterKind::Sequencer && self.address.is_some() {
                 continue;
             }

@@ -1,5 +1,5 @@
-//! Executes one arbitrary clock of a running design symbolically, with unknown register contents. The result describes designs
-//! whose computations have any number of results, because every clock of such a computation is an instance of this clock.
+//! Executes one arbitrary clock of a running design symbolically. This serves designs whose computations have any number of
+//! results, because every clock of such a computation is an instance of this clock.
 
 use super::clock::Clock;
 use super::{Executor, Iterations, Unrolled};
@@ -7,18 +7,17 @@ use crate::netlist::{Design, NetId};
 use crate::pipeline::graph::NodeId;
 use glint_base::fixed::Format;
 
-/// One arbitrary clock of a running design, executed symbolically: a graph that computes outputs and next register contents from
-/// unknown register contents.
+/// A graph that computes outputs and next register contents from unknown register contents.
 #[derive(Debug)]
 pub struct Cycle {
-    /// The graph with the values of an arbitrary clock, and of the clock that accepts `start`. Its results are all outputs of the
-    /// design in the arbitrary clock.
+    /// The values of an arbitrary clock, and of the clock that accepts `start`. The results are all outputs in the arbitrary
+    /// clock.
     pub unrolled: Unrolled,
-    /// For each register and then each synchronous ROM of the design, its output value before and after the clock.
+    /// Each register and then each synchronous ROM.
     pub held: Vec<StateValues>,
 }
 
-/// The output value of a register or a synchronous ROM before and after a clock, as nodes of the graph in [`Cycle::unrolled`].
+/// The output of a register or a synchronous ROM before and after a clock.
 #[derive(Clone, Copy, Debug)]
 pub struct StateValues {
     /// The net that the register or ROM drives.
@@ -26,14 +25,14 @@ pub struct StateValues {
     /// For a register, its value after a reset and then one clock that accepts `start` and all operands. For a ROM, the unknown
     /// word at power-up, which no result shows.
     pub first: NodeId,
-    /// The output value before an arbitrary clock.
+    /// The value before an arbitrary clock.
     pub before: NodeId,
-    /// The output value after that clock, as a function of the values `before` it.
+    /// The value after that clock, as a function of the values `before` it.
     pub after: NodeId,
 }
 
-/// Executes one clock of a busy design symbolically. Any microinstruction may be executed in it, because the contents of all
-/// registers except the run flag are unknown. The design must have no undriven net.
+/// Executes one clock of a busy design with no undriven net. Any microinstruction may be executed, because all registers except
+/// the run flag are unknown.
 pub fn any_cycle(design: &Design) -> Cycle {
     let mut executor = Executor::new(design, Iterations::OneByOne);
     let mut running = executor.power_up();

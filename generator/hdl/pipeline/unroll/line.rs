@@ -1,10 +1,9 @@
-//! Unrolls a computation with several results, such as the points of a scan line, into the first point and the step from a point
-//! to the next.
+//! Unrolls a computation with several results, such as the points of a scan line. The parts are the first point, and the step
+//! from a point to the next.
 //!
 //! The registers that carry state from one point to the next are called the *walk*, for example the register with the current
-//! angle. The module proves by induction that every point is the same function of the operands and the walk. The module also
-//! proves that the first point loads functions of the operands into the walk, and that every other point loads the same function
-//! of the walk and the operands. If the proof fails, `unroll_line` returns an error.
+//! angle. The module proves by induction that every point is the same function of the operands and the walk. The first point
+//! must load functions of the operands into the walk, and every other point the same function of the walk and the operands.
 
 use super::{Clock, Executor, Iterations, State, Unrolled};
 use crate::netlist::{Design, NetId, RegisterKind, Role, Sequence};
@@ -13,34 +12,29 @@ use glint_base::codes;
 use glint_base::cone::reached;
 use glint_base::diagnostic::{Diagnostic, Diagnostics};
 
-/// The largest number of clocks between the microinstruction that writes a point and the clock with the point's results.
+/// The largest number of clocks from the microinstruction that writes a point to the clock with its results.
 const MOST_DELAY: usize = 12;
 
-/// A computation with several results, such as the points of a scan line. The struct has a graph that computes the first point,
-/// and the registers from which each later point is computed.
+/// The first point of a computation with several results, and the registers from which each later point follows.
 #[derive(Debug)]
 pub struct UnrolledLine {
-    /// The graph that computes the first point. Later points differ only in the registers of the walk, which carry state from
-    /// point to point.
+    /// Computes the first point. Later points differ only in the registers of the walk.
     pub unrolled: Unrolled,
-    /// The registers of the walk, which carry state from point to point.
     pub walk: Vec<WalkRegister>,
 }
 
-/// The values of one register of the walk, as nodes of the graph. The walk consists of the registers that carry state from point
-/// to point.
+/// The values of one register of the walk, as nodes of the graph.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WalkRegister {
-    /// The value that the first point loads into the register.
+    /// The first point loads this value.
     pub first: NodeId,
-    /// The value of the register before a later point is loaded, an unknown value of the graph.
+    /// The unknown value of the register before a later point is loaded.
     pub before: NodeId,
-    /// The value that a later point loads into the register, as a function of the `before` values of all registers of the walk.
+    /// A later point loads this function of the `before` values of the walk.
     pub next: NodeId,
 }
 
-/// Unrolls a computation with several results, such as the points of a scan line. Returns the graph of the first point, and the
-/// function by which each later point follows from the point before.
+/// Unrolls a computation with several results.
 ///
 /// # Errors
 /// Fails if the design has no output `valid`, or if `valid` follows no microinstruction within 12 clocks. Fails if the
@@ -122,10 +116,9 @@ impl LineUnroller<'_> {
         Ok(UnrolledLine { unrolled: self.executor.unrolled, walk: registers })
     }
 
-    /// Finds the smallest number of clocks after which the microinstruction at the beginning of any path determines `valid`,
-    /// whatever registers other than operands contain. Returns this number, and the addresses of the microinstructions that set
-    /// `valid`. Fails if no number up to [`MOST_DELAY`] has this property, or if a microinstruction sets `valid` on some paths
-    /// only.
+    /// Finds the smallest number of clocks, up to [`MOST_DELAY`], after which the first microinstruction of any path determines
+    /// `valid`, whatever registers other than operands contain. Returns it, and the addresses of the microinstructions that set
+    /// `valid`. Fails if a microinstruction sets `valid` on some paths only.
     fn delay(&mut self, any: &State) -> Result<(usize, Vec<usize>), Diagnostic> {
         let design = self.executor.design;
         let Some(valid) = design.port(|role| role == Role::Valid).map(|port| port.net) else {
@@ -145,7 +138,6 @@ impl LineUnroller<'_> {
                 }
             }
             if let Some(writes) = writes.filter(|writes| !writes.is_empty()) {
-                // Every path from such a microinstruction must set `valid`.
                 for path in paths(design, &writes, delay) {
                     let value = self.at_end(any, &path, |clock| clock.value(valid));
                     if self.executor.unrolled.graph.constant_of(value) != Some(1) {
@@ -158,8 +150,8 @@ impl LineUnroller<'_> {
         Err(self.cannot(0, "begins a computation in which no microinstruction determines `valid`"))
     }
 
-    /// Returns each result port with the node of its value, `clocks` clocks after the start of a path at one of the
-    /// microinstructions `from`. Fails if two paths have different values, or if no path is that long.
+    /// Returns each result port with its node, `clocks` clocks after a path begins at one of the microinstructions `from`. Fails
+    /// if two paths have different values, or if no path is that long.
     fn shown(
         &mut self,
         state: &State,
@@ -182,8 +174,8 @@ impl LineUnroller<'_> {
         all.ok_or_else(|| self.cannot(0, "ends before the results are shown"))
     }
 
-    /// Returns the numbers of the registers on whose earlier contents the results `shown` depend: the walk. Fails if a result
-    /// depends on an earlier output of a memory.
+    /// Returns the walk: the registers on whose earlier contents the results `shown` depend. Fails if a result depends on an
+    /// earlier output of a memory.
     fn walk_of(&self, any: &State, shown: &[(NetId, NodeId)]) -> Result<Vec<usize>, Diagnostic> {
         let mut walk = Vec::new();
         for id in shown.iter().flat_map(|&(_, node)| self.unknowns(node)) {
@@ -199,11 +191,7 @@ impl LineUnroller<'_> {
         Ok(walk)
     }
 
-    /// Checks that the microinstruction `first` comes before all other microinstructions in `writes`, and that it is executed
-    /// once.
-    ///
-    /// # Errors
-    /// Fails if another microinstruction in `writes` can come first, or if `first` can be executed again.
+    /// Checks that `first` comes before all other microinstructions in `writes`, and is executed once.
     fn in_order(&self, first: usize, writes: &[usize]) -> Result<(), Diagnostic> {
         let design = self.executor.design;
         // The search stops at microinstructions that write points.
@@ -220,13 +208,11 @@ impl LineUnroller<'_> {
         Ok(())
     }
 
-    /// Returns the state after the microinstruction at `address`, executed in `state`.
     fn edge(&mut self, state: &State, address: usize) -> State {
         Clock::new(&mut self.executor, state, Some(address), false).edge()
     }
 
-    /// Executes all microinstructions of `path` but the last, from `state` on. Returns the answer of `ask` in the clock of the
-    /// last microinstruction.
+    /// Executes `path` from `state` on, and returns the answer of `ask` in the clock of its last microinstruction.
     fn at_end<T>(
         &mut self,
         state: &State,
@@ -260,8 +246,7 @@ impl LineUnroller<'_> {
     }
 }
 
-/// Returns the microinstructions that can follow the microinstruction `at` within a computation. The list is empty at the end of
-/// the computation.
+/// Returns the microinstructions that can follow `at` within a computation; none at its end.
 fn successors(design: &Design, at: usize) -> Vec<usize> {
     match design.control.microprogram[at].sequence {
         Sequence::End => Vec::new(),
@@ -269,8 +254,7 @@ fn successors(design: &Design, at: usize) -> Vec<usize> {
     }
 }
 
-/// Returns every path through the microprogram that begins at one of the microinstructions `from` and takes `clocks` clocks to
-/// its last microinstruction. Each path therefore has `clocks` + 1 microinstructions.
+/// Returns every path of `clocks` + 1 microinstructions that begins at one of `from`.
 fn paths(design: &Design, from: &[usize], clocks: usize) -> Vec<Vec<usize>> {
     let mut paths: Vec<Vec<usize>> = from.iter().map(|&at| vec![at]).collect();
     for _ in 0..clocks {
@@ -286,7 +270,6 @@ fn paths(design: &Design, from: &[usize], clocks: usize) -> Vec<Vec<usize>> {
     paths
 }
 
-/// Returns the values in `state` of the registers whose numbers are in `walk`.
 fn walk_registers(state: &State, walk: &[usize]) -> Vec<NodeId> {
     walk.iter().map(|&number| state.registers[number]).collect()
 }

@@ -46,13 +46,12 @@ impl Build {
         self.net(name, format, Driver::Op(op))
     }
 
-    /// Adds a register without a data input, and returns the net that it drives.
+    /// The register has no data input yet.
     pub fn register(&mut self, name: &str, format: Format) -> NetId {
         let q = self.net(name, format, Driver::Undriven);
         self.design.add_register(q, RegisterKind::Architectural).q
     }
 
-    /// Returns the register that drives `q`.
     pub fn of(&mut self, q: NetId) -> &mut NetlistRegister {
         let register = self.design.registers.iter_mut().find(|r| r.q == q);
         register.expect("a register")
@@ -73,7 +72,7 @@ impl Build {
         data
     }
 
-    /// Adds a field of the control word, below the fields that already exist, and returns its net.
+    /// Adds a field below those that already exist.
     pub fn field(&mut self, name: &str, width: u32) -> NetId {
         let id = FieldId(self.design.control.fields.len() as u32);
         let format = Format::unsigned(width as i32, 0);
@@ -97,7 +96,7 @@ impl Build {
     }
 }
 
-/// A generator of pseudo-random numbers, by the algorithm Splitmix64.
+/// The algorithm is Splitmix64.
 pub struct Random(pub u64);
 
 impl Random {
@@ -116,8 +115,7 @@ impl Random {
         low + self.below((high - low + 1) as usize) as u32
     }
 
-    /// Returns a random bit pattern of `width` bits. In more than half of the cases it is a corner of the range, such as 0 or all
-    /// ones.
+    /// In more than half of the cases, the pattern is a corner of the range, such as 0 or all ones.
     pub fn pattern(&mut self, width: u32) -> u64 {
         let top = 1 << (width - 1);
         let pattern = match self.below(8) {

@@ -1,4 +1,4 @@
-//! Tests that the simulator refuses wrong designs with a message, and does not simulate them wrongly.
+//! Tests that the simulator refuses wrong designs with a message.
 
 use super::build::Build;
 use crate::netlist::{Driver, NetId, Op, RegId, Role, RomId};
@@ -8,8 +8,7 @@ use glint_base::fixed::Format;
 const BYTE: Format = Format::unsigned(8, 0);
 const SIGNED: Format = Format::signed(7, 0);
 
-/// Checks that the simulator refuses a design with the 8-bit input port `a` after `change` has made it wrong. The message must
-/// contain all `words`.
+/// The message about a design with the 8-bit input port `a`, after `change` has made it wrong, must contain all `words`.
 #[track_caller]
 fn refuses<T>(words: &[&str], change: impl FnOnce(&mut Build, NetId) -> T) {
     let mut b = Build::new();

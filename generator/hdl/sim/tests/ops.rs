@@ -5,8 +5,7 @@ use crate::netlist::{Driver, NetId, Op};
 use crate::sim::Simulator;
 use glint_base::fixed::Format;
 
-/// Simulates a cell for random operands. `expected` computes the result from the operands' raw values; the check wraps it to the
-/// width of the result.
+/// Simulates a cell for random operands. `expected` computes the result from raw values; the check wraps it to the width.
 fn check(
     random: &mut Random,
     operands: &[Format],
@@ -68,7 +67,6 @@ fn widths(mut test: impl FnMut(&mut Random, u32)) {
     }
 }
 
-/// Returns the bit pattern of a raw value in a net of the given width.
 fn wire(raw: i128, width: u32) -> i128 {
     raw.rem_euclid(1 << width)
 }

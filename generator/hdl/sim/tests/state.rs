@@ -9,7 +9,6 @@ use glint_base::fixed::Format;
 
 const BYTE: Format = Format::unsigned(8, 0);
 
-/// Sets the named inputs, runs a clock, and returns the values of the nets.
 fn clock<const N: usize>(
     simulator: &mut Simulator,
     inputs: &[(&str, u64)],

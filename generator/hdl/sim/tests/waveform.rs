@@ -11,7 +11,6 @@ use crate::netlist::{Design, Driver, Op, Partition, RegId, RomId};
 use crate::sim::Simulator;
 use glint_base::fixed::Format;
 
-/// A file in memory that can be read while the simulator writes it.
 #[derive(Clone, Default)]
 struct Shared(Arc<Mutex<Vec<u8>>>);
 
@@ -31,7 +30,7 @@ impl Write for Shared {
     }
 }
 
-/// A file that takes this number of bytes, and then fails.
+/// Takes this number of bytes, and then fails.
 struct Full(usize);
 
 impl Write for Full {
@@ -49,7 +48,7 @@ impl Write for Full {
     }
 }
 
-/// Returns a design with a counter that runs through two microinstructions after the reset, and with a wide product.
+/// A counter runs through two microinstructions after the reset, beside a wide product.
 fn design() -> Design {
     let mut b = Build::new();
     let bit = Format::BIT;
@@ -80,7 +79,7 @@ fn design() -> Design {
     b.design
 }
 
-/// Returns the variables of a scope and of all scopes inside it. The key is `scope.name`, the value the width and the code.
+/// Returns the variables of a scope and of all scopes inside it: by `scope.name` the width and the code.
 fn variables(scope: &str, items: &[ScopeItem]) -> BTreeMap<String, (u32, IdCode)> {
     let mut all = BTreeMap::new();
     for item in items {
