@@ -241,7 +241,7 @@ impl Stream {
     }
 
     /// Counts the result that the model of a core predicts after the latest clock, and measures its error. A pipeline counts
-    /// its results in [`Pipe::clock`].
+    /// its results in `Pipe::clock`.
     #[inline]
     pub(super) fn note(&mut self, binding: &Binding) {
         if let Host::Core(core) = &mut self.host {

@@ -271,8 +271,7 @@ pub fn typical(contract: &dyn Contract, given: &[Option<i64>]) -> Vec<i64> {
 }
 
 /// Lowers the operands of a line that change `f` only after the first point, such as a step, until `f` in the middle of the
-/// line is at least a quarter of `f` at the first point, or until the operand is at the lower end of its domain, or 0. The
-/// function does nothing if the device computes no lines.
+/// line is at least a quarter of `f` at the first point.
 fn slow_down(
     contract: &dyn Contract,
     highlight: &Highlight,
@@ -296,8 +295,7 @@ fn slow_down(
     }
 }
 
-/// Returns the first operands from [`Contract::hint`] for which no output is 0 or at an end of its format. Returns `None`
-/// without hints, or after 256 attempts.
+/// Returns the first operands from [`Contract::hint`] for which no output is 0 or at an end of its format.
 fn hinted(contract: &dyn Contract) -> Option<Vec<i64>> {
     let (mut random, points) = (Random::new(1), PointSource::new(contract));
     for _ in 0..TRIES {
@@ -315,9 +313,9 @@ fn hinted(contract: &dyn Contract) -> Option<Vec<i64>> {
     None
 }
 
-/// Simulates the computation of [`example`], and returns the bit patterns of `nets` in each clock, just before the clock's
-/// rising edge. Clock 0 is the clock in which `start` is high, and the last clock is the first in which the device is idle
-/// again. For a pipeline, the last clock is the clock of the result. All of these nets must have names.
+/// Simulates the computation of [`example`], and returns the bit patterns of `nets` in each clock, just before its rising
+/// edge. Clock 0 is the clock in which `start` is high. The last clock is the first in which the device is idle again, or the
+/// clock of a pipeline's result. All of these nets must have names.
 ///
 /// # Errors
 /// Fails as [`timing`] does.
@@ -331,9 +329,8 @@ pub fn record(design: &Design, contract: &dyn Contract, nets: &[NetId]) -> Resul
     Ok(clocks)
 }
 
-/// Simulates three points in a pipeline, and returns the bit patterns of `nets` in each clock, just before the clock's rising
-/// edge. The first point has the operands of [`example`]. One clock has no point, and the first result waits for two clocks if
-/// the pipeline has an `out_ready`.
+/// Does the same as [`record`] for three points in a pipeline; the first has the operands of [`example`]. One clock has no
+/// point, and the first result waits for two clocks if the pipeline has an `out_ready`.
 ///
 /// # Errors
 /// Fails as [`timing`] does.
@@ -348,15 +345,10 @@ pub fn record_points(
     through::record(design, contract, (&list, PAUSE), nets, LIMIT)
 }
 
-/// A function that observes the simulator in each clock, before the clock's rising edge.
 type Watch<'a> = &'a mut dyn FnMut(&mut Simulator) -> Result<()>;
 
-/// Runs one computation with the given raw operands from reset to its end. For a pipeline, the end is the clock of the result.
-/// `watch` sees the simulator before each rising edge.
-///
-/// # Errors
-/// Fails if the design cannot be simulated, if the computation takes [`LIMIT`] clocks or more, if it ends without `valid`, or if
-/// `watch` fails.
+/// Runs one computation from reset to its end, or to the clock of a pipeline's result. `watch` sees the simulator before each
+/// rising edge.
 fn run(
     design: &Design,
     contract: &dyn Contract,

@@ -1,8 +1,8 @@
 //! Generates the bit-exact model of a core in C: a header, the functions, and an example in Python that calls them.
 //!
-//! A function computes the raw results of one point, or of a line of points, from raw operands. The module `print` prints the
-//! function from the unrolled microprogram, or for a line from one clock of the core. A core that waits for a second `start`
-//! within a computation has no model.
+//! A function computes the raw results of one point, or of a line of points, from raw operands. The module `print` prints it
+//! from the unrolled microprogram, or for a line from one clock of the core. A core that waits for a second `start` within a
+//! computation has no model.
 
 use glint_base::fill;
 use std::collections::BTreeMap;
@@ -25,20 +25,16 @@ use glint_rtl::verilog::text::{Names, ascii, constant_name, statement};
 /// An operand or a result as a member of a C structure.
 #[derive(Clone)]
 pub struct CField {
-    /// The name of the member in the C structure.
     pub name: String,
-    /// The prefix of the port's constants in C: the names of module and port in upper case. For example, `ROUGH_COS_GAMMA`.
+    /// The prefix of the port's constants in C. For example, `ROUGH_COS_GAMMA`.
     constant: String,
-    /// The C type of the member, which holds the raw integer.
+    /// The C type of the raw integer.
     pub kind: &'static str,
-    /// The fixed-point format of the port.
     pub format: Format,
-    /// A comment with the format and the meaning.
     pub doc: String,
 }
 
 impl CField {
-    /// Makes the member of a structure for a port.
     pub fn new(design: &Design, port: &Port) -> Self {
         let net = design.net(port.net);
         Self {
@@ -59,7 +55,6 @@ impl CField {
         }
     }
 
-    /// Returns the smallest raw integer as a C expression.
     fn least(&self) -> String {
         let (least, suffix) = (self.format.min_raw(), self.suffix());
         match (self.format.signed, self.format.width()) {
@@ -70,12 +65,10 @@ impl CField {
         }
     }
 
-    /// Returns the largest raw integer as a C literal.
     fn most(&self) -> String {
         format!("{}{}", self.format.max_raw(), self.suffix())
     }
 
-    /// Returns the suffix of a C literal of the member's type. For example, `ull` for `uint64_t`.
     fn suffix(&self) -> &'static str {
         match (self.format.signed, self.format.width() <= 32) {
             (false, true) => "u",
@@ -85,34 +78,30 @@ impl CField {
         }
     }
 
-    /// Returns the inverse of the lowest bit's weight as a C double, exactly 2^F for F fraction bits. For example, `u1.20`
-    /// gives `1048576.0`.
+    /// Returns 2^F for F fraction bits as a C double, exactly. For example, `u1.20` gives `1048576.0`.
     pub fn scale(&self) -> String {
         format!("{:?}", glint_base::fixed::exp2(self.format.frac))
     }
 
-    /// Returns the number of fraction bits as a C expression.
     fn fraction_bits(&self) -> String {
         c_integer(self.format.frac)
     }
 
-    /// Returns the weight of the lowest bit as a C double: exactly 2^-F, with F fraction bits.
+    /// Returns 2^−F for F fraction bits as a C double, exactly.
     fn unit(&self) -> String {
         format!("{:?}", glint_base::fixed::exp2(-self.format.frac))
     }
 
-    /// Returns the smallest and the largest raw integer as C doubles.
+    /// As C doubles.
     fn limits(&self) -> (String, String) {
         let (low, high) = self.format.range();
         (format!("{:?}", low as f64), format!("{:?}", high as f64))
     }
 
-    /// Returns the type of the member in Python's ctypes. For example, `c_uint32`.
     fn ctype(&self) -> String {
         format!("c_{}", self.kind.trim_end_matches("_t"))
     }
 
-    /// Returns the type of the member in NumPy. For example, `u4` for `uint32_t`.
     fn dtype(&self) -> &'static str {
         match self.kind {
             "uint32_t" => "u4",
@@ -123,8 +112,8 @@ impl CField {
     }
 }
 
-/// Adds the C model: a header, the functions, and an example in Python if there is a worked example. Returns the ROMs whose
-/// words the model contains. The model is generated from the sequential netlist and its microprogram.
+/// Adds a header, the functions, and an example in Python if there is a worked example. Returns the ROMs whose words the model
+/// contains. The model comes from the sequential netlist and its microprogram, also for a pipeline.
 ///
 /// # Errors
 /// Fails if the core cannot become a C function. A core that computes single points must not wait for a second `start`, have
@@ -156,7 +145,6 @@ pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<Vec<RomId>> {
         title: &'a str = &title,
         formula: String,
         regenerate: &'a str,
-        // Only for a pipeline: the upper-case name of its latency, and the clocks.
         latency: Option<(String, usize)> =
             latency.map(|clocks| (format!("{}_LATENCY", constant_name(name)), clocks)),
         operands: &'a [CField] = &operands,
@@ -187,8 +175,7 @@ pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<Vec<RomId>> {
     Ok(read)
 }
 
-/// Returns the raw operands of the worked example as text, in the order of the ports. The example itself may have another
-/// order.
+/// Returns the raw operands in the order of the ports, which may differ from the order in the example.
 fn example_values(design: &Design, example: &WorkedExample) -> Vec<String> {
     let mut values = Vec::new();
     for port in design.inputs() {
