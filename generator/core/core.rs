@@ -196,7 +196,8 @@ impl Core {
 
     /// Does the same as [`Core::lockstep`] with another netlist that has the same ports and registers, for example a mutant.
     ///
-    /// # Errors Fails as [`Core::lockstep`] does.
+    /// # Errors
+    /// Fails as [`Core::lockstep`] does.
     pub fn lockstep_of<'a>(&'a self, design: &'a Design, seed: u64) -> Result<Lockstep<'a>> {
         let model = self.opened.golden();
         Lockstep::new(design, model, self.contract.as_ref(), seed)
@@ -205,14 +206,16 @@ impl Core {
     /// Returns the exhaustive check of this core. The check tests the error bound and, if the operands have at most 26 bits in
     /// total, compares model and hardware clock by clock.
     ///
-    /// # Errors Fails as [`Core::lockstep`] does.
+    /// # Errors
+    /// Fails as [`Core::lockstep`] does.
     pub fn job(&self) -> Result<Job<'_>> {
         self.job_of(self.contract.sweep())
     }
 
     /// Returns the exhaustive check for the operand values in `sweep`, in place of the contract's own sweep.
     ///
-    /// # Errors Fails as [`Core::lockstep`] does.
+    /// # Errors
+    /// Fails as [`Core::lockstep`] does.
     pub fn job_of(&self, sweep: Sweep) -> Result<Job<'_>> {
         Ok(Job::of_sweep(self.contract.as_ref(), sweep).with(self.clocks()?))
     }
@@ -220,7 +223,8 @@ impl Core {
     /// Returns the clock-by-clock comparison of model and hardware alone. It compares nothing if the operands have more than
     /// 26 bits.
     ///
-    /// # Errors Fails as [`Core::lockstep`] does.
+    /// # Errors
+    /// Fails as [`Core::lockstep`] does.
     pub fn clocks(&self) -> Result<Clocks<'_>> {
         let model = self.opened.golden();
         Clocks::new(&self.design, model, self.contract.as_ref())
@@ -237,7 +241,8 @@ impl Core {
 
     /// Returns one computation with the values of all operands and outputs, for pages that show an example.
     ///
-    /// # Errors Fails as [`Core::timing`] does.
+    /// # Errors
+    /// Fails as [`Core::timing`] does.
     pub fn example(&self) -> Result<WorkedExample> {
         trial::example(&self.design, self.contract.as_ref())
     }
@@ -245,7 +250,8 @@ impl Core {
     /// Returns the clock numbers of a line (the points that the device computes after one `start`) as linear functions of its
     /// length. Returns `None` for a device of single points, or if the numbers are no linear functions.
     ///
-    /// # Errors Fails as [`Core::timing`] does.
+    /// # Errors
+    /// Fails as [`Core::timing`] does.
     pub fn line(&self) -> Result<Option<LineClocks>> {
         trial::line(&self.design, self.contract.as_ref())
     }
@@ -363,7 +369,8 @@ impl Core {
 
     /// Returns the files of [`Core::core_files`] in the portable form, as pairs of a file name and contents.
     ///
-    /// # Errors Fails as [`Core::core_files`] does.
+    /// # Errors
+    /// Fails as [`Core::core_files`] does.
     pub fn verilog(&self) -> Result<Vec<(String, String)>> {
         self.verilog_for("")
     }
@@ -371,7 +378,8 @@ impl Core {
     /// Returns the files of [`Core::core_files`] for the FPGA family `target`, as pairs of a file name and contents. A file
     /// with a special form for this family replaces the portable one.
     ///
-    /// # Errors Fails as [`Core::core_files`] does.
+    /// # Errors
+    /// Fails as [`Core::core_files`] does.
     pub fn verilog_for(&self, target: &str) -> Result<Vec<(String, String)>> {
         Ok(self.core_files()?.sources_for(FileKind::CORE_SOURCES, target))
     }

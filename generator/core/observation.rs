@@ -25,9 +25,9 @@ pub struct LineClocks {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Linear {
-    /// In clocks.
+    /// The value for the length 0, in clocks.
     pub constant: i64,
-    /// In clocks for each unit of the length.
+    /// The increase for each unit of the length, in clocks.
     pub each: i64,
 }
 

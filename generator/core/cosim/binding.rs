@@ -42,8 +42,6 @@ pub(super) struct Binding<'a> {
 }
 
 impl<'a> Binding<'a> {
-    ///
-    /// # Errors
     /// Fails if the model predicts a signal that the design does not have, or if the design has an architectural register or an
     /// output that the model does not predict. Fails also if design and contract do not have the same operands and outputs.
     pub(super) fn new(

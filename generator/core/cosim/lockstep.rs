@@ -176,7 +176,8 @@ impl<'a> Lockstep<'a> {
     /// random computations that have `points` results in all. The given `computations` follow: raw operands, in the order of
     /// `Contract::operands`.
     ///
-    /// # Errors Fails if golden model and simulation differ, or as [`Lockstep::run`] does.
+    /// # Errors
+    /// Fails if golden model and simulation differ, or as [`Lockstep::run`] does.
     pub fn record(&self, points: u64, computations: &[Vec<i64>]) -> Result<Vectors> {
         let mut alone = self.alone(points)?;
         let mut vectors = Vectors::default();

@@ -37,8 +37,6 @@ impl OutputQuantity {
 }
 
 impl<'a> Measure<'a> {
-    ///
-    /// # Errors
     /// Fails if an output is not among `nets`, or has another format in the design.
     pub(super) fn new(design: &Design, contract: &'a dyn Contract, nets: &[NetId]) -> Result<Self> {
         let weights = contract.bounds().weights(ROUNDING_OF_F64);

@@ -53,8 +53,6 @@ impl OperandPort {
 }
 
 impl Ports {
-    ///
-    /// # Errors
     /// Fails if the design lacks a port of the handshake or an output of the contract, or if the strobe of an operand is not an
     /// input. Fails also if design and contract do not have the same operands.
     pub(super) fn new(design: &Design, contract: &dyn Contract) -> Result<Self> {

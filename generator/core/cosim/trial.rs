@@ -196,7 +196,8 @@ pub fn line(design: &Design, contract: &dyn Contract) -> Result<Option<LineClock
 /// Simulates the computation with the operands that [`typical`] chooses; for a highlight, `f` is mostly between 0.4 and 0.8.
 /// If it has several results, `outputs` has the outputs of the first result, and `results` the outputs of all.
 ///
-/// # Errors Fails as [`timing`] does.
+/// # Errors
+/// Fails as [`timing`] does.
 pub fn example(design: &Design, contract: &dyn Contract) -> Result<WorkedExample> {
     let operands = typical(contract, &[]);
     let trial = run(design, contract, &operands, &mut |_| Ok(()))?;

@@ -38,8 +38,6 @@ struct StepLabel {
     name: String,
 }
 
-///
-/// # Errors
 /// Fails if the design has no inputs or no outputs, if the vectors are empty, or if they do not fit the ports.
 pub fn files(job: &EmitJob, vectors: &Vectors, files: &mut OutputFiles) -> Result<()> {
     let design = job.design;

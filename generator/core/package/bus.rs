@@ -9,7 +9,7 @@ use glint_base::fill;
 pub struct Bus {
     pub key: &'static str,
     pub title: &'static str,
-    /// For example, `axil` in `threshold_levels_axil`.
+    /// The suffix of module names on this bus, for example `axil` in `threshold_levels_axil`.
     pub suffix: &'static str,
     /// The level of the reset port while the bus is in reset.
     pub reset_level: u8,

@@ -7,13 +7,14 @@ use serde::{Serialize, Serializer, ser::SerializeMap};
 use glint_rtl::netlist::{self, Design, FieldKind, NetId, Role, RomId};
 use glint_rtl::verilog::naming::{Naming, is_control_rom};
 
-/// For example, `cos_gamma` of `rough` is an operand of 21 bits in `u1.20`, and `cos_gamma_write` writes it.
+/// A port of the top module. For example, `cos_gamma` of `rough` is an operand of 21 bits in `u1.20`, and `cos_gamma_write`
+/// writes it.
 #[derive(Default, Serialize)]
 pub struct PortFacts<'a> {
     pub name: &'a str,
-    /// `input` or `output`.
+    /// The text `input` or `output`.
     pub direction: &'static str,
-    /// For example, `operand` or `strobe`.
+    /// The role of the port, for example `operand` or `strobe`.
     pub role: &'static str,
     pub width: u32,
     /// The number format, if the port is an operand, a result or a status bit.
@@ -29,17 +30,17 @@ pub struct PortFacts<'a> {
     /// The number of the port's block in the block diagram of the document that describes the device.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub block: Option<u16>,
-    /// One line; may be empty.
+    /// A description in one line; may be empty.
     #[serde(skip_serializing_if = "str::is_empty")]
     pub doc: &'a str,
 }
 
-/// For example, `operand_select` of `rough` has 2 bits from bit 7 on, and the choices `cosines`, `sines`, `half_n` and
-/// `square`.
+/// A field of the control word. For example, `operand_select` of `rough` has 2 bits from bit 7 on, and the choices `cosines`,
+/// `sines`, `half_n` and `square`.
 #[derive(Serialize)]
 pub struct FieldFacts<'a> {
     pub name: &'a str,
-    /// `select`, `enable`, `flag` or `sequence`.
+    /// The kind of field: `select`, `enable`, `flag` or `sequence`.
     pub kind: &'static str,
     pub low: u32,
     pub width: u32,
@@ -51,7 +52,7 @@ pub struct FieldFacts<'a> {
     pub lines: &'a [u16],
 }
 
-/// For example, microinstruction 3 of `rough` is named `12 <- sin gamma * sin dgamma`.
+/// A microinstruction. For example, microinstruction 3 of `rough` is named `12 <- sin gamma * sin dgamma`.
 #[derive(Serialize)]
 pub struct MicroinstructionFacts<'a> {
     pub address: usize,
@@ -65,7 +66,7 @@ pub struct MicroinstructionFacts<'a> {
 #[derive(Serialize)]
 #[serde(untagged)]
 pub enum SequenceFacts<'a> {
-    /// `next`, `wait for start` or `end`.
+    /// The plain rules `next`, `wait for start` or `end`.
     Plain(&'static str),
     /// A jump back, which makes a loop.
     Loop {
@@ -81,7 +82,7 @@ pub enum SequenceFacts<'a> {
     },
 }
 
-/// For example, `sine` of `rough` has 584 words of 35 bits, which are 20440 bits in all.
+/// A ROM of a core. For example, `sine` of `rough` has 584 words of 35 bits, which are 20440 bits in all.
 #[derive(Serialize)]
 pub struct RomFacts<'a> {
     pub name: &'a str,

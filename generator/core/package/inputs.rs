@@ -9,7 +9,7 @@ use glint_rtl::verilog::header::Origin;
 pub struct EmitInputs {
     /// The command that generates the files again. It names the configuration by its [`glint_base::input::label`].
     pub regenerate: String,
-    /// SHA-256 in hexadecimal.
+    /// The SHA-256 of the configuration, in hexadecimal.
     pub configuration: String,
     pub timing: HandshakeTiming,
     pub example: Option<WorkedExample>,

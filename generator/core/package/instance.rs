@@ -14,7 +14,7 @@ use glint_rtl::verilog::rows::{Row, separated};
 
 pub struct InstanceExample {
     pub module: String,
-    /// For example, `the core between two AXI4-Streams`.
+    /// The module in a few words, for example `the core between two AXI4-Streams`.
     pub what: String,
     /// Declarations of the wires for the module's ports, and the instance. The clock must be declared already.
     pub verilog: String,

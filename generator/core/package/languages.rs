@@ -131,7 +131,7 @@ fn std_logic(width: u32, vector: bool) -> String {
     }
 }
 
-/// Bits are numbered by their weights. For example, `u1.20` becomes `ufixed(0 downto -20)`.
+/// Returns a fixed-point type whose bits are numbered by their weights. For example, `u1.20` becomes `ufixed(0 downto -20)`.
 fn fixed(format: Format) -> String {
     let kind = if format.signed { "sfixed" } else { "ufixed" };
     let low = -format.frac;
@@ -171,7 +171,7 @@ const VHDL_2008: &str = "
 struct VerilogConstant {
     name: String,
     constant: String,
-    /// For example, `cos_gamma_t`.
+    /// The type in SystemVerilog, for example `cos_gamma_t`.
     kind: String,
     doc: Vec<String>,
     format: Format,

@@ -60,7 +60,7 @@ struct Manifest<'a> {
 struct ComputationNames<'a> {
     operands: Vec<&'a str>,
     results: Vec<&'a str>,
-    /// Each as JSON on a single line.
+    /// The computations, each as JSON on a single line.
     points: Vec<Box<RawValue>>,
 }
 

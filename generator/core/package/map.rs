@@ -40,7 +40,7 @@ pub enum Access {
 
 #[derive(Clone, Debug, Deserialize)]
 pub struct RegisterBits {
-    /// In plain lower-case words.
+    /// The name, in plain lower-case words.
     pub name: String,
     #[serde(default)]
     pub low: u32,
@@ -48,26 +48,26 @@ pub struct RegisterBits {
     pub access: Access,
     #[serde(default)]
     pub reset: u64,
-    /// For software, as a sentence without its full stop.
+    /// The meaning for software, as a sentence without its full stop.
     pub doc: String,
 }
 
 /// A register of 32 bits, which software reads or writes over a bus.
 #[derive(Clone, Debug, Deserialize)]
 pub struct BusRegister {
-    /// In plain lower-case words.
+    /// The name, in plain lower-case words.
     pub name: String,
-    /// In words of 32 bits.
+    /// The address in words of 32 bits.
     #[serde(default)]
     pub place: u32,
-    /// For software, as a sentence without its full stop.
+    /// The purpose for software, as a sentence without its full stop.
     pub doc: String,
-    /// From the lowest bits to the highest.
+    /// The fields, from the lowest bits to the highest.
     pub bits: Vec<RegisterBits>,
 }
 
 impl BusRegister {
-    /// In bytes.
+    /// Returns the address in bytes.
     pub fn offset(&self) -> u32 {
         4 * self.place
     }
@@ -98,17 +98,15 @@ pub struct PortBits {
 
 #[derive(Clone, Debug)]
 pub struct Map {
-    /// In the order of their addresses, which have no gaps.
+    /// The registers in the order of their addresses, which have no gaps.
     pub registers: Vec<BusRegister>,
-    /// In the order of the ports.
+    /// The operands in the order of the ports.
     pub operands: Vec<PortPlacement>,
-    /// In the order of the ports.
+    /// The results in the order of the ports.
     pub results: Vec<PortPlacement>,
 }
 
 impl Map {
-    ///
-    /// # Errors
     /// Fails if the core is a pipeline, computes several results after one `start`, or lacks the handshake, operands or
     /// results. Fails if two registers would have the same name, for example because an operand is called `status`.
     pub fn new(design: &Design, inputs: &EmitInputs) -> Result<Self> {

@@ -112,8 +112,6 @@ fn core_files(job: &EmitJob) -> Result<OutputFiles> {
     Ok(files)
 }
 
-///
-/// # Errors
 /// Fails if [`Design::verify_structure`] finds mistakes, if a net is named `clk`, or if vectors do not fit the ports. Fails if
 /// the core cannot have a wrapper or a model that the configuration asks for, or if the name of a module is used for anything
 /// else.

@@ -13,7 +13,8 @@ use super::output_file::OutputFile;
 
 /// Checks the files of one configuration.
 ///
-/// # Errors Fails if the name of a module is also used for something else. The error names the module, the file and the line.
+/// # Errors
+/// Fails if the name of a module is also used for something else. The error names the module, the file and the line.
 pub fn check(files: &[OutputFile]) -> Result<()> {
     let mut modules: Vec<&str> = Vec::new();
     for file in files {
@@ -64,7 +65,7 @@ pub fn check_together<'a>(
     Ok(())
 }
 
-/// In these files the name of a module may have another meaning.
+/// Only in files of Verilog or SystemVerilog can the name of a module have another meaning.
 fn is_checked(kind: FileKind) -> bool {
     let is_system_verilog = matches!(
         kind,

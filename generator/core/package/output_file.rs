@@ -6,9 +6,9 @@ use sha2::{Digest, Sha256};
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OutputFile {
     pub kind: FileKind,
-    /// Relative to the output directory, with `/`: `rtl_out/<name>/<name>.v`.
+    /// The path relative to the output directory, with `/`: `rtl_out/<name>/<name>.v`.
     pub path: String,
-    /// Must end with a newline.
+    /// The text, which must end with a newline.
     pub contents: String,
     /// The names of the modules that the file defines, the main one first. For example,
     /// `testbench/rough/rough_registers_formal.sv` defines `rough_registers_formal`, and `rough` as a stub.

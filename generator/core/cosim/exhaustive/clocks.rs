@@ -76,8 +76,6 @@ pub struct Clocks<'a> {
 }
 
 impl<'a> Clocks<'a> {
-    ///
-    /// # Errors
     /// Fails if the model predicts a signal that the design does not have, or if the design has an architectural register or an
     /// output that the model does not predict. Fails also if design and contract do not have the same operands and outputs.
     pub fn new(

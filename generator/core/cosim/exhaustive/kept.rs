@@ -21,16 +21,12 @@ fn checksum(state: &ShardState) -> Result<String> {
     Ok(digest(&serde_json::to_vec(state)?))
 }
 
-///
-/// # Errors
 /// Fails if the state cannot be written as JSON.
 pub fn to_text(state: &ShardState) -> Result<String> {
     let kept = SavedShard { state: state.clone(), checksum: checksum(state)? };
     Ok(serde_json::to_string_pretty(&kept)? + "\n")
 }
 
-///
-/// # Errors
 /// Fails if the text is no such file of this version of Glint, or if its checksum is wrong, because the file was changed.
 pub fn from_text(text: &str) -> Result<ShardState> {
     let kept: SavedShard =

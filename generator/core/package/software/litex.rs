@@ -57,8 +57,6 @@ struct LitexStream<'a> {
     last: bool,
 }
 
-///
-/// # Errors
 /// Fails if the core is a pipeline or computes lines of points, and the configuration does not ask for a stream.
 pub fn file(job: &EmitJob, tops: &[Top], files: &mut OutputFiles) -> Result<()> {
     let (name, design, is_line) = (job.name(), job.design, job.is_line());

@@ -92,7 +92,7 @@ impl CField {
         format!("{:?}", glint_base::fixed::exp2(-self.format.frac))
     }
 
-    /// As C doubles.
+    /// Returns the smallest and the largest raw integer as C doubles.
     fn limits(&self) -> (String, String) {
         let (low, high) = self.format.range();
         (format!("{:?}", low as f64), format!("{:?}", high as f64))
@@ -192,11 +192,8 @@ fn result_ports(design: &Design) -> impl Iterator<Item = &Port> {
     design.outputs().filter(|port| port.role == Role::Result)
 }
 
-/// Returns the lines of the C function that computes one point, and the ROMs that the function reads. `tables` has the names of
-/// the arrays with their words.
-///
-/// # Errors
-/// Fails if the microprogram cannot be unrolled.
+/// Returns the lines of the C function that computes one point, and the ROMs that it reads. `tables` has the names of the
+/// arrays with their words. Fails if the microprogram cannot be unrolled.
 fn of_point(design: &Design, tables: &[String]) -> Result<(Vec<String>, Vec<RomId>)> {
     let unrolled = unroll_in_powers(design)?;
     let results: Vec<(&Port, NodeId)> = results_of(design, &unrolled).collect();
@@ -226,7 +223,7 @@ fn of_point(design: &Design, tables: &[String]) -> Result<(Vec<String>, Vec<RomI
     Ok((body, roms(&unrolled.graph, &wanted)))
 }
 
-/// Returns the result ports of a design, each with the node of its value in the unrolled computation.
+/// Returns the result ports, each with the node of its value in the unrolled computation.
 fn results_of<'a>(
     design: &'a Design,
     of: &'a Unrolled,
@@ -237,11 +234,8 @@ fn results_of<'a>(
     })
 }
 
-/// Returns the lines of the C function that computes a line of points, and the ROMs that the function reads. The function
-/// executes the core clock by clock until `done` is 1.
-///
-/// # Errors
-/// Fails if the design has no output `valid` or `done`.
+/// Returns the lines of the C function that computes a line of points, and the ROMs that it reads. The function executes the
+/// core clock by clock until `done` is 1.
 fn of_line(design: &Design, tables: &[String]) -> Result<(Vec<String>, Vec<RomId>)> {
     let Cycle { unrolled, held } = any_cycle(design);
     let graph = &unrolled.graph;
@@ -309,8 +303,7 @@ fn of_line(design: &Design, tables: &[String]) -> Result<(Vec<String>, Vec<RomId
 }
 
 /// Returns the C statements of a rising edge: the variables `states` of the registers and memories in `kept` take their new
-/// values. A new value that depends on the old values is computed first, so that the order of the assignments does not
-/// matter.
+/// values.
 fn clocked(
     graph: &Graph,
     printer: &Printer,
@@ -339,8 +332,8 @@ fn clocked(
     lines
 }
 
-/// Returns the C statement that converts `pattern`, an expression with the bit pattern of a result, to a number, and assigns
-/// it to the member of the result. For example, `red_out = pattern;`.
+/// Returns the C statement that converts `pattern`, the bit pattern of a result, to a number, and assigns it to the result's
+/// member. For example, `red_out = pattern;`.
 fn assigned(design: &Design, port: &Port, pattern: &str) -> String {
     let net = design.net(port.net);
     let kind = CField::new(design, port).kind;
@@ -356,7 +349,7 @@ fn assigned(design: &Design, port: &Port, pattern: &str) -> String {
     format!("{} = {value};", field(&net.name))
 }
 
-/// Returns the ROMs that the values `wanted` depend on. A ROM that is read several times occurs several times.
+/// A ROM that is read several times occurs several times.
 fn roms(graph: &Graph, wanted: &[NodeId]) -> Vec<RomId> {
     let mut roms = Vec::new();
     for id in graph.cone(wanted.iter().copied()) {
@@ -367,13 +360,12 @@ fn roms(graph: &Graph, wanted: &[NodeId]) -> Vec<RomId> {
     roms
 }
 
-/// Returns the name of the C array with the words of each ROM, in the order of the design's ROMs.
+/// Returns the name of each ROM's C array, in the order of the design's ROMs.
 pub fn table_names(design: &Design) -> Vec<String> {
     let mut names = Names::new(design.nets.iter().map(|net| net.name.as_str()));
     design.roms.iter().map(|rom| names.fresh(&format!("{}_table", rom.name))).collect()
 }
 
-/// Returns the lines that define the C arrays of the ROMs in `read`.
 fn tables(design: &Design, names: &[String], read: &[RomId]) -> Vec<String> {
     let mut lines = Vec::new();
     for (at, rom) in design.roms.iter().enumerate() {
@@ -406,7 +398,7 @@ fn tables(design: &Design, names: &[String], read: &[RomId]) -> Vec<String> {
     lines
 }
 
-/// Returns an integer as a C expression that keeps its value inside any other expression: a negative one is in parentheses.
+/// Returns a C expression that keeps its value inside any other expression: a negative integer is in parentheses.
 pub(super) fn c_integer(value: i32) -> String {
     if value < 0 { format!("({value})") } else { value.to_string() }
 }

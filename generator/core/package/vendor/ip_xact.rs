@@ -19,7 +19,6 @@ struct IpXactComponent<'a> {
     version: &'a str,
     buses: Vec<BusInterface>,
     registers: &'a [BusRegister],
-    /// The number of bytes that the registers occupy.
     range: usize,
     memories: Vec<String>,
 }
@@ -27,13 +26,11 @@ struct IpXactComponent<'a> {
 /// A bus interface. ARM published the definitions of the buses, and AMD the definition of an interrupt.
 struct BusInterface {
     name: &'static str,
-    /// Vendor and library of the definition, as attributes.
+    /// The attributes for vendor and library of the definition.
     definition: &'static str,
-    /// The name of the definition.
     bus: &'static str,
     version: &'static str,
     is_slave: bool,
-    /// Whether the interface gives access to the registers.
     mapped: bool,
     /// Pairs of the name in the definition and the name of the port.
     ports: Vec<(String, String)>,
@@ -49,19 +46,17 @@ impl BusInterface {
 }
 
 impl IpXactComponent<'_> {
-    /// Returns a number in hexadecimal digits, which IP-XACT writes behind `'h`. For example, 255 gives `ff`.
+    /// IP-XACT writes the digits behind `'h`. For example, 255 gives `ff`.
     fn hex(&self, number: impl std::fmt::LowerHex) -> String {
         format!("{number:x}")
     }
 
-    /// Returns `text` in ASCII, with the characters `&`, `<` and `>` escaped for XML.
     fn escaped(&self, text: &str) -> String {
         escaped(text)
     }
 }
 
 impl RegisterBits {
-    /// Returns how software can access the bits, as IP-XACT writes it.
     fn ip_xact_access(&self) -> &'static str {
         match self.access {
             Access::Read => "read-only",
@@ -81,10 +76,6 @@ impl RegisterBits {
     }
 }
 
-/// Adds the IP-XACT description `<top>.xml` of each module.
-///
-/// # Errors
-/// Fails if a template fails.
 pub fn files(job: &EmitJob, tops: &[Top], files: &mut OutputFiles) -> Result<()> {
     for top in tops {
         let registers: &[BusRegister] = match (top.face, &job.registers) {
@@ -108,8 +99,8 @@ pub fn files(job: &EmitJob, tops: &[Top], files: &mut OutputFiles) -> Result<()>
     Ok(())
 }
 
-/// Returns the bus interfaces of a module, and the interface of its interrupt output, if it has one. IEEE 1685-2014 does not
-/// define an interrupt. The interrupt therefore has Vivado's definition, which other tools know too.
+/// Returns the bus interfaces of a module, and the interface of its interrupt output. IEEE 1685-2014 defines no interrupt, so
+/// the interrupt has Vivado's definition, which other tools know too.
 fn buses(top: &Top) -> Vec<BusInterface> {
     let mut buses = Vec::new();
     for protocol in top.protocols {
@@ -140,13 +131,11 @@ fn buses(top: &Top) -> Vec<BusInterface> {
     buses
 }
 
-/// Returns `text` in ASCII, with the characters `&`, `<` and `>` escaped for XML.
 fn escaped(text: &str) -> String {
     ascii(text).replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
-/// Returns `text` for an XML comment. Adjacent hyphens are separated by spaces, because XML forbids two adjacent hyphens in a
-/// comment.
+/// XML forbids two adjacent hyphens in a comment; a space separates them here.
 fn comment(text: &str) -> String {
     let mut apart = text.to_owned();
     while apart.contains("--") {
