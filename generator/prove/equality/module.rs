@@ -13,7 +13,6 @@ use super::cells::{Bit, Connection, WireValues};
 use super::term::{VectorTermId, VectorTerms};
 use glint_base::fixed::MAX_WIDTH;
 
-/// The computation of a combinational cell: an operation, or a read from a memory.
 enum What {
     Cell {
         kind: String,
@@ -25,8 +24,7 @@ enum What {
     Read(Read),
 }
 
-/// A read port of a memory in a flat Verilog module: the index of the memory in [`Module::memories`], and the number of the
-/// port.
+/// A read port: the index of the memory in [`Module::memories`], and the number of the port.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Read {
     pub memory: usize,
@@ -44,9 +42,8 @@ struct ModuleRegister {
     output: Connection,
 }
 
-/// A memory that a flat Verilog module writes, such as the memory of a delay line.
+/// A memory that the module writes, such as the memory of a delay line.
 pub struct Memory {
-    /// The read ports of the memory.
     pub reads: Vec<Read>,
     width: usize,
     addresses: Vec<Connection>,
@@ -59,7 +56,6 @@ struct Write {
     enable: Connection,
 }
 
-/// A flat Verilog module, as Yosys has read it.
 pub struct Module {
     inputs: Vec<(String, Connection)>,
     outputs: Vec<(String, Connection)>,
@@ -70,8 +66,7 @@ pub struct Module {
     wires: usize,
 }
 
-/// The symbolic values of all registers of a flat Verilog module. Each register has a list of terms of at most 64 bits, the
-/// lowest bits first.
+/// The symbolic values of all registers: terms of at most 64 bits, the lowest bits first.
 pub type RegisterContents = Vec<Vec<VectorTermId>>;
 
 fn bits(value: &Value) -> Result<Connection> {
@@ -89,8 +84,7 @@ fn bits(value: &Value) -> Result<Connection> {
     Ok(bits)
 }
 
-/// Returns a parameter of a cell as a number. Yosys writes parameters in binary. For example, `00000101` is 5. Fails if the
-/// parameter is missing or is no number.
+/// Yosys writes the parameters of a cell in binary. For example, `00000101` is 5.
 fn parameter(cell: &Value, name: &str) -> Result<usize> {
     let value = &cell["parameters"][name];
     if let Some(text) = value.as_str()
@@ -102,12 +96,11 @@ fn parameter(cell: &Value, name: &str) -> Result<usize> {
     Ok(number as usize)
 }
 
-/// Returns the bits at a port of a cell. Fails if the cell lacks the port.
 fn connection(cell: &Value, port: &str) -> Result<Connection> {
     bits(&cell["connections"][port])
 }
 
-/// Returns the bits at a port of a cell; no bits if the cell lacks the port. Fails if the list of bits is malformed.
+/// Returns no bits if the cell lacks the port.
 fn optional_connection(cell: &Value, port: &str) -> Result<Connection> {
     match &cell["connections"][port] {
         Value::Null => Ok(Connection::new()),
@@ -115,15 +108,12 @@ fn optional_connection(cell: &Value, port: &str) -> Result<Connection> {
     }
 }
 
-/// Returns the bits of port number `port`. A memory lists the bits of all its ports side by side, `width` bits for each.
+/// A memory lists the bits of all its ports side by side, `width` bits for each.
 fn port_bits(side_by_side: &Connection, port: usize, width: usize) -> Connection {
     side_by_side[port * width..(port + 1) * width].to_vec()
 }
 
 impl Module {
-    /// Parses a module from Yosys's JSON.
-    ///
-    /// # Errors
     /// Fails if the netlist is malformed or has no input `clk`, or if a register or memory does not change at the rising edge
     /// of `clk` only. Fails also if a memory has clocked read ports, several write ports or a first address other than 0, if a
     /// memory that is never written has undetermined or too wide words, or if the cells form a combinational loop.
@@ -245,7 +235,6 @@ impl Module {
         Ok(())
     }
 
-    /// Returns all connections of ports, registers, cells and memories.
     fn connections(&self) -> Vec<&Connection> {
         let mut connections = Vec::new();
         for register in &self.registers {
@@ -265,7 +254,7 @@ impl Module {
         connections
     }
 
-    /// Sorts the cells so that each comes after the cells whose output it reads. Fails if there is a combinational loop.
+    /// Sorts the cells so that each comes after the cells whose output it reads. Fails for a combinational loop.
     fn order(&mut self) -> Result<()> {
         let mut wires = 0;
         for bit in self.connections().into_iter().flatten() {
