@@ -48,8 +48,6 @@ struct ClockConstants {
 }
 
 impl Counters {
-    ///
-    /// # Errors
     /// Fails if the interval is longer than 1 and no counter decides the clocks in which the pipeline takes a point. Fails also if a
     /// memory delays its words by no fixed number of clocks, or if the module has a cell that is not understood.
     pub fn new(module: &Module, roles: &Roles, interval: usize) -> Result<Self> {

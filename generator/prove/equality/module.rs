@@ -305,13 +305,13 @@ impl Module {
         Ok(())
     }
 
-    /// Returns the contents of the registers at power-up. All of them are unknown, so the proof holds for every initial state.
+    /// All registers are unknown at power-up, so the proof holds for every initial state.
     pub fn power_up(&self, terms: &mut VectorTerms) -> RegisterContents {
         self.registers.iter().map(|it| unknown(terms, it.output.len())).collect()
     }
 
-    /// Returns the value of every wire of the module in one clock, given the inputs, the registers and the words at the read
-    /// ports of memories.
+    /// Returns the value of every wire in one clock, given the inputs, the registers and the words at the read ports of
+    /// memories.
     ///
     /// # Errors
     /// Fails if an input port is wider than 64 bits, or if [`WireValues::cell`] fails for a cell.
@@ -347,12 +347,11 @@ impl Module {
         Ok(values)
     }
 
-    /// Returns the values of the registers after a rising edge of the clock.
     pub fn edge(&self, terms: &mut VectorTerms, values: &WireValues) -> RegisterContents {
         self.registers.iter().map(|it| values.columns(terms, &it.data)).collect()
     }
 
-    /// Returns the symbolic values of the module's outputs, by the names of the ports.
+    /// Returns the outputs by the names of the ports.
     pub fn shown(
         &self,
         terms: &mut VectorTerms,
@@ -366,8 +365,8 @@ impl Module {
     }
 }
 
-/// Returns the index of the first cell that drives an input of `cell` and has no position in the order yet, or `None` if all
-/// have one. A cell without a position has the position 0.
+/// Returns the index of the first cell that drives an input of `cell` and has no position in the order yet, which is position
+/// 0.
 fn unplaced_driver(cell: &ModuleCell, driver: &[Option<usize>], place: &[usize]) -> Option<usize> {
     for bit in cell.inputs.iter().flatten() {
         if let Bit::Wire(wire) = *bit
@@ -381,12 +380,12 @@ fn unplaced_driver(cell: &ModuleCell, driver: &[Option<usize>], place: &[usize])
 }
 
 impl Memory {
-    /// Returns a new unknown word of the memory's width, for a read whose result is not known.
+    /// Returns a new unknown word, for a read whose result is not known.
     pub fn any(&self, terms: &mut VectorTerms) -> Vec<VectorTermId> {
         unknown(terms, self.width)
     }
 
-    /// Returns the data at the write port of the memory, as terms of at most 64 bits, the lowest bits first.
+    /// Returns the data at the write port, as terms of at most 64 bits, the lowest bits first.
     pub fn written(&self, terms: &mut VectorTerms, values: &WireValues) -> Vec<VectorTermId> {
         values.columns(terms, &self.write.data)
     }
@@ -404,7 +403,7 @@ impl Memory {
     }
 }
 
-/// Returns new unknowns with `width` bits in total, the lowest bits first, each of at most 64 bits.
+/// Returns unknowns with `width` bits in total, the lowest bits first, each of at most 64 bits.
 fn unknown(terms: &mut VectorTerms, width: usize) -> Vec<VectorTermId> {
     let mut columns = Vec::new();
     for lowest in (0..width).step_by(MAX_WIDTH as usize) {
@@ -415,8 +414,7 @@ fn unknown(terms: &mut VectorTerms, width: usize) -> Vec<VectorTermId> {
 }
 
 /// Returns the contents of a memory that is never written. The last digits of the parameter `INIT` are word 0. For example,
-/// `1101` with words of 2 bits has word 0 = 1 and word 1 = 3. Fails if a word is wider than 64 bits or has undetermined bits,
-/// or if the number of words is wrong.
+/// `1101` with words of 2 bits has word 0 = 1 and word 1 = 3.
 fn words(cell: &Value, width: usize) -> Result<Vec<u64>> {
     let contents = cell["parameters"]["INIT"].as_str().unwrap_or_default();
     ensure!(width <= MAX_WIDTH as usize, "the memory words have more than 64 bits");
