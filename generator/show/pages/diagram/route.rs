@@ -9,34 +9,26 @@ use super::graph::DiagramGraph;
 use super::place::Placement;
 use super::tracks::{Side, Trunk, assign};
 
-/// The distance from one track to the next, in units of the drawing.
+/// In units of the drawing.
 const TRACK: f64 = 9.0;
 
-/// The space on each side of the tracks of a gap.
 const MARGIN: f64 = 14.0;
 
-/// The distance from the border of a box to its first pin.
 const EDGE: f64 = 8.0;
 
-/// The width of a lane, in which a wire runs around a box, in units of the drawing. Wires that lead back to an earlier column
-/// need lanes.
+/// The width of a lane, in which a wire that leads back to an earlier column runs around a box.
 pub const LANE: f64 = 10.0;
 
-/// The size and position of a box.
 #[derive(Clone, Copy, Debug)]
 pub struct Body {
     /// The vertical position at which the wires around the box begin.
     pub top: f64,
-    /// The upper edge of the box.
     pub upper: f64,
-    /// The lower edge of the box.
     pub lower: f64,
-    /// The width of the box.
     pub width: f64,
 }
 
 impl Body {
-    /// Moves the box down by the distance `by`.
     pub fn lower(&mut self, by: f64) {
         for edge in [&mut self.top, &mut self.upper, &mut self.lower] {
             *edge += by;
@@ -44,40 +36,34 @@ impl Body {
     }
 }
 
-/// A straight piece of a wire, horizontal or vertical.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WireSegment {
-    /// One end of the piece: its horizontal and its vertical position.
+    /// A horizontal and a vertical position.
     pub from: (f64, f64),
-    /// The other end of the piece.
     pub to: (f64, f64),
 }
 
 /// The pieces of all wires that one box drives.
 #[derive(Clone, Debug, Default)]
 pub struct WireRoute {
-    /// The straight pieces of the wires, in no order.
     pub pieces: Vec<WireSegment>,
-    /// The positions at which three or more pieces meet. The drawing marks them with a dot.
+    /// The positions at which three or more pieces meet, which the drawing marks with a dot.
     pub junctions: Vec<(f64, f64)>,
     /// The positions at which the wires end in arrows at boxes.
     pub pins: Vec<(f64, f64)>,
 }
 
-/// The finished layout of a block diagram.
 pub struct Routes {
-    /// The left edge of each box.
     pub left: Vec<f64>,
-    /// For each box, the route of the wires that it drives.
+    /// For each box, the wires that it drives.
     pub nets: Vec<WireRoute>,
-    /// The width of the diagram.
     pub width: f64,
     /// The left and the right edge of each column.
     pub columns: Vec<(f64, f64)>,
 }
 
 impl Routes {
-    /// Returns the vertical position of the topmost wire, or `f64::MAX` without wires.
+    /// Returns `f64::MAX` without wires.
     pub fn top(&self) -> f64 {
         let mut top = f64::MAX;
         for piece in self.nets.iter().flat_map(|net| &net.pieces) {
@@ -86,7 +72,7 @@ impl Routes {
         top
     }
 
-    /// Returns the vertical position of the lowest wire, or 0 without wires. Positions grow downward.
+    /// Returns 0 without wires. Positions grow downward.
     pub fn bottom(&self) -> f64 {
         let mut bottom: f64 = 0.0;
         for piece in self.nets.iter().flat_map(|net| &net.pieces) {
@@ -95,7 +81,6 @@ impl Routes {
         bottom
     }
 
-    /// Moves all wires down by the distance `by`.
     pub fn lower(&mut self, by: f64) {
         for net in &mut self.nets {
             for piece in &mut net.pieces {
@@ -110,8 +95,8 @@ impl Routes {
 }
 
 /// Returns for each box the nets whose wires run around it, because they lead back to an earlier column. A net is the index of
-/// the box that drives it, and takes one [`LANE`]. For example, a wire from box 5 back to box 2 gives both boxes a lane for the
-/// net 5.
+/// the box that drives it, and takes one [`LANE`]. For example, a wire from box 5 back to box 2 gives both boxes a lane for
+/// the net 5.
 pub fn lanes(graph: &DiagramGraph, back: &[bool]) -> Vec<Vec<usize>> {
     let mut lanes = vec![Vec::new(); graph.boxes.len()];
     for (wire, leads_back) in graph.wires.iter().zip(back) {
