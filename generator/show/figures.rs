@@ -158,7 +158,7 @@ impl Figures {
         }
     }
 
-    /// For example, `first 0.4 → second 3.1 → third 7.9 ns`. The path must have a point.
+    /// Returns a text such as `first 0.4 → second 3.1 → third 7.9 ns`. The path must have a point.
     pub fn path_in_words(&self) -> String {
         let steps = self.critical_path.iter().map(|step| format!("{} {:.1}", step.name, step.ns));
         format!("{} ns", Vec::from_iter(steps).join(" → "))

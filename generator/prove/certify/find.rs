@@ -17,7 +17,7 @@ use glint_tools::{LimitReached, Tool};
 /// Answers are rounded up to six digits after the point.
 const MILLIONTHS: f64 = 1e6;
 
-/// In output units.
+/// The precision of the search, in output units.
 const STEP: f64 = 1.0 / 2048.0;
 const TRY: Duration = Duration::from_secs(2);
 

@@ -10,7 +10,7 @@ use super::terms::number;
 
 pub(super) const ASKED: &str = "| in ? }";
 
-/// For example, an output differs from the formula by at most the error bound.
+/// A statement for Gappa: for example, an output differs from the formula by at most the error bound.
 #[derive(Clone, Debug)]
 pub struct Statement {
     /// The output, or the intermediate value, that the statement is about.

@@ -12,7 +12,7 @@ pub type RealTermId = usize;
 pub enum RoundingDirection {
     /// Hardware that drops bits rounds down.
     Down,
-    /// To the nearest, halves away from 0. Only values that are not negative are rounded in this way, so halves go up.
+    /// Rounds to the nearest, halves away from 0. Only values that are not negative are rounded in this way, so halves go up.
     Nearest,
 }
 

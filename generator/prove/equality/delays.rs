@@ -83,7 +83,7 @@ impl Counters {
         self.delays[read.memory][read.port][clock % self.slots.len()]
     }
 
-    /// For each read port of each memory.
+    /// Returns the longest delay of each read port of each memory, in clocks.
     pub fn longest_delays(&self) -> Vec<usize> {
         let mut longest = Vec::new();
         for of_slots in self.delays.iter().flatten() {

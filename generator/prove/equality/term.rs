@@ -98,7 +98,7 @@ impl VectorTerm {
     }
 }
 
-/// For example, 0b1110 of 4 bits is −2.
+/// Reads a bit pattern as a two's complement number: 0b1110 of 4 bits is −2.
 fn signed(bits: u64, width: u32) -> i64 {
     let drop = MAX_WIDTH - width;
     (bits << drop) as i64 >> drop

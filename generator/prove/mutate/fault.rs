@@ -32,7 +32,7 @@ pub enum BitChange {
 impl BitChange {
     pub const ALL: [Self; 3] = [Self::Stuck0, Self::Stuck1, Self::Inverted];
 
-    /// For example, bit 0 of 0b1010 inverted gives 0b1011.
+    /// Changes bit number `bit`. For example, bit 0 of 0b1010 inverted gives 0b1011.
     pub fn applied(self, bits: u64, bit: u32) -> u64 {
         match self {
             Self::Stuck0 => bits & !(1 << bit),
@@ -54,7 +54,7 @@ pub enum Site {
     Words(RomId, Vec<(usize, u64)>),
 }
 
-/// For example, bit 3 of the net `adder15` stuck at 0.
+/// One change at one place, for example bit 3 of the net `adder15` stuck at 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NetlistFault {
     /// A unique name, made of names in the design: `adder15[3]:stuck-at-0`. A fault of a ROM names the word:

@@ -21,7 +21,7 @@ pub const GOAL_TEXT: f64 = 0.98;
 /// some check notices count, so words that are never read do not count.
 pub const GOAL_MEMORY: f64 = 0.95;
 
-/// For example "98 of 100 noticed".
+/// A share of faults, for example "98 of 100 noticed".
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Share {
     pub noticed: usize,
@@ -29,7 +29,7 @@ pub struct Share {
 }
 
 impl Share {
-    /// For example, 3 noticed of 4 give 0.75, and 0 of 0 give 1.
+    /// Returns a number from 0 to 1: 3 noticed of 4 give 0.75, and 0 of 0 give 1.
     pub fn value(self) -> f64 {
         if self.of == 0 { 1.0 } else { self.noticed as f64 / self.of as f64 }
     }
@@ -67,7 +67,7 @@ impl Tally {
         self.equivalent.values().sum()
     }
 
-    /// For example, 76 undecided faults of 10 457 are a share of 0.0073, which [`TOLERATED`] allows.
+    /// Returns a number from 0 to 1: 76 undecided faults of 10 457 give 0.0073, which [`TOLERATED`] allows.
     pub fn share_undecided(&self) -> f64 {
         if self.planted == 0 { 0.0 } else { self.undecided as f64 / self.planted as f64 }
     }

@@ -37,7 +37,7 @@ pub(super) struct PointSearch {
     high: Vec<usize>,
     /// The operands of the contract, each with its index among the inputs.
     operands: Vec<(usize, Operand)>,
-    /// From the operands to the results.
+    /// The stages from the operands to the results.
     stages: Vec<StageNets>,
     /// The number of clocks from one point to the next.
     interval: usize,

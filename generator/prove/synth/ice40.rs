@@ -22,7 +22,7 @@ const DEVICE: &str = "iCE40 UP5K, SG48";
 /// The largest chip of the family that has DSP blocks.
 const CHIP: &Chip = &ICE40.chips[0];
 
-/// In MHz. No core reaches this frequency, so that the placer tries hardest.
+/// The frequency in MHz that nextpnr is asked for. No core reaches it, so that the placer tries hardest.
 const GOAL: &str = "60";
 
 /// Measures the area of a core alone, and its frequency in its harness for each seed. Calls `done` after synthesis and after

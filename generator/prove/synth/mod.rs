@@ -193,7 +193,7 @@ fn yosys_of(family: &Family, search: &OsStr) -> Result<Tool> {
     }
 }
 
-/// For targets without a tool that times all cells.
+/// Measures only the area, for targets without a tool that times all cells.
 fn area(
     target: Target,
     yosys: &Tool,

@@ -35,12 +35,12 @@ impl Architecture {
         Ok(Self { core, interval, clocks_per_point: clocks, multipliers, cost })
     }
 
-    /// In million points a second, at the estimated clock frequency.
+    /// Returns million points a second, at the estimated clock frequency.
     pub fn rate(&self) -> f64 {
         self.cost.mhz / self.clocks_per_point
     }
 
-    /// For example, `sequential`, or `pipeline, interval 8`.
+    /// Names the architecture: for example, `sequential`, or `pipeline, interval 8`.
     pub fn words(&self) -> String {
         match self.interval {
             None => "sequential".to_owned(),
@@ -54,7 +54,7 @@ impl Architecture {
         Some(format!("architecture = \"pipelined\", pipeline.interval = {interval}"))
     }
 
-    /// For example, `1 DSP block, 18.1 million points a second`.
+    /// Returns a text such as `1 DSP block, 18.1 million points a second`.
     pub fn figures(&self) -> String {
         let blocks = match self.cost.dsps {
             1 => "1 DSP block".to_owned(),

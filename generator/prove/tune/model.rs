@@ -32,7 +32,7 @@ pub struct Cost {
     pub dsps: u64,
     pub block_rams: u64,
     pub rom_bits: u64,
-    /// In MHz.
+    /// The clock frequency in MHz.
     pub mhz: f64,
 }
 
@@ -233,7 +233,7 @@ fn period(design: &Design, family: &Family) -> f64 {
     longest + delays.register
 }
 
-/// In nanoseconds.
+/// Returns the delay of a net's cell, in nanoseconds.
 fn cell_delay(design: &Design, family: &Family, id: NetId, driver: &Driver) -> f64 {
     let delays = &family.timing;
     let levels = |inputs: u32| delays.logic * f64::from(inputs.max(2).ilog2().div_ceil(2).max(1));

@@ -62,7 +62,7 @@ impl<'a> CheckSubject<'a> {
 pub struct FileDigest {
     /// The path as `generate` names it, for example `rtl_out/rsqrt/rsqrt.v`.
     pub path: String,
-    /// SHA-256 in hexadecimal.
+    /// The SHA-256 in hexadecimal.
     pub sha256: String,
 }
 
@@ -181,7 +181,7 @@ pub struct Check {
     pub id: &'static str,
     /// The name for people, for example "Golden model against simulation".
     pub title: &'static str,
-    /// For example "Is no output further from the formula in f64 than the stated bound, for any operands?".
+    /// The question, for example "Is no output further from the formula in f64 than the stated bound, for any operands?".
     pub question: &'static str,
     /// The files or structures that the check reads, in words.
     pub reads: &'static str,
@@ -348,7 +348,7 @@ pub struct VerificationRecord {
     pub config: String,
     pub name: String,
     pub device: &'static str,
-    /// SHA-256 of the configuration with all its keys, in hexadecimal.
+    /// The SHA-256 of the configuration with all its keys, in hexadecimal.
     pub configuration: String,
     /// The Verilog and memory files that `generate` writes, with digests. Empty if these files cannot be made, for example
     /// because golden model and simulation disagree on the test bench.
@@ -357,7 +357,7 @@ pub struct VerificationRecord {
     pub conclusion: Conclusion,
     /// A verdict that no check has is left out.
     pub counts: BTreeMap<CheckVerdict, usize>,
-    /// In the order in which the checks ran.
+    /// The answers in the order in which the checks ran.
     pub checks: Vec<CheckAnswer>,
 }
 

@@ -137,7 +137,7 @@ fn is_about_memories(line: &str) -> bool {
     line.starts_with("no memory is checked")
 }
 
-/// For example, `every operand: x = 0 to 255`.
+/// Returns a text such as `every operand: x = 0 to 255`.
 fn domain(operands: &[Operand]) -> String {
     let mut ranges = Vec::new();
     for operand in operands {

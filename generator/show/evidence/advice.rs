@@ -170,7 +170,7 @@ fn candidates(
     candidates
 }
 
-/// For example, `exponent.bits` is in the table `exponent`. A key outside of all tables gives an empty text.
+/// Returns the table of a key, for example `exponent` for `exponent.bits`. A key outside of all tables gives an empty text.
 fn table_of(key: &str) -> &str {
     match key.split_once('.') {
         Some((table, _)) => table,

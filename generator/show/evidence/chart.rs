@@ -68,7 +68,7 @@ pub struct Chart {
     pub y: ChartAxis,
     /// The positions on the horizontal axis at which the curves have values, in ascending order.
     pub places: Vec<f64>,
-    /// At most [`crate::pages::plots::STYLES`], so that a reader can tell them apart.
+    /// The curves, at most [`crate::pages::plots::STYLES`], so that a reader can tell them apart.
     pub series: Vec<Series>,
     pub marks: Vec<Mark>,
 }

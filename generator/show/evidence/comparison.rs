@@ -16,7 +16,7 @@ use glint_rtl::netlist::{Design, Driver, Op};
 
 pub const ANGLES_PER_DEGREE: u32 = 100;
 
-/// From 0 to 90°, both included.
+/// The number of angles from 0 to 90°, both included.
 pub const ANGLES: u32 = 90 * ANGLES_PER_DEGREE + 1;
 
 /// The exponent n at which the clocks per point are counted, if they depend on n.

@@ -32,14 +32,14 @@ const FLOOR: f64 = 1e-6;
 pub struct DeviceCurves {
     pub device: String,
     pub summary: String,
-    /// In output units.
+    /// The proved bound of an output's error, in output units.
     pub bound_units: f64,
     /// The largest value of a colour operand; 0 for a device without colours. An error of `f` times this value is an error in
     /// output units.
     pub largest_colour: f64,
     /// The largest errors for each exponent; empty if no operands of the device denote γ and n.
     pub exponents: Vec<AtExponent>,
-    /// Empty if `exponents` is empty.
+    /// The charts; empty if `exponents` is empty.
     pub charts: Vec<Chart>,
 }
 

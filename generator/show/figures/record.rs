@@ -55,16 +55,16 @@ pub fn tools<'a>(figures: impl IntoIterator<Item = &'a Figures>) -> BTreeSet<&'a
     figures.into_iter().flat_map(|it| &it.tools).map(String::as_str).collect()
 }
 
-/// For example, 50 MHz and 5 clocks a point are 10 million points a second.
+/// The points that a core computes per second: 50 MHz and 5 clocks a point are 10 million.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Rate {
-    /// In millions, at the median frequency.
+    /// The rate in millions, at the median frequency.
     #[serde(rename = "million_points_per_second")]
     pub points: f64,
-    /// In millions, if there is a look-up table.
+    /// The rate in millions for each look-up table, if the core has any.
     #[serde(rename = "million_points_per_second_per_lut")]
     pub per_lut: Option<f64>,
-    /// In millions, if there is a DSP block.
+    /// The rate in millions for each DSP block, if the core has any.
     #[serde(rename = "million_points_per_second_per_dsp")]
     pub per_dsp: Option<f64>,
 }

@@ -32,7 +32,7 @@ pub struct PageInputs<'a> {
     pub advice: Option<Advice>,
     pub timing: &'a HandshakeTiming,
     pub example: &'a WorkedExample,
-    /// Only for a device that computes several points after one `start`.
+    /// The clocks of a line, for a device that computes several points after one `start`.
     pub line: Option<&'a LineClocks>,
 }
 
@@ -52,7 +52,7 @@ pub fn numbering(design: &Design) -> &'static str {
     }
 }
 
-/// For example, `u0.8`; a single bit without a binary point gives `1 bit`.
+/// Returns for example `u0.8`; a single bit without a binary point gives `1 bit`.
 pub fn format_text(format: Format) -> String {
     match format.width() {
         1 => "1 bit".to_owned(),
@@ -192,7 +192,7 @@ pub fn ports(design: &Design) -> TextTable {
     table.without_empty(NUMBER).without_empty("written by")
 }
 
-/// Includes the control ROM.
+/// Lists the ROMs, including the control ROM.
 pub fn roms(design: &Design, config: &Config) -> TextTable {
     let naming = Naming::new(design).styled(Surroundings::new(config, None).style);
     let mut table = TextTable::of("ROM | no.: | words × bits: | bits: | reads | file | an entry");
@@ -221,7 +221,7 @@ fn lines(lines: &[u16]) -> String {
     numbers.join(" ")
 }
 
-/// For example, the column "bits" has `4:2` for a field of three bits from bit 2 on.
+/// Lists the fields of the control word. The column "bits" has `4:2` for a field of three bits from bit 2 on.
 pub fn fields(design: &Design) -> TextTable {
     let mut table = TextTable::of("field | lines | bits | controls");
     for field in facts::fields(design) {

@@ -17,7 +17,7 @@ pub struct Column {
 #[derive(Clone, Debug)]
 pub struct TextTable {
     pub columns: Vec<Column>,
-    /// From top to bottom. Each row has a cell for each column.
+    /// The rows from top to bottom, each with a cell for each column.
     pub rows: Vec<Vec<String>>,
 }
 

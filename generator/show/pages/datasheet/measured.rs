@@ -5,7 +5,7 @@ use super::table::TableView;
 use crate::figures::{Figures, Frequency, Rate, SynthesisRecord};
 use crate::pages::account::TextTable;
 
-/// Printed if the target has no such resource, or if nothing was measured.
+/// The table has this text if the target has no such resource, or if nothing was measured.
 const NONE: &str = "–";
 
 pub struct RecordView {

@@ -8,7 +8,7 @@ use glint_rtl::netlist::{Design, FieldKind};
 pub struct Microprogram {
     /// Whether the source's figure has numbers for the control lines.
     pub numbered: bool,
-    /// From the highest bits to the lowest.
+    /// The fields, from the highest bits to the lowest.
     pub fields: Vec<FieldView>,
     /// The microinstructions, from address 0.
     pub rows: Vec<MicroinstructionRow>,

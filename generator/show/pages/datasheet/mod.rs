@@ -26,7 +26,7 @@ use glint_core::cosim::exhaustive::{Backing, Record};
 use glint_core::package::{HandshakeTiming, LineClocks, WorkedExample};
 use waves::Waves;
 
-/// In pixels.
+/// The width and the height of the picture of a highlight, in pixels.
 const SIDE: u32 = 260;
 
 /// The number of samples along each side of a pixel of the picture.
@@ -58,7 +58,7 @@ struct DatasheetResults {
     line: Option<LineClocks>,
     waves: Waves,
     curves: DeviceCurves,
-    /// Only for a function of one operand.
+    /// The charts of a function of one operand; empty for other devices.
     over_domain: Vec<Chart>,
     /// The picture of a highlight; `None` if a scene cannot supply the operands of the device.
     highlight: Option<HighlightPicture>,
@@ -73,7 +73,7 @@ struct HighlightPicture {
     exponent: u32,
     /// The peak signal-to-noise ratio in decibels; `None` if the pictures are equal.
     psnr: Option<f64>,
-    /// From 0 to 255.
+    /// The largest difference of a colour channel, from 0 to 255.
     largest: u8,
     gain: u8,
 }

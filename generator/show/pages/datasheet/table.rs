@@ -4,7 +4,7 @@
 use crate::pages::account::{Align, TextTable};
 use crate::pages::markup::html;
 
-/// In characters. On a phone, a wider table has its cells below each other.
+/// The width of a phone in characters. On a phone, a wider table has its cells below each other.
 const NARROW: usize = 36;
 
 pub struct TableView {
@@ -12,7 +12,7 @@ pub struct TableView {
     pub label: &'static str,
     /// Whether a narrow page shows the cells of a row below each other, for example because a cell has a sentence.
     pub stacks: bool,
-    /// Class and heading.
+    /// The class and the heading of each column.
     pub columns: Vec<(&'static str, String)>,
     pub rows: Vec<Vec<CellView>>,
 }

@@ -6,7 +6,7 @@ use std::ops::Range;
 use super::waves::{Lane, LaneStyle, MICROINSTRUCTION, Waves};
 use crate::pages::drawing::{Drawing, Item, SIZE, text_width};
 
-/// In units of the drawing.
+/// The distance from one lane to the next, in units of the drawing.
 const PITCH: i32 = 26;
 
 const SWING: i32 = 16;

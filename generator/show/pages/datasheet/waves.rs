@@ -29,7 +29,7 @@ pub struct Waves {
     pub what: &'static str,
     /// The numbers of the shown clocks, from 0. A jump in the numbers means that clocks are left out.
     pub clocks: Vec<usize>,
-    /// From top to bottom.
+    /// The signals from top to bottom.
     pub lanes: Vec<Lane>,
 }
 
@@ -162,7 +162,7 @@ impl Waves {
         u32::try_from(self.clocks[at]).ok()
     }
 
-    /// For readers who do not see the diagram.
+    /// Describes the diagram for readers who do not see it.
     pub fn described(&self) -> String {
         if self.pipelined {
             return format!(

@@ -11,7 +11,7 @@ pub struct DiagramGraph {
     pub boxes: Vec<DiagramBox>,
     /// Each wire leads from the output of a box to one input of another.
     pub wires: Vec<DiagramWire>,
-    /// 0 for a design that is no pipeline.
+    /// The number of stages; 0 for a design that is no pipeline.
     pub stages: usize,
 }
 
@@ -28,15 +28,15 @@ pub struct DiagramBox {
     pub control: String,
     /// The text that appears when the pointer is on the box.
     pub title: String,
-    /// `None` for a port, and for every box of a sequential core.
+    /// The stage; `None` for a port, and for every box of a sequential core.
     pub stage: Option<usize>,
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum BoxForm {
-    /// At the top of the diagram.
+    /// An input port, at the top of the diagram.
     Input,
-    /// At the bottom of the diagram.
+    /// An output port, at the bottom of the diagram.
     Output,
     Control,
     Block(BlockKind),

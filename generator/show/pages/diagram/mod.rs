@@ -22,7 +22,7 @@ const LINE: i32 = 14;
 
 const PADDING: i32 = 6;
 
-/// In characters. A longer caption has a line for each of its parts, which are separated by ` · `.
+/// The longest caption on one line, in characters. A longer one has a line for each of its parts, separated by ` · `.
 const LONG: usize = 17;
 
 const PIN: f64 = 9.0;

@@ -9,7 +9,7 @@ use super::graph::DiagramGraph;
 use super::place::Placement;
 use super::tracks::{Side, Trunk, assign};
 
-/// In units of the drawing.
+/// The distance from one track to the next, in units of the drawing.
 const TRACK: f64 = 9.0;
 
 const MARGIN: f64 = 14.0;
@@ -112,8 +112,8 @@ pub fn lanes(graph: &DiagramGraph, back: &[bool]) -> Vec<Vec<usize>> {
     lanes
 }
 
-/// Routes the wires between the boxes of a placement. `bodies` are the positions of the boxes, and `lanes` the lanes that the
-/// function [`lanes`] returns for each box.
+/// Routes the wires between the boxes of a placement. `bodies` are the positions of the boxes, and `lanes` comes from
+/// [`lanes`].
 pub fn routes(
     graph: &DiagramGraph,
     placement: &Placement,
@@ -148,25 +148,24 @@ struct Router<'a> {
     gaps: Vec<Vec<Trunk>>,
     /// For each crossing of a column: the net, the column and the vertical position.
     crossings: Vec<(usize, usize, f64)>,
-    /// For a net, a column, and whether the wire leads back: the vertical position at which the net passes the column.
+    /// For a net, a column, and whether the wire leads back: the vertical position in the column.
     passes: HashMap<(usize, usize, bool), f64>,
 }
 
 impl Router<'_> {
-    /// Returns the y coordinate of a box's output. The output is in the middle of the box and its lanes, where the layout
-    /// begins the wires.
+    /// Returns the y coordinate of a box's output: in the middle of the box and its lanes, where the layout begins the wires.
     fn out(&self, at: usize) -> f64 {
         let body = &self.bodies[at];
         self.placement.middle[at].clamp(body.upper + EDGE, body.lower - EDGE)
     }
 
-    /// Returns the vertical position of the lane in which the wires of the box `net` run around the box `at`.
+    /// Returns the vertical position of the lane of the box `net` around the box `at`.
     fn lane(&self, at: usize, net: usize) -> f64 {
         let lane = self.lanes[at].iter().position(|&other| other == net);
         self.bodies[at].top + LANE * (lane.unwrap_or(0) as f64 + 0.5)
     }
 
-    /// Returns the columns that a wire passes between its ends, each with the vertical position, in the direction of the wire.
+    /// Returns the columns that a wire passes, with its vertical positions, in the direction of the wire.
     fn between(&mut self, wire: usize) -> Vec<(usize, f64)> {
         let (net, back) = (self.graph.wires[wire].from, self.placement.back[wire]);
         let mut between = Vec::new();
@@ -241,8 +240,7 @@ impl Router<'_> {
         self.hop(net, to, (y, Side::Right), (pin, Side::Right));
     }
 
-    /// Adds the way of a net through a gap. If the net already enters the gap at `entry`, the way becomes a further exit of its
-    /// trunk.
+    /// Adds the way of a net through a gap, as a further exit of a trunk if the net already enters the gap at `entry`.
     fn hop(&mut self, net: usize, gap: usize, entry: (f64, Side), exit: (f64, Side)) {
         let trunks = &mut self.gaps[gap];
         let found = trunks.iter_mut().find(|it| it.net == net && it.entry == entry);
@@ -253,8 +251,8 @@ impl Router<'_> {
         }
     }
 
-    /// Assigns tracks to all gaps, gives columns and boxes their horizontal positions, and returns the finished routes. `pins`
-    /// has for each wire the vertical position at which it enters its box.
+    /// Assigns tracks to all gaps, and gives columns and boxes their horizontal positions. `pins` has for each wire the
+    /// vertical position at which it enters its box.
     fn finish(mut self, pins: &[f64]) -> Routes {
         let columns = self.placement.columns;
         let tracks: Vec<usize> = self.gaps.iter_mut().map(|gap| assign(gap)).collect();
@@ -300,7 +298,6 @@ impl Router<'_> {
 }
 
 impl WireRoute {
-    /// Adds a straight piece, unless it has no length or exists already.
     fn piece(&mut self, from: (f64, f64), to: (f64, f64)) {
         let piece = WireSegment { from, to };
         if from != to && !self.pieces.contains(&piece) {
@@ -308,7 +305,6 @@ impl WireRoute {
         }
     }
 
-    /// Adds the vertical piece of a trunk and its taps, in a gap from `left` to `right`.
     fn trunk(&mut self, trunk: &Trunk, (left, right): (f64, f64)) {
         if trunk.is_straight() {
             self.piece((left, trunk.entry.0), (right, trunk.entry.0));

@@ -4,7 +4,7 @@ use std::fmt;
 
 use glint_rtl::netlist::{Driver, Op};
 
-/// As text, for example, `3:1 mux`, `21 × 10 multiplier` or `2 adders, mux`.
+/// The kind of a block. As text, for example, `3:1 mux`, `21 × 10 multiplier` or `2 adders, mux`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BlockKind {
     /// An operand register, which a port writes.
@@ -36,7 +36,7 @@ pub enum BlockKind {
     Other,
 }
 
-/// Singular and plural.
+/// The names of operators, singular and plural.
 pub const OPERATORS: [[&str; 2]; 5] = [
     ["multiplier", "multipliers"],
     ["adder", "adders"],

@@ -63,7 +63,7 @@ pub struct Block {
     /// The nets that the block reads, each driven by another block, a port, a constant or a ROM. An operator has one for each
     /// operand.
     pub inputs: Vec<NetId>,
-    /// For a mux, a field of the control word, or blocks.
+    /// The select of a mux: a field of the control word, or blocks.
     pub selected_by: Vec<NetId>,
     /// The comment of the description, one line; may be empty.
     pub doc: String,
