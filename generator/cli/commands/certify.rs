@@ -54,7 +54,7 @@ pub struct Arguments {
 /// The first words of a script that Glint wrote.
 const MARKER: &str = "# Certificate by Glint: ";
 
-/// In the second line of a script, before a point at which the hypotheses of the statement hold.
+/// This text begins the second line of a script, before a point at which the hypotheses of the statement hold.
 const WITNESS: &str = "# The hypotheses hold at ";
 
 /// Helps the reader of a failed proof. If a device consists of parts, the bounds of the parts are among the terms.
@@ -195,7 +195,7 @@ impl CommandReport for WithoutStatements<'_> {
 
 struct Certification<'a> {
     one: &'a Loaded,
-    /// In output units.
+    /// The bound is in output units.
     bound: f64,
     /// Whether the contract states the bound. Otherwise Gappa has found it.
     is_stated: bool,

@@ -221,7 +221,7 @@ fn outcome(
     mismatch::traced(one, &lockstep, destination, points, 0)
 }
 
-/// For example, `red_out for cos_gamma=0.99 exponent=20`.
+/// Lists the operands in the form `red_out for cos_gamma=0.99 exponent=20`.
 pub fn worst_operands(one: &Loaded, worst: &Worst) -> String {
     let operands = one.core.contract.operands();
     let values: Vec<String> = worst

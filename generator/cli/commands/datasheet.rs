@@ -118,7 +118,7 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     Ok(true)
 }
 
-/// For example, `datasheets/rough.html`. With `single`, the path is the file that the user named.
+/// The usual path has the form `datasheets/rough.html`. With `single`, the path is the file that the user named.
 fn path(arguments: &Arguments, one: &Loaded, single: bool) -> PathBuf {
     if single {
         arguments.out.clone()

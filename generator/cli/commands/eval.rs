@@ -270,7 +270,7 @@ struct SignalValue {
     name: String,
     raw: i128,
     value: f64,
-    /// Empty for a signal that is no net of the design.
+    /// The text is empty for a signal that is no net of the design.
     format: String,
 }
 

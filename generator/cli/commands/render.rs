@@ -24,7 +24,7 @@ use glint_show::render::{
 };
 use glint_tools::VerilogSimulator;
 
-/// In bytes. The OBJ file of the largest mesh is about as large.
+/// The limit is in bytes. The OBJ file of the largest mesh is about as large.
 const LARGEST_FILE: u64 = 4 << 30;
 
 /// Draw a picture whose highlights are bit-accurate results of the device
@@ -380,7 +380,7 @@ impl CommandReport for RenderedPicture<'_> {
     }
 }
 
-/// For example, `640x480` gives a width of 640 and a height of 480.
+/// Parses a width and a height, such as `640x480`.
 fn size(text: &str) -> Result<(u32, u32), String> {
     let sides = text.split_once(['x', 'X']);
     let sides = sides.and_then(|(width, height)| Some((width.parse().ok()?, height.parse().ok()?)));

@@ -85,8 +85,7 @@ struct Input {
     vector: bool,
 }
 
-/// The inputs of a device that computes lines: first the vectors, then the numbers, separated by blanks. `OF_POINT` is for a
-/// device that computes single points.
+/// The inputs of a device that computes lines: first the vectors, then the numbers, separated by blanks.
 const OF_LINE: [&str; 2] = [
     "normal_1 half_1 light_1 view_1 normal_2 half_2 light_2 view_2",
     "theta_1 theta_2 gamma points exponent intensity",
@@ -103,7 +102,7 @@ struct HostInputs<'a> {
     inputs: Vec<Input>,
 }
 
-/// For each input that the user gave, its components; a number has only the first.
+/// The components of each input that the user gave; a number has only the first.
 type Given = Vec<[Option<f64>; 3]>;
 
 struct SetUp {
@@ -216,8 +215,7 @@ impl<'a> HostInputs<'a> {
         }
     }
 
-    /// Returns the index of an input. If `name` names a component of a vector, also returns the index of the component. For
-    /// example, `normal_1_y` gives the index of `normal_1`, and 1.
+    /// Returns the index of an input, and the index of the component if `name` names one, as `normal_1_y` does.
     fn place(&self, name: &str) -> Result<(usize, Option<usize>), String> {
         if let Some(index) = self.index(name)
             && self.concerns(name)
@@ -242,7 +240,7 @@ impl<'a> HostInputs<'a> {
         Err(format!("there is no input `{name}` of `{device}`{}", none_of(name, "inputs", &names)))
     }
 
-    /// Returns the input that each column of a CSV file gives, in the form of [`Self::place`].
+    /// Finds the input of each column of a CSV file, in the form of [`Self::place`].
     fn places(&self, headings: &StringRecord) -> Result<Vec<(usize, Option<usize>)>, String> {
         headings.iter().map(|heading| self.place(heading)).collect()
     }
@@ -252,8 +250,7 @@ impl<'a> HostInputs<'a> {
         self.inputs.iter().position(|input| input.name == name)
     }
 
-    /// Parses the numbers for an input, and stores them in `given`. For example, a vector may be `0,0,1` or `0 0 1`. An input
-    /// may have only one value.
+    /// Parses the numbers for an input into `given`. Fails if the input has a value already.
     fn put(
         &self,
         given: &mut Given,
@@ -285,7 +282,6 @@ impl<'a> HostInputs<'a> {
         given[self.index(name)?][0]
     }
 
-    /// Fails if the user did not give the input. For example, a line needs `points`.
     fn needed(&self, given: &Given, name: &str) -> Result<f64, String> {
         match self.number(given, name) {
             Some(number) => Ok(number),
@@ -293,7 +289,6 @@ impl<'a> HostInputs<'a> {
         }
     }
 
-    /// The number must be a whole number of at least `least`.
     fn whole(&self, given: &Given, name: &str, least: u32) -> Result<u32, String> {
         let value = self.needed(given, name)?;
         if value.fract() != 0.0 || !(f64::from(least)..=f64::from(u32::MAX)).contains(&value) {
@@ -304,7 +299,7 @@ impl<'a> HostInputs<'a> {
         Ok(value as u32)
     }
 
-    /// An input that is not given has the share 1. A share is from 0 to 1.
+    /// An input that is not given has the share 1.
     fn share(&self, given: &Given, name: &str) -> Result<f64, String> {
         let value = self.number(given, name).unwrap_or(1.0);
         if !(0.0..=1.0).contains(&value) {
@@ -315,7 +310,7 @@ impl<'a> HostInputs<'a> {
         Ok(value)
     }
 
-    /// Returns the angle in radians. The user gives it in degrees, between the two limits.
+    /// The user gives the angle in degrees, between the two limits. The result is in radians.
     fn angle(&self, given: &Given, name: &str, (low, high): (f64, f64)) -> Result<f64, String> {
         let degrees = self.needed(given, name)?;
         if !(low..=high).contains(&degrees) {
@@ -339,9 +334,8 @@ impl<'a> HostInputs<'a> {
         }
     }
 
-    /// Returns the normal and the half vector, which may have any length. The array has the names of four inputs: the normal,
-    /// the half vector, and the directions toward light and viewer. Fails if a vector is missing, or if both the half vector
-    /// and the light are given.
+    /// The array has the names of four inputs: the normal, the half vector, and the directions toward light and viewer. The
+    /// vectors may have any length. Fails if a vector is missing, or if both the half vector and the light are given.
     fn pair(
         &self,
         given: &Given,
@@ -366,13 +360,12 @@ impl<'a> HostInputs<'a> {
         Ok((self.needed_vector(given, normal)?, half_vector))
     }
 
-    /// Returns the vector of an input. Fails if the user did not give the input, or not all of its components.
     fn needed_vector(&self, given: &Given, name: &str) -> Result<Vector, String> {
         let vector = self.vector(given, name)?;
         vector.ok_or_else(|| missing_vector(name, ""))
     }
 
-    /// Returns whether any of the inputs `angles` is given. Fails if a vector is given too.
+    /// Fails if both angles and vectors are given.
     fn by_angles(&self, given: &Given, angles: &[&str]) -> Result<bool, String> {
         let angle = angles.iter().find(|name| self.number(given, name).is_some());
         let mut vectors = self.inputs.iter().zip(given).filter(|(input, _)| input.vector);
@@ -386,8 +379,7 @@ impl<'a> HostInputs<'a> {
         }
     }
 
-    /// Computes the operands for one row of a CSV file. The cells of the row are added to the inputs `given` on the command
-    /// line; an empty cell gives no value. Fails if a cell is not valid, or if the operands cannot be computed.
+    /// Adds the cells of one row of a CSV file to the inputs `given` on the command line. An empty cell gives no value.
     fn set_up_row(
         &self,
         given: &Given,
@@ -574,24 +566,21 @@ impl<'a> HostInputs<'a> {
     }
 }
 
-/// Splits the text of a vector into its components, at commas, semicolons and blanks. For example, `0,0,1` and `0 0 1` both
-/// give `0`, `0` and `1`.
 fn components(text: &str) -> Vec<&str> {
     let separated = text.split(|c: char| c == ',' || c == ';' || c.is_whitespace());
     separated.filter(|part| !part.is_empty()).collect()
 }
 
-/// Returns a message about a missing vector. `or` names other inputs that may replace it.
+/// `or` names other inputs that may replace the vector.
 fn missing_vector(name: &str, or: &str) -> String {
     format!("input `{name}` is missing; give it{or}, or angles in place of vectors")
 }
 
-/// Returns the unit vector in the direction of an input. Fails if the vector has the length 0.
 fn unit_vector(name: &'static str, vector: Vector) -> Result<Vector, String> {
     direction(name, vector).map_err(|error| error.to_string())
 }
 
-/// Returns the unit vector at an angle, in radians, from the z axis toward the x axis.
+/// The angle is in radians, from the z axis toward the x axis.
 fn from_z(angle: f64) -> Vector {
     Vector::new(libm::sin(angle), 0.0, libm::cos(angle))
 }

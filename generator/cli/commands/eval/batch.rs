@@ -24,7 +24,7 @@ struct PointResult {
     exact_f: Option<f64>,
     /// NaN for a formula without a value.
     exact: Vec<f64>,
-    /// For each output, whether the contract promises an error.
+    /// States for each output whether the contract promises an error.
     promised: Vec<bool>,
     /// The numbers of the outputs whose errors are promised under a condition.
     conditional: Vec<usize>,
