@@ -85,7 +85,7 @@ pub trait Engine {
     /// # Errors
     /// Fails if a device does not finish a computation, if it gives more or fewer results than `points` expects, if a pipeline
     /// shows results in another clock than its latency states, or if a simulator or an outside tool fails. [`Golden`] also
-    /// fails if the number of operands per computation is not that of the contract.
+    /// fails if a computation has more or fewer operands than the contract.
     ///
     /// # Panics
     /// The other engines panic if a computation lacks an operand of the design.

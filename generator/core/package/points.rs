@@ -28,7 +28,7 @@ pub struct PointsBench {
     pub results: Vec<String>,
 }
 
-/// What the benches for a pipeline and for a core with a microprogram have in common.
+/// The common data of the benches for a pipeline and for a core with a microprogram.
 struct PointList {
     name: String,
     module: String,

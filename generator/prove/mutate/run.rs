@@ -70,7 +70,7 @@ pub fn run<'f>(
         .collect()
 }
 
-/// What the checks of all faults of a configuration share.
+/// The state that the checks of all faults of a configuration share.
 struct Bench<'a> {
     core: &'a Core,
     sound: Design,

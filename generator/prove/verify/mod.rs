@@ -190,8 +190,8 @@ pub struct Check {
     run: CheckFunction,
 }
 
-/// All checks, in the order in which they run. Checks that take seconds come first; those that may compute every combination
-/// of operands, or every fault, come last.
+/// All checks, in the order in which they run. Checks that take seconds come first. Checks that may compute every
+/// combination of operands, or every fault, come last.
 pub const CHECKS: [&Check; 16] = [
     &inside::DESIGN,
     &inside::LOCKSTEP,

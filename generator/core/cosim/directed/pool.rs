@@ -39,7 +39,7 @@ pub struct Pool {
     pub corners: Vec<Vec<i64>>,
     /// Random computations, whose features are all recorded.
     pub drawn: Vec<Vec<i64>>,
-    /// Further random computations, of which only the ROM words are recorded.
+    /// Further random computations. The pool records only their ROM words.
     pub readers: Vec<Vec<i64>>,
     /// Lines from the peak to the edge of the highlight, which read the words of a table one after another. Empty for a device
     /// without lines.

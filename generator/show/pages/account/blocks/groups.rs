@@ -25,8 +25,6 @@ pub struct Groups<'a> {
 }
 
 impl<'a> Groups<'a> {
-    /// If `figure` is set, the blocks are for a block diagram: gates and wiring are then blocks only if the source document
-    /// numbers them, or if several signals meet in them.
     pub fn new(design: &'a Design, figure: bool) -> Self {
         let cell = design.iter().map(|(id, net)| is_cell(design, id, net, figure)).collect();
         let mut groups = Self {
@@ -359,8 +357,6 @@ impl<'a> Groups<'a> {
         inside
     }
 
-    /// Returns the source whose value a net carries: the output net of a block, a port, or the joint at which several sources
-    /// meet. A constant has none.
     pub fn driver(&self, net: NetId) -> Option<NetId> {
         match self.sources[net.index()][..] {
             [] => None,
@@ -369,7 +365,6 @@ impl<'a> Groups<'a> {
         }
     }
 
-    /// Returns the registers of a pipeline that only delay the value of `source`.
     pub fn held(&self, source: NetId) -> Vec<NetId> {
         let mut held = Vec::new();
         for (id, net) in self.design.iter() {

@@ -78,7 +78,8 @@ pub struct Blocks<'a> {
 }
 
 impl<'a> Blocks<'a> {
-    /// `figure` says whether the blocks are for a block diagram, as in [`Groups::new`].
+    /// If `figure` is set, the blocks are for a block diagram: gates and wiring are then blocks only if the source document
+    /// numbers them, or if several signals meet in them.
     pub fn new(design: &'a Design, figure: bool) -> Self {
         Self { design, groups: Groups::new(design, figure) }
     }
@@ -456,12 +457,13 @@ impl<'a> Blocks<'a> {
         (fields, strobes)
     }
 
-    /// Does the same as [`Groups::driver`].
+    /// Returns the source whose value a net carries: the output net of a block, a port, or the joint at which several sources
+    /// meet. A constant has none.
     pub fn driver(&self, net: NetId) -> Option<NetId> {
         self.groups.driver(net)
     }
 
-    /// Does the same as [`Groups::held`].
+    /// Returns the registers of a pipeline that only delay the value of `source`.
     pub fn held(&self, source: NetId) -> Vec<NetId> {
         self.groups.held(source)
     }
