@@ -80,8 +80,8 @@ fn locked(directory: &Path) -> Option<fs::File> {
     Some(opened)
 }
 
-/// Returns the paths of the files below `out` that differ from `files` or are missing, and of the files that Glint wrote
-/// earlier and no longer needs.
+/// Returns the paths of the files below `out` that differ from `files` or are missing. The list also has the files that Glint
+/// wrote earlier and no longer needs.
 ///
 /// # Errors
 /// Fails if a file cannot be read.

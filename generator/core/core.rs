@@ -129,8 +129,8 @@ impl Core {
     }
 
     /// Returns a digest that identifies the contract in a record of a proof: SHA-256 in hexadecimal. The digest covers the
-    /// name of the device, and its own keys that apply and are not at their defaults. A record therefore stays valid
-    /// if keys that all devices share change, or if the device later gets another key.
+    /// name of the device, and its own keys that apply and are not at their defaults. A record therefore stays valid if keys
+    /// that all devices share change, or if the device later gets another key.
     pub fn contract_digest(&self) -> String {
         self.digest_of((self.device().schema)().keys.iter())
     }

@@ -133,8 +133,8 @@ pub struct Quantity {
 
 /// The inputs and expected outputs of every clock of a test bench.
 ///
-/// The bench applies the inputs of a clock on the falling edge that begins the clock, and compares the outputs just before the
-/// rising edge in its middle.
+/// The bench applies the inputs of a clock on the falling edge that begins the clock. It compares the outputs just before the
+/// rising edge in the middle of the clock.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Vectors {
     /// For each clock, the bit patterns of all input ports except `clk`, in the order of the ports.
@@ -144,7 +144,7 @@ pub struct Vectors {
     /// The index of the first clock in which the bench compares results and status. It compares the handshake outputs from the
     /// first clock after a clock with reset.
     pub known_from: usize,
-    /// The distance between two ROM words with computations that detect faults: for example, 2 if every second word has some.
-    /// 0 if the bench has no computations for ROM words.
+    /// The distance between two ROM words with computations that detect faults. It is 2 if every second word has some, and 0
+    /// if the bench has no computations for ROM words.
     pub word_stride: usize,
 }

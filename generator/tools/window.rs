@@ -10,7 +10,7 @@ pub const WINDOW_FILE: &str = "window.vcd";
 const CLOCK: u64 = 10;
 
 /// Returns the Verilog of a module `name` around the module `bench`, which must be a bench of `glint_core::package::emit`. The
-/// module writes the waveform of the clocks from `from` to `to`, both included, to [`WINDOW_FILE`], and then ends the run as a
+/// module writes the waveform of the clocks from `from` to `to`, both included, to [`WINDOW_FILE`]. Then it ends the run as a
 /// failing bench does. A clock takes 10 units of time. For clocks 3 to 5, the waveform begins at time 31 and has a length of
 /// 29.
 ///

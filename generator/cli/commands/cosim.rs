@@ -1,6 +1,6 @@
-//! `glint cosim`: compares the golden model of a configuration with the simulated hardware at every clock: every output and
-//! architectural register, or in a pipeline every output and checkpoint. The options `--exhaustive` and `--simulator` select
-//! other checks.
+//! `glint cosim`: compares the golden model of a configuration with the simulated hardware at every clock. It compares every
+//! output, and every architectural register or, in a pipeline, every checkpoint. The options `--exhaustive` and `--simulator`
+//! select other checks.
 
 mod benches;
 pub mod exhaustive;

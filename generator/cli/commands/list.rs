@@ -58,8 +58,8 @@ impl Inventory<'_> {
     }
 }
 
-/// Returns a row with the DSP blocks and rates, in million points per second, of the sequential core and of the pipeline with
-/// the longest interval, if the pipeline dominates.
+/// Compares the sequential core with the pipeline with the longest interval, if the pipeline dominates. The row has the DSP
+/// blocks of both, and their rates in million points per second.
 fn longest_interval(device: &Device) -> Option<Vec<String>> {
     let opened = device.open(device.defaults()).ok()?;
     let sequential = architectures::sequential(&opened, Target::Ecp5).ok()?;

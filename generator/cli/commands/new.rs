@@ -123,9 +123,9 @@ fn needs_registered_multipliers(opened: &OpenedConfig, settings: &[KeyAssignment
     Err(Failure::WrongUsage(format!("{}; {}", error.message, error.remedy)).into())
 }
 
-/// Returns a comment about the pipeline with the longest interval, if it dominates the sequential core: by the estimate it has
-/// no more DSP blocks and no lower rate, and an advantage in at least one of both. Returns `None` if the user has chosen an
-/// architecture.
+/// Returns a comment about the pipeline with the longest interval, if it dominates the sequential core. By the estimate, such
+/// a pipeline has no more DSP blocks and no lower rate, and an advantage in at least one of both. Returns `None` if the user
+/// has chosen an architecture.
 fn hint(opened: &OpenedConfig, given: &[String]) -> Option<String> {
     if given.iter().any(|key| key == "architecture") {
         return None;

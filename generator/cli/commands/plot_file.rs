@@ -1,5 +1,4 @@
-//! Makes a plot as an SVG file that needs no other file, because the style sheet, the title and the label of the axis are
-//! inside.
+//! Makes a plot as an SVG file that needs no other file. The style sheet, the title and the label of the axis are inside.
 
 use anyhow::Result;
 

@@ -1,5 +1,5 @@
-//! Finds the files in the directories of a configuration. The module decides for each file whether Glint wrote it, whether the
-//! user edited a file of Glint, or whether the file is foreign, which means that Glint never wrote it.
+//! Finds the files in the directories of a configuration. The module decides for each file whether Glint wrote it, or whether
+//! the user edited a file of Glint. A file that Glint never wrote is foreign.
 
 use std::collections::BTreeMap;
 use std::fs;

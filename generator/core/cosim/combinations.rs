@@ -78,8 +78,8 @@ impl Space {
 }
 
 /// The inputs of a device that computes one combination after another, clock by clock. After one clock of reset, all operands
-/// are written in the clock of `start`. Until the next `start`, the data ports have the complement of the written values, so
-/// that a core that reads them too late gives wrong results.
+/// are written in the clock of `start`. Until the next `start`, the data ports have the complement of the written values. A
+/// core that reads them too late therefore gives wrong results.
 pub(super) struct Combinations {
     space: Arc<Space>,
     first: u64,

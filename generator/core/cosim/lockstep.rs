@@ -5,7 +5,7 @@
 //! depend only on the design, the seed of the run and the number of results.
 //!
 //! Up to [`LANES`] streams share a simulator, and each thread works on other simulators. The outcome joins the streams in
-//! order, up to the first stream in which model and hardware differ, so that the number of threads does not change it.
+//! order, up to the first stream in which model and hardware differ. The number of threads therefore does not change it.
 
 use std::io::Write;
 use std::sync::Arc;

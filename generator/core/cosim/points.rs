@@ -237,9 +237,9 @@ impl<'a> PointSource<'a> {
         way.go(scale, far);
     }
 
-    /// Finds the edge of the highlight on the straight line from the control operands with the largest `f` to `control`.
-    /// Returns the last operands at which the formula is above its value at the far end, for example 0, and the first at which
-    /// it is not.
+    /// Finds the edge of the highlight on the straight line from the control operands with the largest `f` to `control`. At
+    /// the edge, the formula falls to its value at the far end, for example 0. Returns the last operands before the edge, and
+    /// the first operands beyond it.
     pub fn edge(&self, control: &[i64]) -> Option<[Vec<i64>; 2]> {
         let (way, highlight) = self.way(control).zip(self.highlight)?;
         let target = way.bottom + f64::MIN_POSITIVE;
@@ -250,8 +250,8 @@ impl<'a> PointSource<'a> {
         }))
     }
 
-    /// Moves control operands on a straight line toward the largest `f`, until the formula has about the given `value`, if the
-    /// formula falls on the line.
+    /// Moves control operands on a straight line toward the largest `f`, until the formula has about the given `value`. The
+    /// operands stay if the formula does not fall on the line.
     pub fn to_value(&self, control: &mut [i64], value: f64) {
         if let Some((way, highlight)) = self.way(control).zip(self.highlight) {
             let [inner, _] = way.crossing(highlight, value, false, control);

@@ -120,8 +120,8 @@ impl Stimulus {
         self.phase = Phase::Running(reset);
     }
 
-    /// Drives one clock after `start`. While the device is busy, this clock may have the reset, or random writes and starts,
-    /// which the device must ignore, except that operand buffers take the writes. Once the device is free, the next point
+    /// Drives one clock after `start`. While the device is busy, this clock may have the reset, or random writes and starts.
+    /// The device must ignore them, except that operand buffers take the writes. Once the device is free, the next point
     /// begins in the same clock.
     fn run(&mut self, busy: bool, reset: Option<u64>, points: &PointSource) {
         if busy {

@@ -1,7 +1,7 @@
 //! Runs single computations of a design in the built-in simulator, and records facts for manifests and pages.
 //!
-//! The runs give the clocks between `start`, `valid` and `done`, a worked example, a recording of chosen nets, and a list of
-//! computations by which users can check the device without a model.
+//! The runs give the clocks between `start`, `valid` and `done`, a worked example, and a recording of chosen nets. They also
+//! give a list of computations by which users can check the device without a model.
 
 use anyhow::{Context, Result, ensure};
 
@@ -162,9 +162,9 @@ pub fn throughput(
     Ok((clocks, trial.results.len() as u32))
 }
 
-/// Measures the clock numbers of a line (the points that a device computes after one `start`) as linear functions of the
-/// line's length, from the four shortest lines and a long one. Returns `None` for a device of single points, or if the
-/// functions are not linear.
+/// Measures the clock numbers of a line as linear functions of its length, from the four shortest lines and a long one. A line
+/// is the points that a device computes after one `start`. Returns `None` for a device of single points, or if the functions
+/// are not linear.
 ///
 /// # Errors
 /// Fails as [`timing`] does.
@@ -223,9 +223,9 @@ fn quantity(name: &str, format: Format, raw: i64) -> Quantity {
 }
 
 /// Returns raw operands for a worked example. An operand with a value in `given` keeps it; `given` may be shorter than the
-/// operands. For a highlight, the function lowers the first control operand with fraction bits, such as a cosine or an angle,
-/// with which `f` gets between 0.4 and 0.8. For lines, it then also lowers operands such as a step (`slow_down`). For other
-/// devices, it prefers operands from [`Contract::hint`].
+/// operands. For a highlight, the function lowers a control operand with fraction bits, such as a cosine or an angle. It takes
+/// the first with which `f` gets between 0.4 and 0.8. For lines, it then also lowers operands such as a step (`slow_down`).
+/// For other devices, it prefers operands from [`Contract::hint`].
 pub fn typical(contract: &dyn Contract, given: &[Option<i64>]) -> Vec<i64> {
     let given = |at: usize| given.get(at).copied().flatten();
     let mut colour = 0;
@@ -271,8 +271,8 @@ pub fn typical(contract: &dyn Contract, given: &[Option<i64>]) -> Vec<i64> {
     values
 }
 
-/// Lowers the operands of a line that change `f` only after the first point, such as a step, until `f` in the middle of the
-/// line is at least a quarter of `f` at the first point.
+/// Lowers the operands of a line that change `f` only after the first point, such as a step. In the end, `f` in the middle of
+/// the line is at least a quarter of `f` at the first point.
 fn slow_down(
     contract: &dyn Contract,
     highlight: &Highlight,

@@ -150,8 +150,8 @@ pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<()> {
         width: u32::BITS - largest.leading_zeros(),
     });
     let waits = design.control.microprogram.iter().any(|it| it.sequence == Sequence::WaitStart);
-    // z3 proves a long induction faster without unrolled steps. With them, it is faster for a short induction over much state,
-    // and for a device that accepts `start` in the last clock of a computation.
+    // z3 proves a long induction faster without unrolled steps. With them, it is faster for a short induction over much state.
+    // It is also faster for a device that accepts `start` in the last clock of a computation.
     let unroll = exact_clocks.is_none() || design.control.overlaps;
     let exact = exact_clocks.zip(age.as_ref()).map(|((clocks, start), age)| EventClocks {
         valid: age.literal(clocks[0]),
@@ -216,8 +216,8 @@ pub(super) fn outputs_of(design: &Design) -> Vec<String> {
     Row::declarations(&rows)
 }
 
-/// Returns the data for the proof that every computation ends. In each microinstruction, the age plus the largest number of
-/// remaining clocks (`left`) must be at most `most`, the largest number of clocks of a computation.
+/// Returns the data for the proof that every computation ends. No microinstruction may have an age and remaining clocks
+/// (`left`) whose sum exceeds `most`, the largest number of clocks of a computation.
 fn bounded_view(
     design: &Design,
     naming: &Naming,
@@ -268,7 +268,7 @@ fn bounded_view(
     }
 }
 
-/// Returns the clocks of `valid` and `done`, and the number of clocks from one start to the next, if none of them depends on
+/// Returns the clocks of `valid` and `done`, and the number of clocks from one start to the next. None of them may depend on
 /// the data.
 fn exact(timing: &HandshakeTiming) -> Option<([u32; 2], u32)> {
     let (valid, done) = (timing.start_to_valid?, timing.start_to_done?);

@@ -295,8 +295,8 @@ fn control(design: &Design) -> Value {
     entry
 }
 
-/// Latency and interval are in clocks. `register_bits` of a stage counts the bits of the registers behind the stage, and
-/// `delayed_bits` the bits that are in delay memories in place of these registers.
+/// Latency and interval are in clocks. `register_bits` of a stage counts the bits of the registers behind the stage.
+/// `delayed_bits` counts the bits that are in delay memories in place of these registers.
 fn pipeline(pipeline: &Pipeline) -> Value {
     let stages = pipeline.stages.iter().map(|stage| {
         json!({

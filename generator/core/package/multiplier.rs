@@ -49,8 +49,8 @@ pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<()> {
     Ok(())
 }
 
-/// Returns the connections of all data pins of the DSP block, five on a line: the factors A and B, the unused input C, and the
-/// product P.
+/// Returns the connections of all data pins of the DSP block, five on a line. The pins are the factors A and B, the unused
+/// input C, and the product P.
 fn pins() -> Vec<String> {
     let mut pins = Vec::new();
     for (pin, width, net) in [

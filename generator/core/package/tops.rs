@@ -173,7 +173,7 @@ fn stream_ports(job: &EmitJob) -> Result<Vec<TopPort>> {
     )))
 }
 
-/// Parses a list of ports: for each the direction, the name, the width of a vector or `-` for one bit, and the signal of
+/// Parses a list of ports. Each has its direction, its name, the width of a vector or `-` for one bit, and the signal of
 /// LiteX. For example, `in s_axil_wdata 32 w.data, out irq` has an input of 32 bits and an output of one bit.
 fn listed(ports: &str) -> Vec<TopPort> {
     let mut listed = Vec::new();

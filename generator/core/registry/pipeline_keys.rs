@@ -25,8 +25,8 @@ pub fn pipelined(sequential: &Design, config: &Config) -> Result<Option<Design>,
     }
 }
 
-/// Returns the computation before the passes and after each of them, or `None` for a sequential architecture.
-/// Fails if the microprogram cannot be unrolled.
+/// Returns the computation before the passes and after each of them, or `None` for a sequential architecture. Fails if the
+/// microprogram cannot be unrolled.
 pub fn pass_results(
     sequential: &Design,
     config: &Config,

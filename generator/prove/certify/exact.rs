@@ -2,8 +2,8 @@
 //!
 //! A formula with `max`, `min` or `if` becomes several branches, each with conditions under which it applies. For example,
 //! `max(a, b)` has two branches: `a` where a − b ≥ 0, and `b` where a − b ≤ 0. The module fails for any other function, such
-//! as `sqrt`, for a constant such as `pi`, for the operator `%`, for a number that no `f64` represents, such as 0.1, and for
-//! an exponent that varies.
+//! as `sqrt`, for a constant such as `pi`, and for the operator `%`. It also fails for a number that no `f64` represents, such
+//! as 0.1, and for an exponent that varies.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -247,7 +247,7 @@ fn unconditional(term: RealTermId) -> Vec<Branch> {
     vec![Branch { term, ..Branch::default() }]
 }
 
-/// Returns every combination of a branch of `a` with a branch of `b` whose choices do not contradict each other: the
+/// Combines each branch of `a` with each branch of `b`, unless their choices contradict each other. A combination has the
 /// conditions of both, the term of `a` and the term of `b`.
 fn pairs(
     [a, b]: [&Expression; 2],
@@ -297,8 +297,8 @@ fn conditions(
     Ok(conditions)
 }
 
-/// Returns the word of a table at an address: a number if the word is the same at all addresses of this case, and otherwise a
-/// variable.
+/// Returns the word of a table at an address. The word is a number if it is the same at all addresses of this case, and
+/// otherwise a variable.
 ///
 /// # Errors
 /// Fails if the address is neither a number nor an operand without fraction bits, or if the table has no such word.

@@ -176,7 +176,7 @@ impl<'a> Hardware<'a> {
         Ok(value)
     }
 
-    /// Returns a node as a term even if it has only one value in this case: the term then states a fact about the node's
+    /// Returns a node as a term even if it has only one value in this case. The term then states a fact about the node's
     /// operands. Returns `None` if the node depends on constants alone, or if it is a slice of bits.
     pub fn expression(&mut self, terms: &mut RealTerms, id: NodeId) -> Option<NodeValue> {
         let is_cut =
@@ -322,8 +322,8 @@ impl<'a> Hardware<'a> {
     }
 
     /// Returns y and a number of bits, if `a` + `b` is y without these bits, rounded to the nearest, halves up. One node has
-    /// the bits of y from `low` up, and the other has the bit below: ⌊y⌋ + (⌊2y⌋ − 2⌊y⌋) = ⌊y + 1/2⌋, if y is divided by
-    /// 2^low. y must not be negative.
+    /// the bits of y from `low` up, and the other has the bit below. With y divided by 2^low, ⌊y⌋ + (⌊2y⌋ − 2⌊y⌋) = ⌊y + 1/2⌋.
+    /// y must not be negative.
     fn rounded(&self, a: NodeId, b: NodeId) -> Option<(NodeId, u32)> {
         self.upper_and_half(a, b).or_else(|| self.upper_and_half(b, a))
     }

@@ -52,7 +52,6 @@ impl Task<'_> {
 
     /// Adds the Gappa statements for one case: the premises, and for each output, that it differs from the formula by at most
     /// the bound.
-    /// design.
     pub(super) fn state(&self, case: &Case, statements: &mut Statements) -> Result<(), String> {
         let variables = self.variables();
         let mut ranges = HashMap::new();

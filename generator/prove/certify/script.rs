@@ -173,8 +173,8 @@ impl GappaScript<'_> {
         (equal, near)
     }
 
-    /// Returns the values of all terms at up to 24 random points of this case, and then at up to 24 other points of the
-    /// domain.
+    /// Returns the values of all terms at random points. Up to 24 points are of this case, and then up to 24 are other points
+    /// of the domain.
     fn samples(&self, terms: &RealTerms) -> Vec<Vec<f64>> {
         let mut random = ChaCha8Rng::seed_from_u64(1);
         let (mut samples, mut others) = (Vec::new(), Vec::new());
@@ -344,8 +344,8 @@ pub fn goal(difference: &str, bound: Option<f64>) -> String {
     }
 }
 
-/// Replaces the names of a script by `n0`, `n1`, … in the order of their first use, so that scripts which state the same
-/// become equal. For example, `sum_2 = 0.5 + x;` becomes `n0 = 0.5 + n1;`.
+/// Replaces the names of a script by `n0`, `n1`, … in the order of their first use. Scripts which state the same become equal.
+/// For example, `sum_2 = 0.5 + x;` becomes `n0 = 0.5 + n1;`.
 pub fn nameless(script: &str) -> String {
     let mut numbers: HashMap<&str, usize> = HashMap::new();
     let is_part = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '.';

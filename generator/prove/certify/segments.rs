@@ -108,8 +108,8 @@ fn lobe(formula: &Expression) -> Option<(&Expression, u32)> {
 struct AngleWalk {
     /// The operand with the angle of the first point.
     start: String,
-    /// The formula of the angle at any point, wrapped around in its format: for example `(a + index * d + 2) % 4 - 2` for a
-    /// signed format of four right angles.
+    /// The formula of the angle at any point, wrapped around in its format. For a signed format of four right angles, for
+    /// example, it is `(a + index * d + 2) % 4 - 2`.
     wrapped: Expression,
 }
 
@@ -269,9 +269,9 @@ fn words(
     Ok(found.into_values().collect())
 }
 
-/// Returns the value of the node `address` if the intervals of the nodes show that it is the same for every value of `operand`
-/// in `range`. Otherwise a caller can try each half of the range. For example, the address may be the top 8 bits of the
-/// operand; it is known if these bits are equal in the whole range.
+/// Returns the value of the node `address` if it is the same for every value of `operand` in `range`. The intervals of the
+/// nodes must show this. Otherwise a caller can try each half of the range. For example, the address may be the top 8 bits of
+/// the operand; it is known if these bits are equal in the whole range.
 fn decided_address(
     task: &Task,
     (operand, range): (NodeId, (i128, i128)),

@@ -80,9 +80,9 @@ impl Task<'_> {
         Ok(outputs)
     }
 
-    /// Splits the domain `known`: an operand that is an exponent makes a part for each of its values, and an operand that
-    /// addresses tables a part for each run of values with the same words. A single table with more than 16 runs that the
-    /// formula reads too is not split, because its word can be a variable.
+    /// Splits the domain `known`. An operand that is an exponent makes a part for each of its values. An operand that
+    /// addresses tables makes a part for each run of values with the same words. A single table with more than 16 runs that
+    /// the formula reads too is not split, because its word can be a variable.
     pub(super) fn split(&self, known: &NodeIntervals) -> Vec<NodeIntervals> {
         let mut split = vec![known.clone()];
         for operand in self.contract.operands() {

@@ -3,7 +3,6 @@
 //! Such a point shows that the statement is not vacuous: hypotheses that contradict each other would prove anything. The
 //! search begins at 64 random points, and moves each step by step while the violation becomes smaller. It computes in f64,
 //! with rounding errors. If it finds no point, the hypotheses may still be satisfiable.
-//! satisfiable.
 
 use std::collections::HashMap;
 

@@ -46,7 +46,7 @@ impl WireValues {
         columns
     }
 
-    /// Returns at most 64 bits as one term. Copies of the highest bit become a sign extension: the wires 6, 7, 7, 7, lowest
+    /// Returns at most 64 bits as one term. Copies of the highest bit become a sign extension. The wires 6, 7, 7, 7, lowest
     /// first, are the bits 6 and 7 with the sign extended to four bits.
     pub fn word(&self, terms: &mut VectorTerms, bits: &[Bit]) -> VectorTermId {
         let copies = bits.iter().rev().take_while(|bit| Some(*bit) == bits.last()).count();

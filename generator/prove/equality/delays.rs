@@ -77,8 +77,8 @@ impl Counters {
         Ok(Self { slots, delays })
     }
 
-    /// Returns the number of clocks from a write to the read of the same word, for a read `clock` clocks after a point
-    /// entered, if the number is fixed.
+    /// Returns the number of clocks from a write to the read of the same word, if the number is fixed. The read is `clock`
+    /// clocks after a point entered.
     pub fn delay(&self, read: Read, clock: usize) -> Option<usize> {
         self.delays[read.memory][read.port][clock % self.slots.len()]
     }
@@ -162,7 +162,7 @@ fn course(
 }
 
 /// Returns the number of clocks from the latest write of a word to its read, for each read port and each slot. `course` is a
-/// period of accesses, which repeats. A number is `None` if it is not the same in all clocks of the slot, if the address is
+/// period of accesses, which repeats. A number is `None` if it varies between the clocks of the slot, if the address is
 /// unknown, or if nothing writes there. For example, with one slot, write addresses 0, 1, 2, 3 and read addresses 2, 3, 0, 1
 /// give 2 clocks.
 fn lags(course: &[&MemoryClock], reads: usize, interval: usize) -> Vec<Vec<Option<usize>>> {

@@ -1,8 +1,8 @@
 //! Gives the SMT solver arithmetic facts about the products and memory words in its question.
 //!
-//! The solver treats a product and the read of a memory as uninterpreted functions and knows nothing about them. The facts
-//! say, for example, that a product with a factor 0 is 0, or that a memory word lies within the bounds of all words. Every
-//! fact is true for all values, so an unnecessary fact cannot make a proof wrong.
+//! The solver treats a product and the read of a memory as uninterpreted functions and knows nothing about them. One fact says
+//! that a product with a factor 0 is 0. Another says that a memory word lies within the bounds of all words. Every fact is
+//! true for all values, so an unnecessary fact cannot make a proof wrong.
 
 use std::collections::{HashMap, HashSet};
 
@@ -83,8 +83,8 @@ fn by_one_or_none(
     })
 }
 
-/// Finds products that a design computes as a sum of partial products, among the terms on which `roots` depend, each with the
-/// term of its sum.
+/// Finds products that a design computes as a sum of partial products, each with the term of its sum. The search covers the
+/// terms on which `roots` depend.
 pub fn divided(
     terms: &mut VectorTerms,
     roots: impl IntoIterator<Item = VectorTermId>,
@@ -160,8 +160,8 @@ fn in_parts(
     Some(ProductSum { product, sum, there })
 }
 
-/// Returns the square of `u·2^r + l` as a sum, if the terms contain the product of `l` and `u·2^(r+1) + l`: this product plus
-/// the square of u, shifted by 2r. For example, 13² with u = 3, l = 1 and r = 2 is 1·25 plus 9·16.
+/// Returns the square of `u·2^r + l` as a sum, if the terms contain the product of `l` and `u·2^(r+1) + l`. The sum is this
+/// product plus the square of u, shifted by 2r. For example, 13² with u = 3, l = 1 and r = 2 is 1·25 plus 9·16.
 fn square_in_parts(
     terms: &mut VectorTerms,
     factor: VectorTermId,
@@ -263,8 +263,8 @@ fn range_by_width(terms: &VectorTerms, factor: VectorTermId) -> Interval {
     }
 }
 
-/// Returns the fact that a product lies in the product of its factors' ranges if both factors lie in their ranges, unless the
-/// ends do not fit into 64 bits.
+/// Returns the fact that a product lies in the product of its factors' ranges if both factors lie in their ranges. The ends
+/// must fit into 64 bits.
 fn within(terms: &mut VectorTerms, product: &Product) -> Option<VectorTermId> {
     let [a, b] = product.factors;
     let [x, y] = product.ranges;
@@ -278,8 +278,8 @@ fn within(terms: &mut VectorTerms, product: &Product) -> Option<VectorTermId> {
     Some(terms.make(VectorTerm::Or(not, conclusion), 1))
 }
 
-/// Returns a one-bit term that is 1 if `value`, a two's complement number of 64 bits, lies in an interval, unless the ends do
-/// not fit into 64 bits.
+/// Returns a one-bit term that is 1 if `value`, a two's complement number of 64 bits, lies in an interval. The ends must fit
+/// into 64 bits.
 fn between(terms: &mut VectorTerms, value: VectorTermId, range: Interval) -> Option<VectorTermId> {
     let low = i64::try_from(range.0).ok()?;
     let high = i64::try_from(range.1).ok()?;
@@ -291,8 +291,8 @@ fn between(terms: &mut VectorTerms, value: VectorTermId, range: Interval) -> Opt
     Some(terms.not(outside))
 }
 
-/// Returns facts about a memory word: its value at each address of a small memory, and otherwise the bits that are 0 in all
-/// words, and the interval that contains all words.
+/// For a small memory, the facts about the word give its value at each address. For a large one, they give the bits that are 0
+/// in all words, and the interval that contains all words.
 fn contents(
     terms: &mut VectorTerms,
     word: VectorTermId,

@@ -382,9 +382,9 @@ impl<'p> PipelineComparison<'p> {
         bail!("the sequential core shows no result")
     }
 
-    /// Splits a path at a register of the sequencer whose value depends on operands, and adds both continuations to `ways`,
-    /// unless the solver proves one impossible. Returns always `Equal`: the continuations are compared later. The value must
-    /// be one bit or a choice between two values.
+    /// Splits a path at a register of the sequencer whose value depends on operands. Adds both continuations to `ways`, unless
+    /// the solver proves one impossible. Returns always `Equal`: the continuations are compared later. The value must be one
+    /// bit or a choice between two values.
     fn fork(
         &mut self,
         way: MicroprogramPath,

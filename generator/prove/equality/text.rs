@@ -300,7 +300,7 @@ impl TextComparison<'_> {
         Ok(())
     }
 
-    /// Returns the term of every net of the netlist in each clock, from the clock in which the point enters to the clock with
+    /// Returns the term of every net of the netlist in each clock. The point enters in the first clock, and the last clock has
     /// its results. The slot counter begins with 0; the netlist must take the point in this slot.
     fn netlist(&mut self) -> Result<Vec<Vec<VectorTermId>>> {
         let design = self.design;

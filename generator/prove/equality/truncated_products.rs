@@ -13,7 +13,7 @@ use super::split_products::agree;
 use super::term::{VectorTerm, VectorTermId};
 use glint_base::fixed::MAX_WIDTH;
 
-/// How a factor of the core follows from a factor of the pipeline: both are the same, or the pipeline's factor is this number
+/// How a factor of the core follows from a factor of the pipeline. Both are the same, or the pipeline's factor is this number
 /// of lowest bits of the core's factor.
 #[derive(Clone, Copy)]
 enum Factor {

@@ -1,7 +1,7 @@
 //! Records at which positions of a test the simulated hardware reads each ROM word, with the operands.
 //!
-//! A fault in a ROM word can only show after a read of the word, so the first check of the fault runs only the recorded parts
-//! of the test.
+//! A fault in a ROM word can only show after a read of the word. The first check of the fault therefore runs only the recorded
+//! parts of the test.
 
 use anyhow::Result;
 

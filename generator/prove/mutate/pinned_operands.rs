@@ -38,7 +38,7 @@ pub(super) fn addressing(core: &Core, rom: RomId, word: usize) -> Option<Operand
     Some(vec![(operand_of(design, register)?.to_owned(), word as i64)])
 }
 
-/// Returns the first difference between a mutant and the golden model for 131 072 random points, in which the operands `held`
+/// Returns the first difference between a mutant and the golden model for 131 072 random points. In these, the operands `held`
 /// nearly always keep their values.
 ///
 /// # Errors

@@ -2,9 +2,9 @@
 //! or undecided.
 //!
 //! For each fault, the module tries in turn a short test, the proofs, the default test and a last check, and ends with the
-//! first that decides. The last check is directed tests for a fault in a table, and for any other fault in a pipeline a search
-//! for a point at which the mutant differs. For a fault that is not proved equivalent, the module also finds whether the
-//! shipped bench notices it.
+//! first that decides. For a fault in a table, the last check is directed tests. For any other fault in a pipeline, it is a
+//! search for a point at which the mutant differs. For a fault that is not proved equivalent, the module also finds whether
+//! the shipped bench notices it.
 
 use std::sync::OnceLock;
 
@@ -150,8 +150,9 @@ impl Bench<'_> {
         Ok(None)
     }
 
-    /// Runs a mutant whose faulty table words are read only for a few operands, with these operands fixed, and then with all
-    /// operands if they have few enough bits. If no combination differs for any of the words, the verdict is `Equivalent`.
+    /// Runs a mutant whose faulty table words are read only for a few operands, with these operands fixed. Then it runs the
+    /// mutant with all operands if they have few enough bits. If no combination differs for any of the words, the verdict is
+    /// `Equivalent`.
     fn directed(
         &self,
         mutant: &Design,

@@ -96,8 +96,8 @@ impl Flow {
     }
 
     /// Returns a digest by which measurements can be cached, SHA-256 in hexadecimal. It covers everything that decides the
-    /// result: the target, the number of seeds, the versions of Glint and of the tools, the cell library, and the source files
-    /// of the core.
+    /// result: the target, the number of seeds, the versions of Glint and its tools, the cell library, and the core's source
+    /// files.
     pub fn digest(&self, subject: &SynthesisSubject) -> String {
         let mut text = format!("{} {} {}\n", self.target, subject.seeds, env!("CARGO_PKG_VERSION"));
         text += &self.versions.join("\n");

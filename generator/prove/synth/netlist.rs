@@ -1,7 +1,7 @@
-//! Reads the netlist of a core in its harness after synthesis, and maps the names of its nets, flip-flops and DSP blocks to the
-//! names in the device's description.
-//! A critical path then shows, for example, the net `second` instead of a generated name. The module can also check that every
-//! DSP block has a form that the timing analysis knows; iCE40 and ECP5 need this check.
+//! Reads the netlist of a core in its harness after synthesis, and maps the names of its nets, flip-flops and DSP blocks to
+//! the names in the device's description. A critical path then shows, for example, the net `second` instead of a generated
+//! name. The module can also check that every DSP block has a form that the timing analysis knows; iCE40 and ECP5 need this
+//! check.
 
 use std::collections::BTreeMap;
 

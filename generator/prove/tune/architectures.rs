@@ -1,5 +1,5 @@
-//! Builds a configuration in each of its architectures and estimates the cost: the sequential core, and pipelines with
-//! intervals of at most 64 clocks from one point to the next.
+//! Builds a configuration in each of its architectures and estimates the cost. These are the sequential core, and pipelines
+//! with at most 64 clocks from one point to the next.
 //!
 //! A pipeline of a sequential configuration is scheduled for the target, at the default clock or, if that is out of reach, at
 //! the fastest clock that can be reached.

@@ -3,8 +3,8 @@
 //!
 //! The error is the proved bound of the accuracy contract, so the answer of [`tune`] holds for every operand of the domain.
 //! The cost is estimated from the netlist ([`model`]). The search changes only keys that change neither a port nor the formula
-//! (`space`). Keys that add microinstructions, and so clocks, are changed only if the user states a rate or a largest number
-//! of DSP blocks, if DSP blocks are minimised, or if no other configuration fits the chip.
+//! (`space`). It changes keys that add microinstructions, and so clocks, only if the user states a rate or a largest number of
+//! DSP blocks. It also changes them to minimise DSP blocks, or if no other configuration fits the chip.
 
 pub mod architectures;
 pub mod model;

@@ -76,8 +76,8 @@ impl SearchSpace {
         true
     }
 
-    /// Returns whether a core has the same ports and formula as the base configuration, and, unless the core may be slower,
-    /// the same number of microinstructions.
+    /// Returns whether a core has the same ports and formula as the base configuration. Unless the core may be slower, it must
+    /// also have the same number of microinstructions.
     pub fn holds(&self, design: &Design, contract: &dyn Contract) -> bool {
         let own = &self.outside;
         own.ports == ports(design)

@@ -172,8 +172,8 @@ impl Finding {
     }
 }
 
-/// Gets the subject, the check's tools in the order of their names, and a function that it calls with the number of steps that
-/// it has finished since the last call.
+/// Gets the subject, the check's tools in the order of their names, and a function for progress. It calls this function with
+/// the number of steps that it has finished since the last call.
 type CheckFunction = fn(&CheckSubject<'_>, &[Tool], &(dyn Fn(u64) + Sync)) -> Result<Finding>;
 
 pub struct Check {
@@ -190,8 +190,8 @@ pub struct Check {
     run: CheckFunction,
 }
 
-/// All checks, in the order in which they run. Checks that take seconds come first. Checks that may compute every
-/// combination of operands, or every fault, come last.
+/// All checks, in the order in which they run. Checks that take seconds come first. Checks that may compute every combination
+/// of operands, or every fault, come last.
 pub const CHECKS: [&Check; 16] = [
     &inside::DESIGN,
     &inside::LOCKSTEP,

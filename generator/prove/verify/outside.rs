@@ -40,8 +40,8 @@ const COCOTB_VERSION: &str = "2.1.0";
 
 const GATE_POINTS: u64 = 40;
 
-/// If the statements cannot be written, or Gappa does not prove one in time, the check is unconfirmed and not failed, because
-/// another check shows the bound too. A pipeline has no such check.
+/// If the statements cannot be written, or Gappa does not prove one in time, the check is unconfirmed. It does not fail,
+/// because another check shows the bound too. A pipeline has no such check.
 pub const CERTIFICATE: Check = Check {
     id: "certificate",
     title: "Proof of the error bound",

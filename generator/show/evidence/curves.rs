@@ -241,8 +241,8 @@ fn charts(
     vec![over_n, over_gamma, fixed_point]
 }
 
-/// Returns the end of an axis: the smallest round number from 0.001 to 0.5 that is at least as large as every finite absolute
-/// value of the curves. For example, values up to 0.013 give 0.02. If a value is above 0.5, the end is 1.
+/// Returns the end of an axis. It is the smallest round number from 0.001 to 0.5 that is at least as large as every finite
+/// absolute value of the curves. For example, values up to 0.013 give 0.02. If a value is above 0.5, the end is 1.
 fn reach(series: &[Series]) -> f64 {
     let mut largest: f64 = 0.0;
     for value in series.iter().flat_map(|series| &series.values) {

@@ -219,7 +219,7 @@ fn runs(chart: &Chart, values: &[f64]) -> Vec<Vec<(f64, f64)>> {
 }
 
 /// Returns round values within the range of an axis, in order. For example, a linear axis from 0 to 10 has 0, 2, 4, 6, 8 and
-/// 10, and a logarithmic axis from 2 to 60 has 2, 5, 10, 20 and 50.
+/// 10. A logarithmic axis from 2 to 60 has 2, 5, 10, 20 and 50.
 fn ticks(axis: &ChartAxis) -> Vec<f64> {
     let (low, high) = axis.range;
     match axis.scale {

@@ -16,8 +16,8 @@ pub fn reservations(pipeline: &Pipeline) -> Option<TextTable> {
     (!pipeline.units.is_empty()).then_some(table)
 }
 
-/// Has a row for each stage: the microinstructions whose values the stage computes, the delay and the slack of its logic in
-/// nanoseconds, its register bits, its bits in delay lines, and the names of the values.
+/// Makes a row for each stage. The row has the microinstructions whose values the stage computes, and the delay and slack of
+/// its logic in nanoseconds. It also has the register bits, the bits in delay lines, and the names of the values.
 pub fn table(design: &Design, pipeline: &Pipeline) -> TextTable {
     let mut table = TextTable::of(
         "stage: | microinstructions | logic, ns: | slack, ns: | register bits: | in delay lines: | computes",

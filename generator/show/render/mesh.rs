@@ -52,7 +52,7 @@ impl Mesh {
     /// Makes a mesh without triangles that have no area. The function panics if an index of a corner does not exist.
     ///
     /// A corner without a normal, or with a normal of length 0, gets the mean normal of the triangles that meet at its
-    /// position, weighted by their areas. The mean includes only triangles that are connected to the corner's own triangle
+    /// position. Their areas weight the mean. The mean includes only triangles that are connected to the corner's own triangle
     /// there by edges of at most `crease` degrees. For example, a cube without normals keeps its edges of 90 degrees at a
     /// `crease` of 40, and looks round at 90.
     ///

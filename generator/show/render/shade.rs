@@ -70,8 +70,8 @@ struct SurfacePoint {
 }
 
 impl SurfacePoint {
-    /// The renderer must check whether a light falls on the surface, because the device would compute a highlight on the side
-    /// away from the light too.
+    /// The renderer must check whether a light falls on the surface. The device would compute a highlight on the side away
+    /// from the light too.
     fn is_lit(&self, light: &Light) -> bool {
         self.smooth.dot(light.direction) > 0.0
     }
@@ -217,8 +217,8 @@ impl Shader<'_> {
         SurfacePoint { colour: object.colour, smooth, perturbed, interpolated, toward_eye }
     }
 
-    /// Returns three normals on the side of the eye: the unit normals of the smooth and of the perturbed surface, and the
-    /// perturbed normal as it was interpolated, of any length.
+    /// Returns three normals on the side of the eye. These are the unit normals of the smooth and of the perturbed surface,
+    /// and the interpolated perturbed normal, which may have any length.
     fn normals(
         &self,
         object: &Object,

@@ -56,8 +56,9 @@ impl Raster {
         Vector::new(x * self.half.0, y * self.half.1, -1.0)
     }
 
-    /// Returns the first and the end index of the samples whose middles may lie between two slopes, `x/−z` for columns or
-    /// `−y/−z` for rows, with one more sample on each side. `half` is half the width or height of the view at distance 1.
+    /// Returns the first and the end index of the samples whose middles may lie between two slopes, with one more sample on
+    /// each side. A slope is `x/−z` for columns and `−y/−z` for rows. `half` is half the width or height of the view at
+    /// distance 1.
     fn span(&self, low: f64, high: f64, half: f64, count: usize) -> (u32, u32) {
         let last = count as f64;
         let lowest = (low / half + 1.0) / 2.0 * last - 0.5;

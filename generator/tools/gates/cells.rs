@@ -30,8 +30,8 @@ pub enum Start {
 
 impl Start {
     /// Returns the initial values with which the test bench must pass. A pipeline must pass with unknown values, since reset
-    /// and points determine its state. For a core with a microprogram, the values are 0 and 1, because simulation of its gates
-    /// can keep values unknown that are known in a real circuit.
+    /// and points determine its state. For a core with a microprogram, the values are 0 and 1. The reason is that simulation
+    /// of its gates can keep values unknown that are known in a real circuit.
     pub fn of(pipelined: bool) -> &'static [Self] {
         if pipelined { &[Self::Unknown] } else { &[Self::Zeros, Self::Ones] }
     }
@@ -58,8 +58,8 @@ pub fn netlist(
     sources.text(NETLIST)
 }
 
-/// Returns the Verilog models of the cells, without delays. The model of the flip-flop is replaced by one that begins with the
-/// value `start`, because the library's own model would become unknown at the first value on its constant inputs.
+/// Returns the Verilog models of the cells, without delays. A model of the flip-flop that begins with the value `start`
+/// replaces the library's own. The library's model would become unknown at the first value on its constant inputs.
 ///
 /// # Errors
 /// Fails if the file with the models is not in the directory of [`LIBERTY`], or has no flip-flop `DFFPOSX1`.

@@ -42,8 +42,8 @@ pub fn netlist(
     sources.text(NETLIST)
 }
 
-/// Returns the files of a test bench around a netlist: the `sources` without the files named in `rtl`, the netlist, and the
-/// models of the family's cells.
+/// Returns the files of a test bench around a netlist. These are the `sources` without the files named in `rtl`, the netlist,
+/// and the models of the family's cells.
 ///
 /// # Errors
 /// Fails if Yosys's directory does not contain the models, or if the family has no models.

@@ -31,8 +31,8 @@ struct PointResult {
     inside: bool,
 }
 
-/// Computes every row of a CSV file, with the golden model's arithmetic and with the formula in f64, and reports the results:
-/// all points of a line, if the device computes lines. The operands in `given` apply to all rows.
+/// Computes every row of a CSV file with the golden model's arithmetic and with the formula in f64. If the device computes
+/// lines, the report has all points of each line. The operands in `given` apply to all rows.
 ///
 /// # Errors
 /// Fails if the file cannot be read, if a column is unknown or given twice, or if a value is not valid.

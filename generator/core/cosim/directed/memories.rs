@@ -10,8 +10,8 @@ use glint_rtl::sim::Machine;
 pub struct Memories {
     /// Selects the copy that a lane reads. The caller must drive this input with the number of the lane.
     pub lane: NetId,
-    /// For each ROM: the number of its first word in the original design, the same in the design with copies, and the distance
-    /// in words from one lane's copy to the next.
+    /// Each ROM has the number of its first word in the original design and in the design with copies. The third number is the
+    /// distance in words from one lane's copy to the next.
     roms: Vec<(u32, usize, usize)>,
 }
 

@@ -112,8 +112,8 @@ fn brighten(points: &PointSource<'_>, values: &mut [i64]) {
     }
 }
 
-/// Moves operands with fraction bits toward the ends of their domains, by a distance of random magnitude: half of them to the
-/// upper end, and a quarter to the lower end.
+/// Moves operands with fraction bits toward the ends of their domains, by a distance of random magnitude. Half of them move to
+/// the upper end, and a quarter to the lower end.
 fn near_ends(points: &PointSource<'_>, random: &mut Random, values: &mut [i64]) {
     for (value, operand) in values.iter_mut().zip(points.operands()) {
         let (low, high) = operand.domain;

@@ -46,7 +46,7 @@ impl OutputTrace {
 }
 
 /// A simulated core whose lanes run one computation each. After the clock of `start`, the operand ports carry the complemented
-/// bits, so that a core that reads an operand too late computes a wrong result.
+/// bits. A core that reads an operand too late therefore computes a wrong result.
 pub struct SideBySide {
     pub machine: Machine<LANES>,
     ports: Ports,

@@ -155,8 +155,8 @@ impl WordSearch<'_> {
     }
 
     /// Searches for computations that detect the bits in the mask `left` of a word. The search starts from `nearest`, which
-    /// detect the bit `probe`, and moves on to computations near them in which a fault of this bit changes the results more
-    /// and more.
+    /// detect the bit `probe`. It moves on to computations near them in which a fault of this bit changes the results more and
+    /// more.
     ///
     /// Within the domain, some words are read only far from any highlight. The last rounds therefore take operands from their
     /// whole formats, where the golden model still predicts the device.

@@ -151,8 +151,8 @@ impl<'a> Job<'a> {
         Self { f, colours, clocks: None }
     }
 
-    /// Names the number of evaluations, for example "1 000 evaluations of f and 500 colour products", or "1 000 evaluations of
-    /// the outputs" for a device without colours.
+    /// Names the number of evaluations, for example "1 000 evaluations of f and 500 colour products". For a device without
+    /// colours it is "1 000 evaluations of the outputs".
     pub fn words(&self) -> String {
         let places = grouped(self.f.count());
         match self.colours.count() {

@@ -26,8 +26,8 @@ pub struct Record {
     pub f: RecordedPeak,
     /// The largest error of a colour multiplier, in output units.
     colour_units: f64,
-    /// The upper bound of the error of an output, in output units: the error of `f` for the largest colour plus the largest
-    /// rounding error of a product with a colour.
+    /// The upper bound of the error of an output, in output units. It is the error of `f` for the largest colour plus the
+    /// largest rounding error of a product with a colour.
     pub together: f64,
     /// Whether the errors at all recorded operands were within the contract's bound.
     pub holds: bool,
@@ -149,10 +149,10 @@ impl Record {
         f.visits(part(&f, places).into_iter()) + colours.count()
     }
 
-    /// Computes a part of the recorded check again: about `places` (not 0) evenly spread operand combinations, the combination
-    /// with the largest error, and all products with colours. Returns the number of combinations at which the function
-    /// computed `f`, and a sentence for each difference from the record and each error above the contract's bound. The
-    /// function calls `progress` with the number of evaluations in each finished block.
+    /// Computes a part of the recorded check again. The part has about `places` (not 0) evenly spread operand combinations,
+    /// the combination with the largest error, and all products with colours. Returns the number of combinations at which the
+    /// function computed `f`. The second result has a sentence for each difference from the record, and for each error above
+    /// the contract's bound. The function calls `progress` with the number of evaluations in each finished block.
     pub fn recheck(
         &self,
         contract: &dyn Contract,

@@ -53,8 +53,8 @@ enum ComparedValue {
 }
 
 impl Pipe {
-    /// Returns a pipeline without points, the nets that are compared after each clock, in the order in which differences are
-    /// reported, and the nets of the results among them.
+    /// Returns a pipeline without points, the nets that are compared after each clock, and the nets of the results among them.
+    /// The nets are in the order in which differences are reported.
     ///
     /// # Errors
     /// Fails if the model does not predict a result, a checkpoint's register, `word_address`, `busy` or `valid`, or if it does

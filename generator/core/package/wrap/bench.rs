@@ -19,7 +19,7 @@ use glint_base::fixed::mask;
 /// second, or every third, and so on.
 const ON_A_BUS: usize = 256;
 
-/// A bus register of an operand or of results: its address, the word to write or to expect as a Verilog expression, and a mask
+/// A bus register of an operand or of results. It has an address, the Verilog of the word to write or to expect, and a mask
 /// with 1 at the bits of the port.
 struct BenchRegister {
     at: String,

@@ -142,8 +142,8 @@ impl Transfer {
         parts
     }
 
-    /// Returns the bits of a transfer that belong to no value, as part-selects of the net `net`: for example `operands[23:21]`
-    /// above a value of 21 bits.
+    /// Returns the bits of a transfer that belong to no value, as part-selects of the net `net`. Above a value of 21 bits, for
+    /// example, these are `operands[23:21]`.
     pub fn padding(&self, net: &str) -> Vec<String> {
         let mut ranges = Vec::new();
         for field in &self.fields {

@@ -1,6 +1,6 @@
-//! Tracks the pairs of values that each bit of a net can have, one in the fault-free design and one in the mutant, through
-//! each kind of cell. If an output bit can only have equal pairs, the fault does not reach it. For example, an AND with a bit
-//! that is 0 in both designs gives 0 in both.
+//! Tracks the pairs of values that each bit of a net can have, through each kind of cell. A pair has the values in the
+//! fault-free design and in the mutant. If an output bit can only have equal pairs, the fault does not reach it. For example,
+//! an AND with a bit that is 0 in both designs gives 0 in both.
 
 use std::array::from_fn;
 

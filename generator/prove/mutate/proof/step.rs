@@ -1,5 +1,5 @@
-//! Evaluates one microinstruction on pairs of bits that may be unknown, for the proof by induction: for the fault-free design
-//! alone, or for a mutant and the fault-free design together.
+//! Evaluates one microinstruction on pairs of bits that may be unknown, for the proof by induction. It does so for the
+//! fault-free design alone, or for a mutant and the fault-free design together.
 //!
 //! A pipeline has no microinstructions; each slot, a clock of the interval from one point to the next, counts as one.
 

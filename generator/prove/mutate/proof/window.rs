@@ -1,9 +1,9 @@
 //! Proves a fault equivalent by trying every combination of values on the nets around it.
 //!
 //! A window is a part of the netlist. It reaches forward from the fault over some cells, at most to registers, ROMs and
-//! outputs, and backward to a minimum cut: the fewest bits that determine the window. The proof tries every value in the
-//! intervals of these nets; if there are more than 2^22 combinations, it fails. For example, the window of an inverted bit may
-//! end at an AND that masks the bit.
+//! outputs. Backward it reaches to a minimum cut: the fewest bits that determine the window. The proof tries every value in
+//! the intervals of these nets; if there are more than 2^22 combinations, it fails. For example, the window of an inverted bit
+//! may end at an AND that masks the bit.
 
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};

@@ -41,8 +41,9 @@ impl RecordView {
     }
 }
 
-/// Returns the measurement for the summary at the head of the datasheet: the FPGA `target` if the record has it, otherwise the
-/// FPGA with the most points per second. A pipeline for ECP5 thus shows its numbers on ECP5, even if another FPGA is faster.
+/// Returns the measurement for the summary at the head of the datasheet. It is for the FPGA `target` if the record has it, and
+/// otherwise for the FPGA with the most points per second. A pipeline for ECP5 thus shows its numbers on ECP5, even if another
+/// FPGA is faster.
 pub fn leading<'r>(
     record: &'r SynthesisRecord,
     target: Option<&str>,

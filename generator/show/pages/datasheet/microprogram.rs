@@ -1,5 +1,5 @@
-//! Makes the datasheet's table of the microprogram in the form that the patents use: a row for each microinstruction and a
-//! column for each control line.
+//! Makes the datasheet's table of the microprogram in the form that the patents use. It has a row for each microinstruction
+//! and a column for each control line.
 
 use crate::pages::account;
 use crate::pages::markup::html;

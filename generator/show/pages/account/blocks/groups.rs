@@ -312,8 +312,9 @@ impl<'a> Groups<'a> {
         operands
     }
 
-    /// Returns whether the sources of `operand` meet inside the block whose output is `head`, so that no joint is drawn: the
-    /// block is one of the sources, or the gates at which they meet belong to the same statement of the description.
+    /// Returns whether the sources of `operand` meet inside the block whose output is `head`, so that no joint is drawn.
+    /// Either the block is one of the sources, or the gates at which they meet belong to the block's statement of the
+    /// description.
     pub fn is_part(&self, operand: NetId, head: NetId) -> bool {
         if self.sources[operand.index()].contains(&head) {
             return true;

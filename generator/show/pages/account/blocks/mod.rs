@@ -78,7 +78,7 @@ pub struct Blocks<'a> {
 }
 
 impl<'a> Blocks<'a> {
-    /// If `figure` is set, the blocks are for a block diagram: gates and wiring are then blocks only if the source document
+    /// If `figure` is set, the blocks are for a block diagram. Gates and wiring are then blocks only if the source document
     /// numbers them, or if several signals meet in them.
     pub fn new(design: &'a Design, figure: bool) -> Self {
         Self { design, groups: Groups::new(design, figure) }
@@ -257,8 +257,8 @@ impl<'a> Blocks<'a> {
         shortest.unwrap_or(&pipeline.value_of[head.index()]).clone()
     }
 
-    /// Returns the other names of the value in a pipeline: the names of checkpoints whose only source is the block, with their
-    /// numbers in the source's figure.
+    /// Returns the other names of the value in a pipeline. These are the names of checkpoints whose only source is the block,
+    /// with their numbers in the source's figure.
     fn aliases(&self, head: NetId, name: &str) -> Vec<String> {
         let design = self.design;
         let Some(pipeline) = &design.pipeline else { return Vec::new() };
