@@ -122,7 +122,8 @@ impl Core {
         &self.opened.config
     }
 
-    /// Returns a digest that tells two configurations, or two versions of Glint, apart: SHA-256 in hexadecimal.
+    /// Returns a digest that tells two configurations, or two versions of Glint, apart: SHA-256 of the version and the TOML
+    /// text, in hexadecimal.
     pub fn digest(&self) -> String {
         let text = self.config().to_toml(&(self.device().schema)());
         package::digest(format!("{}\n{text}", env!("CARGO_PKG_VERSION")).as_bytes())

@@ -311,8 +311,8 @@ impl<'a> PointSource<'a> {
     }
 
     /// Searches for the control operands with the largest `f`, and returns the value of each operand that leads there. The
-    /// function tries the ends of the domain and 0. Only operands with fraction bits vary (a cosine, an angle, the components
-    /// of a vector), or all if none has fraction bits.
+    /// function tries the ends of the domain and 0. Only the first operands with fraction bits vary (a cosine, an angle, the
+    /// components of a vector), or the first operands if none has fraction bits.
     fn search(&self, highlight: &Highlight) -> Vec<Option<i64>> {
         let control = &self.operands[..self.control];
         let mut moved: Vec<usize> =

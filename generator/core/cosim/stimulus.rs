@@ -154,7 +154,9 @@ impl Stimulus {
             all
         } else {
             match self.random.below(8) {
+                // The same operands once more.
                 0 => return Phase::Starting(self.random.below(4) as u32),
+                // Some of the operands.
                 1 | 2 => self.random.bits() & all,
                 _ => all,
             }
@@ -197,6 +199,7 @@ impl Stimulus {
         if left != 0 {
             self.phase = Phase::Writing(left);
         } else if self.random.once_in(3) {
+            // Together with the last write.
             self.begin();
         } else {
             self.phase = Phase::Starting(if self.random.once_in(4) {

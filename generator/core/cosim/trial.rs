@@ -141,7 +141,7 @@ fn computation(
     })
 }
 
-/// Returns for example `red=#255 green=#0`.
+/// Returns raw values with their names, in the form `red=#255 green=#0`.
 fn listed<'a>(names: impl Iterator<Item = &'a str>, raw: &[i64]) -> String {
     let each: Vec<String> = names.zip(raw).map(|(name, raw)| format!("{name}=#{raw}")).collect();
     each.join(" ")
@@ -271,8 +271,8 @@ pub fn typical(contract: &dyn Contract, given: &[Option<i64>]) -> Vec<i64> {
     values
 }
 
-/// Lowers the operands of a line that change `f` only after the first point, such as a step. In the end, `f` in the middle of
-/// the line is at least a quarter of `f` at the first point.
+/// Lowers the operands of a line that change `f` only after the first point, such as a step. An operand stops at the lower end
+/// of its domain, at 0, or as soon as `f` in the middle of the line is at least a quarter of `f` at the first point.
 fn slow_down(
     contract: &dyn Contract,
     highlight: &Highlight,

@@ -97,6 +97,7 @@ fn bench(job: &EmitJob, vectors: &Vectors) -> Result<String> {
     let mut microprogram = Vec::new();
     for (address, microinstruction) in design.control.microprogram.iter().enumerate() {
         let label = literal(address as u64, address_width);
+        // Within a string literal of Verilog.
         let text = ascii(&microinstruction.name);
         let name = text.replace('\\', "/").replace('"', "'").replace('%', "%%");
         microprogram.push(StepLabel { label, address, name });

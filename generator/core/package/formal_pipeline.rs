@@ -69,6 +69,7 @@ pub fn files(job: &EmitJob, pipeline: &Pipeline, files: &mut OutputFiles) -> Res
         let next = format!("({name} == {}) ? 0 : {name} + 1", pipeline.interval - 1);
         Turn { range, next, slot, name }
     });
+    // The expression that is 1 if a point is offered in a clock in which the pipeline may accept one.
     let offered = match &turn {
         Some(turn) => format!("(in_valid & ({} == 0))", turn.name),
         None => "in_valid".to_owned(),

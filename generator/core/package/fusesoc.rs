@@ -35,6 +35,7 @@ pub fn files(job: &EmitJob, tops: &[Top], files: &mut OutputFiles) -> Result<()>
         memories: Vec<String> = files.local_paths(&[FileKind::Memory]),
         // The suffixes of the wrappers that have a bench.
         benches: Option<Vec<&'static str>> = wrapper_benches(tops, files),
+        // The clock of `<name>.xdc` and `<name>.sdc`, if these files exist.
         clock_mhz: Option<f64> = around.clock_mhz,
         vendor: &'a str = &around.vendor,
         version: &'a str,
@@ -44,6 +45,7 @@ pub fn files(job: &EmitJob, tops: &[Top], files: &mut OutputFiles) -> Result<()>
     if let Some((bench, others)) = benches.split_first() {
         let text = fill!("testbench.core" {
             name: &'a str, vendor: &'a str = &around.vendor, version: &'a str, licence: &'a str, bench: &'a str,
+            // The vectors of the core's bench, and the benches of the wrappers with their vectors.
             others: &'a [String],
         })?;
         files.add(FileKind::BenchPackage, format!("{name}_tb.core"), text);

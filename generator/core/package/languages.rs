@@ -104,6 +104,7 @@ fn vhdl(job: &EmitJob, tops: &[Top]) -> Result<String> {
         regenerate: &'a str = job.regenerate(),
         components: Vec<VhdlComponent<'a>> = tops.iter().map(|top| component(top, &generics)).collect(),
         generics: Vec<String>,
+        // The generics of the entity. The component has the same generics.
         passed: Vec<String> = separated(passed),
         ports: Vec<String> = listed(ports),
         outputs: Vec<(String, String, String)>,

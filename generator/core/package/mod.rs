@@ -141,6 +141,7 @@ pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<OutputFiles> {
     software::files(&job, &tops, &mut files)?;
     fusesoc::files(&job, &tops, &mut files)?;
     module_names::check(files.as_slice())?;
+    // The manifest has the digests of all other files.
     let contents = manifest::contents(&job, &files)?;
     files.add(FileKind::Manifest, format!("{}.json", design.name), contents);
     Ok(files)

@@ -281,7 +281,7 @@ fn operation(
     Ok(found)
 }
 
-/// Returns the branches in which a comparison is `taken`.
+/// Returns the branches in which a comparison is true, or false if `taken` is false.
 fn conditions(
     comparison: &Comparison,
     taken: bool,

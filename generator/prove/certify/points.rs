@@ -180,6 +180,7 @@ fn real_operand(
 
 /// Returns every combination of one branch of each expression whose choices do not contradict each other.
 fn together(ways: &[Vec<Branch>]) -> Vec<Vec<Branch>> {
+    // The choices of all branches together, and the branch of each expression.
     let mut combinations: Vec<(Branch, Vec<Branch>)> = vec![(Branch::default(), Vec::new())];
     for ways_of_expression in ways {
         let mut longer = Vec::new();

@@ -10,7 +10,7 @@ use glint_rtl::pipeline::NodeId;
 /// The polynomial `factors[0] + factors[1]·x + factors[2]·x²` in the raw value x of a node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RawPolynomial {
-    /// The node; `None` for a constant polynomial.
+    /// The node whose raw value is x; `None` for a constant polynomial.
     pub of: Option<NodeId>,
     pub factors: [i128; 3],
 }

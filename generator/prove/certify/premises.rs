@@ -1,9 +1,9 @@
 //! Writes the premises of statements about outputs as Gappa statements of their own, so that Gappa proves them too.
 //!
 //! A premise is a fact about an intermediate value that a statement takes for granted. One kind says that a value lies in the
-//! range of a quadratic polynomial. The other kinds are about dividers. The divisor is positive, the dividend is from 0 to the
-//! divisor, and a step of the divider keeps these limits. A divider has no premises if the intervals of its operands imply
-//! them.
+//! range of a quadratic polynomial. The other kinds are about a divider. They say that the divisor is positive, that the
+//! dividend is from 0 to the divisor, and that a step keeps these limits. A divider has no premises if the intervals of its
+//! operands imply them.
 
 use super::cases::{Case, UnrolledComputation};
 use super::hardware::{Hardware, NodeValue};

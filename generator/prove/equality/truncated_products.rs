@@ -40,8 +40,8 @@ impl PipelineComparison<'_> {
         Ok(())
     }
 
-    /// Does this for the product a·b and the pipeline's product c·d, if a follows from c and b from d. Returns whether both
-    /// do.
+    /// Stores in `divided` how the product a·b follows from the pipeline's product c·d, if a follows from c and b from d.
+    /// Returns whether both do.
     fn by_parts(&mut self, [a, b]: [VectorTermId; 2], [c, d]: [VectorTermId; 2]) -> Result<bool> {
         let (Some(first), Some(second)) = (self.made(a, c)?, self.made(b, d)?) else {
             return Ok(false);

@@ -82,6 +82,7 @@ fn plant_bit(design: &mut Design, net: NetId, bit: u32, how: BitChange) {
             let skip = [read];
             redirect(design, net, read, &skip);
         }
+        // For any other driver, all readers of the net read the faulty value.
         driver => {
             let sound = add(design, net, "sound", driver.clone());
             match driver {

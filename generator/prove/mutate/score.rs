@@ -121,7 +121,7 @@ pub struct TextScore {
     pub undecided: Vec<String>,
     /// The share that the shipped bench notices, among the faults that it or a longer bench notices.
     pub shipped: Share,
-    /// The ids of the faults that a longer bench notices, and the shipped bench not.
+    /// The ids of the faults that a longer bench notices, but the shipped bench does not.
     pub missed: Vec<String>,
 }
 

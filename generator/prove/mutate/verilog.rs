@@ -282,6 +282,7 @@ impl VerilogText {
         let (shipped, bench) = self.benches(&files, limit)?;
         let verdict = match (shipped, bench) {
             _ if is_linted => TextMutantVerdict::Lint,
+            // Lint would refuse a text that Icarus does not build, too.
             (ShippedBench::Refused, _) => TextMutantVerdict::Lint,
             (ShippedBench::Silent, Some(bench)) => {
                 if self.proves(&files, fault.file, bench.directory(), limit)? {
@@ -390,6 +391,7 @@ fn in_line(
     let mut numbers = BTreeMap::<&str, usize>::new();
     for operator in OPERATORS.iter().filter(|_| !is_memory) {
         for found in operator.pattern.captures_iter(code) {
+            // Two entries with the same kind share the numbering of their faults.
             let number = numbers.entry(operator.kind).or_default();
             *number += 1;
             let Some(all) = found.get(0) else { continue };

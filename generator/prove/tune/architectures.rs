@@ -19,7 +19,8 @@ pub struct Architecture {
     pub core: Core,
     /// The number of clocks from one point to the next in a pipeline; `None` for a sequential core.
     pub interval: Option<u32>,
-    /// The same for every core; a fraction is possible for a sequential core that computes lines of points.
+    /// The number of clocks from one point to the next. It may be a fraction for a sequential core that computes lines of
+    /// points.
     pub clocks_per_point: f64,
     pub multipliers: usize,
     pub cost: Cost,
@@ -35,7 +36,7 @@ impl Architecture {
         Ok(Self { core, interval, clocks_per_point: clocks, multipliers, cost })
     }
 
-    /// Returns million points a second, at the estimated clock frequency.
+    /// Returns the rate in million points a second, at the estimated clock frequency.
     pub fn rate(&self) -> f64 {
         self.cost.mhz / self.clocks_per_point
     }

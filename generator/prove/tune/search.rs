@@ -30,7 +30,7 @@ pub struct Candidate {
 }
 
 impl Candidate {
-    /// Returns million points a second, at the estimated clock frequency.
+    /// Returns the rate in million points a second, at the estimated clock frequency.
     pub fn rate(&self) -> Option<f64> {
         self.clocks.map(|clocks| self.cost.mhz / clocks)
     }

@@ -86,6 +86,7 @@ impl Mesh {
         kept.retain(|corners| area_vector(&positions, corners).unit().is_some());
         ensure!(all > 0, "the mesh has no triangle");
         ensure!(!kept.is_empty(), "all {all} triangles have no area");
+        // A normal of length 0 gives `None`.
         let given: Vec<Option<Vector>> = normals.iter().map(|normal| normal.unit()).collect();
         let is_complete =
             kept.iter().flatten().all(|corner| usable_normal(corner, &given).is_some());

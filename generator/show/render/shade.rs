@@ -105,6 +105,7 @@ impl Shader<'_> {
                 continue;
             }
             let most = match self.feed.longest() {
+                // A line has one point more than it has intervals.
                 Some(longest) => longest + 1,
                 None => run.len(),
             };

@@ -86,8 +86,8 @@ impl Watch {
         }
     }
 
-    /// Returns the number of features in all brightness classes, 64 for everything that is observed. ROM words are not
-    /// counted.
+    /// Returns the number of features in all brightness classes. Everything that is observed has 64 features in each class.
+    /// ROM words are not counted.
     pub fn count(&self) -> usize {
         64 * CLASSES * self.watched.len()
     }

@@ -19,8 +19,8 @@ const SHOWN: usize = 3840;
 /// at most this number of values.
 const MOST_VALUES: u64 = 4096;
 
-/// Lowest values of the operands without fraction bits, which choose a table. A line through the highlight is drawn for each
-/// of them, and for each number of bits of the line's length.
+/// Distances from the lowest value of the operands without fraction bits, which choose a table. A line through the highlight
+/// is drawn for each distance, and for each number of bits of the line's length.
 const FIRST_VALUES: [i64; 6] = [0, 1, 2, 3, 7, 15];
 const LINE_BITS: std::ops::RangeInclusive<u32> = 8..=12;
 

@@ -80,6 +80,7 @@ impl<'a> Places<'a> {
                     ("colour", Values::Range(colour.domain.0, colour.domain.1)),
                 ]
             }
+            // Without colours there is no product, and no place.
             None => vec![("f", Values::List(Vec::new()))],
         };
         let mut axes = Vec::new();

@@ -85,6 +85,7 @@ pub fn file(job: &EmitJob, tops: &[Top], files: &mut OutputFiles) -> Result<()> 
         name: &'a str,
         title: String = ascii(&design.about.title).replace('\\', "/").replace('"', "'"),
         regenerate: &'a str = job.regenerate(),
+        // The names of the classes begin with it.
         class: String = camel(name),
         core: Option<LitexCore<'a>>,
         stream: Option<LitexStream<'a>>,

@@ -145,6 +145,7 @@ pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<Vec<RomId>> {
         title: &'a str = &title,
         formula: String,
         regenerate: &'a str,
+        // Only for a pipeline: the upper-case name of its latency, and the clocks.
         latency: Option<(String, usize)> =
             latency.map(|clocks| (format!("{}_LATENCY", constant_name(name)), clocks)),
         operands: &'a [CField] = &operands,

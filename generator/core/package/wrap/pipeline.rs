@@ -74,6 +74,7 @@ pub fn modules(job: &EmitJob, pipeline: &Pipeline, files: &mut OutputFiles) -> R
         interval: usize = pipeline.interval,
         // The signal that is 1 if the points in the core move at the next edge.
         moves: &'a str = if pipeline.interval > 1 { "moves" } else { "s_axis_tready" },
+        // The number of bits of the core's own side channel, which the wrapper does not use.
         side: u32 = pipeline.side,
         packed: Vec<String> = separated(results.packed("core_")),
         connections: Vec<String>,

@@ -241,6 +241,7 @@ fn proof(job: &EmitJob, map: &Map) -> Result<String> {
         first_result_number: u32 = map.last_operand() + 1,
         last_result_number: u32 = map.last(),
         operands: Vec<OperandWords> = operands(map),
+        // The place of each register, and the word that a read of it gives.
         reads: Vec<(u32, Vec<String>)> = reads.collect(),
         stub_ports: Vec<String> = stub_ports(job.design),
         stub_free: Vec<String> = stub_free(job.design),

@@ -122,6 +122,7 @@ pub fn modules(job: &EmitJob, files: &mut OutputFiles) -> Result<()> {
         out_high: u32,
         keep: bool,
         user_high: u32 = user_bits - 1,
+        // The highest bit of results, tlast and tuser together.
         packed_high: u32 = out_high + 1 + user_bits,
         stub_ports: Vec<String> = stub_ports(design),
         stub_free: Vec<String> = stub_free(design),

@@ -64,6 +64,7 @@ impl Flat {
         let mut made = BTreeMap::new();
         for unit in &pipeline.units {
             for slot in (0..pipeline.interval).filter(|&slot| unit.serves[slot].is_some()) {
+                // The multiplier chooses the factors in the slot before.
                 let chosen = (slot + pipeline.interval - 1) % pipeline.interval;
                 let mut own: BTreeMap<NetId, NetId> = BTreeMap::new();
                 for &net in &unit.nets {

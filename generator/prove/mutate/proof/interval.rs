@@ -74,6 +74,7 @@ pub(super) fn of(
             }
             hull(taken).map_or(all, within)
         }
+        // Both operands may be one net under two names.
         Driver::Op(Op::Mul(a, b)) if pairs::square(design, *a, *b) => cell(&Op::Mul(*a, *a)),
         Driver::Op(op) => cell(op),
         _ => all,

@@ -228,6 +228,7 @@ pub(super) fn chosen(select: Pairs, lines: u32, inputs: &[(Pairs, NetId)]) -> Pa
     let input = |number: u64| inputs[(number as usize).min(inputs.len() - 1)];
     let mut all = Pairs([0; 4]);
     for sound in 0..1 << lines {
+        // The bits that can be 0 and 1 in the mutant if the fault-free select is this pattern.
         let beside =
             |pair: usize| (select.0[pair] & !sound | select.0[pair + 1] & sound) & mask(lines);
         let [zeros, ones] = [beside(0), beside(2)];

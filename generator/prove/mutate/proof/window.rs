@@ -286,7 +286,7 @@ impl<'a> Windows<'a> {
         }
     }
 
-    /// In the order of evaluation, including `wanted`.
+    /// Returns the nets in the order of evaluation, including `wanted`.
     fn cells_behind(&self, cut: &BTreeSet<NetId>, wanted: &BTreeSet<NetId>) -> Vec<NetId> {
         let mut behind = BTreeSet::new();
         let mut todo: Vec<NetId> = wanted.iter().copied().collect();

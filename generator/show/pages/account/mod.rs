@@ -160,6 +160,7 @@ pub fn ports(design: &Design) -> TextTable {
     let mut table =
         TextTable::of("port | no.: | direction | role | format | written by | what it is");
     let ports = facts::ports(design);
+    // A strobe is in the row of its operand.
     for port in &ports {
         if port.role == "strobe" {
             continue;
