@@ -33,6 +33,7 @@ const BENCH_POINTS: u64 = 64;
 /// The largest number of results of a line among these computations.
 const BENCH_LINE: i64 = 6;
 
+/// The number of random points at the beginning of the emitted bench of a pipeline.
 const PIPELINE_POINTS: u64 = 2000;
 
 /// The seed of the random inputs of emitted test benches.

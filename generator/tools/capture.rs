@@ -9,7 +9,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 const KEEP_FIRST: usize = 64 << 10;
 /// A long output keeps this number of bytes at its end, where verdicts and errors are.
 const KEEP_LAST: usize = 1 << 20;
+/// The number of lines of output that an error quotes.
 const QUOTED_LINES: usize = 12;
+/// The largest number of characters of a line that an error quotes.
 const QUOTED_CHARACTERS: usize = 200;
 
 /// The output of a child process so far. Clones share the text, so that one thread can read output while another quotes it.

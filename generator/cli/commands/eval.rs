@@ -47,6 +47,7 @@ pub struct Arguments {
     typical: bool,
 }
 
+/// The number of clocks after which a computation counts as one that gives no result.
 const LIMIT: u64 = 1 << 16;
 
 /// Fails if the configuration has problems, if an operand is unknown or has no valid value, or if the CSV file cannot be read.
@@ -202,6 +203,7 @@ struct ResultComparison {
     error: Option<f64>,
 }
 
+/// The name of the reflectance `f` among the results.
 const F: &str = "f";
 
 fn results(contract: &dyn Contract, raw: &[i64]) -> Vec<ResultComparison> {

@@ -16,6 +16,7 @@ use glint_core::cosim::exhaustive::{Clocks, Difference};
 use glint_core::cosim::{Lockstep, Mismatch, Outcome};
 use glint_rtl::sim::views;
 
+/// The number of clocks in the waveform that ends with a difference.
 const WINDOW: u64 = 64;
 
 pub struct Reproducer {

@@ -102,6 +102,7 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     Ok(true)
 }
 
+/// The key that asks for registers inside the multipliers of a pipeline.
 const MULTIPLIERS: &str = "pipeline.multipliers";
 const REGISTERED: &str = "registered";
 

@@ -13,8 +13,10 @@ pub use lanes::RustHdl;
 
 use glint_golden::Contract;
 
+/// The number of instances that one thread simulates together.
 const LANES: usize = 32;
 
+/// The number of points that a thread computes as one piece of work.
 const PIECE: usize = 4096;
 
 /// The raw operands of many computations, and the number of results of each. Only a device that computes lines gives several

@@ -23,11 +23,13 @@ use glint_golden::{Contract, Model};
 use glint_rtl::netlist::Design;
 use glint_rtl::sim::Simulator;
 
+/// The largest number of streams that share a simulator.
 pub(super) const LANES: usize = 32;
 
 /// The number of streams of a run of middle length, enough for two threads. A longer run has a multiple of this number.
 const STREAMS: u64 = 2 * LANES as u64;
 
+/// The smallest number of results in a stream of a core with a microprogram.
 const FEWEST_POINTS: u64 = 64;
 
 /// The smallest length of a stream, in computations with the largest number of results. For example, a stream has at least 2000
@@ -44,6 +46,7 @@ const FEWEST_STREAMS: u64 = 8;
 const PIPELINE_POINTS: u64 = 2048;
 const FEWEST_PIPELINES: u64 = 4;
 
+/// The number of results after which the progress is reported.
 const TOLD: u64 = 1024;
 
 pub struct Lockstep<'a> {

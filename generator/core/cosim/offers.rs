@@ -15,6 +15,7 @@ use super::random::Random;
 /// The average numbers of clocks until a new point is offered, and until `out_ready` is high, are drawn from these values.
 const PACES: [u64; 4] = [1, 1, 2, 5];
 
+/// The number of clocks after which new paces are drawn.
 const PACE_CLOCKS: u64 = 24;
 
 /// The average number of clocks between resets.

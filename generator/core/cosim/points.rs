@@ -44,6 +44,7 @@ const PARTS: usize = 1 << HALVINGS;
 static POWERS: LazyLock<[f64; PARTS]> =
     LazyLock::new(|| std::array::from_fn(|part| libm::exp2(-(part as f64) / PARTS as f64)));
 
+/// A value of the formula between its ends 0 and 1, at which errors show.
 const MIDDLE: f64 = 0.6;
 
 /// The largest number of times that the search halves the distance of operands from the peak, until the formula is below its

@@ -7,6 +7,7 @@ use glint_golden::Operand;
 #[derive(Clone, Debug)]
 pub struct Random(u64);
 
+/// The constant that is added to the state for each number.
 const STEP: u64 = 0x9e37_79b9_7f4a_7c15;
 
 /// [`Random::of_domain`] makes a list of seven values, and draws one of the 16 entries of a table: the index of the value that

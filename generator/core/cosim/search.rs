@@ -14,8 +14,10 @@ use super::random::Random;
 use glint_base::fixed::exp2;
 use glint_golden::{Contract, Highlight, nearer};
 
+/// The largest distance from the largest colour at which a colour is tried.
 const MOST_COLOURS: i64 = 256;
 
+/// Operands are moved by powers of two below 2 to this power.
 const MOST_BITS: u32 = 24;
 
 /// The number of points with the largest errors around which the search tries all neighbours, and about the number of

@@ -15,20 +15,25 @@ use glint_golden::{Contract, Highlight, Operand};
 use glint_rtl::netlist::{self, Design, HandshakeTiming, NetId};
 use glint_rtl::sim::Simulator;
 
+/// The number of clocks after which a computation counts as a computation that never ends.
 const LIMIT: u32 = 1 << 16;
 
 /// The number of sample computations in [`computations`]. The first of them are corners of the domain.
 const COMPUTATIONS: usize = 40;
 
+/// The largest length operand of a line among the sample computations.
 const SHORT: i64 = 9;
 
 /// The longest measured line has a length operand that is larger by this number than the smallest length operand.
 const LONG: i64 = 1000;
 
+/// The number of points in a recording of a pipeline.
 const POINTS: usize = 3;
 
+/// The number of clocks for which the first result of such a recording waits.
 const PAUSE: usize = 2;
 
+/// The number of operands from [`Contract::hint`] that are tried for a worked example.
 const TRIES: u32 = 256;
 
 struct ComputationTrial {

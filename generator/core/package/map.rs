@@ -14,6 +14,7 @@ use glint_base::fixed::Format;
 use glint_rtl::netlist::{Design, Port, Role};
 use glint_rtl::verilog::text::ascii;
 
+/// The number of bits of a register.
 const WORD: u32 = 32;
 
 /// The number of registers with constant contents, at the lowest addresses.
@@ -26,6 +27,7 @@ pub const INTERRUPT_ENABLE: u32 = 6;
 
 pub const INTERRUPT_PENDING: u32 = 7;
 
+/// The word address of the first operand.
 const FIRST_OPERAND: u32 = 8;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]

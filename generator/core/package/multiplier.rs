@@ -15,6 +15,7 @@ use glint_rtl::verilog::header;
 use glint_rtl::verilog::rows::separated;
 use glint_rtl::verilog::text::comment;
 
+/// The number of bits of each factor of the DSP block.
 const WIDTH: usize = 18;
 
 const PORTABLE: &str = "This is the portable form, for simulation and synthesis. For ECP5, use the file of the \

@@ -11,13 +11,15 @@ use super::output_file::digest;
 /// The position of the digest in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Seal {
-    /// A last line `<!-- … -->`, which no reader of the page sees.
+    /// Markdown and HTML: a last line `<!-- … -->`, which no reader of the page sees.
     Markup,
+    /// Python and Gappa: a last line `# …`.
     Hash,
     /// JSON: a member of the object.
     Json,
 }
 
+/// The member of sealed JSON with the digest of the other members.
 const MEMBER: &str = "sha256";
 
 /// Returns `text`, which must end with a newline, with one line more that has the digest of the text. A JSON file cannot have

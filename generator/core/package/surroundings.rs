@@ -11,8 +11,10 @@ use glint_rtl::verilog::naming::Style;
 /// The default clock frequency of the constraints for a sequential core, in MHz.
 const CLOCK_MHZ: f64 = 100.0;
 
+/// The key with the clock frequency of the constraints, in MHz.
 const CLOCK: &str = "package.clock_mhz";
 
+/// The key that says whether ROMs should be in memory blocks or in look-up tables.
 const ROM_STYLE: &str = "package.rom_style";
 
 /// Checks that the clock of the constraint files is not faster than the clock for which the pipeline is scheduled.

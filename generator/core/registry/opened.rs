@@ -19,8 +19,10 @@ use glint_rtl::pipeline::{self, PassResult};
 
 use super::{CLOCK_MHZ, DesignError, Device, pipeline_keys};
 
+/// The key that asks for registers behind the results.
 const OUTPUT_REGISTERED: &str = "output.registered";
 
+/// The key that asks for buffers in front of the operand registers.
 const OPERANDS_BUFFERED: &str = "operands.buffered";
 
 /// The hardware description, the golden model and the contract of a device, for the values of its own keys with which it was

@@ -8,6 +8,7 @@ use glint_config::{Config, Shared};
 use glint_rtl::netlist::Design;
 use glint_rtl::pipeline::{self, PassResult, PipelineError, PipelineErrorKind};
 
+/// The key with the clock frequency in MHz for which a pipeline is scheduled.
 pub const CLOCK_MHZ: &str = "pipeline.clock_mhz";
 
 /// Returns `None` if the configuration has a sequential architecture.

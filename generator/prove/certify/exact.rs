@@ -12,6 +12,7 @@ use glint_base::fixed::exp2;
 use glint_formula::{Comparison, Expression, Function, Kind, Literal, Operator};
 use glint_golden::Operand;
 
+/// The largest exponent of a power that has a translation.
 const MOST_EXPONENT: f64 = 1000.0;
 
 /// One branch of a formula: a term, and the conditions under which this term is the formula's value.

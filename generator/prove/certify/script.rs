@@ -15,6 +15,7 @@ use super::hardware::Variables;
 use super::terms::{RealTerm, RealTermId, RealTerms, number};
 use glint_base::fixed::exp2;
 
+/// The number of points at which terms are compared.
 const SAMPLES: usize = 24;
 const TRIES: usize = 2_000;
 

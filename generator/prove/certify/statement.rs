@@ -8,6 +8,7 @@ use std::collections::HashMap;
 use super::script;
 use super::terms::number;
 
+/// The end of a script's goal that asks for a bound.
 pub(super) const ASKED: &str = "| in ? }";
 
 /// A statement for Gappa: for example, an output differs from the formula by at most the error bound.

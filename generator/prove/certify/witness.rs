@@ -13,15 +13,19 @@ use super::terms::{RealTerm, RealTermId, RealTerms, RoundingDirection, number};
 use glint_base::fixed::exp2;
 use glint_formula::{Expression, Function, Kind, Operator, parse};
 
+/// The number of random points from which a search begins.
 const STARTS: usize = 64;
 
+/// The number of fraction bits of a variable for which the script states none.
 const CONTINUOUS: i32 = 20;
 
 /// The largest absolute value that is tried for a variable without an interval.
 const FREE: f64 = 1024.0;
 
+/// A goal that is never true. Gappa proves it only if the hypotheses contradict each other.
 const NEVER: &str = "1 in [2,3] }";
 
+/// The text between hypotheses and goal.
 const IMPLIES: &str = "\n  -> ";
 
 /// Returns the script with a goal that Gappa can prove only if the hypotheses contradict each other. For example, the goal

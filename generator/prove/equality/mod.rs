@@ -39,6 +39,7 @@ use term::{VectorTerm, VectorTermId, VectorTerms};
 
 pub use text::{TextProof, TextVerdict, compare_text};
 
+/// The number of random points at which both designs are compared before anything is proved.
 const TRIALS: usize = 400;
 
 /// If a computation of the sequential core takes more clocks, [`compare`] fails.

@@ -11,6 +11,7 @@ use rand_chacha::rand_core::{RngCore, SeedableRng};
 use super::term::{VectorTermId, VectorTerms};
 use glint_base::fixed::MAX_WIDTH;
 
+/// The number of sets of random values at which terms are compared.
 const SAMPLES: usize = 24;
 
 /// The values of all terms at 24 sets of random values of the unknowns. Terms with the same values may be equal.

@@ -59,6 +59,7 @@ pub enum VectorTerm {
     },
 }
 
+/// The number of bits of a memory address.
 pub const ADDRESS: u32 = 32;
 
 /// Stores every term once, after its operands.

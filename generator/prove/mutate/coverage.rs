@@ -10,6 +10,7 @@ use glint_core::cosim::Lockstep;
 use glint_rtl::netlist::{Design, Driver, NetId, NetlistRegister, RegisterKind, Role, RomId};
 use glint_rtl::sim::Simulator;
 
+/// The largest number of positions that are recorded for each word.
 const PLACES: usize = 6;
 
 pub(super) type OperandValues = Vec<(String, i64)>;

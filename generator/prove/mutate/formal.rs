@@ -24,8 +24,10 @@ const STATUS: &str = "glint_status.txt";
 /// Each attempt lets more nets differ.
 const ROUNDS: usize = 4;
 
+/// A line of Yosys's answer about a net for which the equality is not proved.
 static DIFFERS: LazyLock<Regex> = LazyLock::new(|| pattern(r"^  Unproven .*: \\(\w+)_gold\b"));
 
+/// The declarations of ports and registers, which must not differ.
 static KEPT: LazyLock<Regex> =
     LazyLock::new(|| pattern(r"(?m)^ *(?:input|output|reg)\b[^;,/]*?(\w+)(?:,|;| *(?://.*)?$)"));
 

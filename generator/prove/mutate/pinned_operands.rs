@@ -17,6 +17,7 @@ const POINTS: u64 = 1 << 17;
 /// The number of results that are compared if all operands are fixed.
 const FEW_POINTS: u64 = 64;
 
+/// The seed for drawing the operands that are not fixed.
 const SEED: u64 = 3;
 
 /// If the operand that addresses the ROM is fixed: the largest number of operand bits for which all values of the others are

@@ -11,6 +11,7 @@ use super::kind::FaultKind;
 use super::verdict::{Detector, FaultResult, How, MutantVerdict};
 use super::verilog::{ShippedBench, TextFault, TextFaultResult, TextMutantVerdict};
 
+/// The largest share of the faults of a configuration that may be undecided.
 pub const TOLERATED: f64 = 0.01;
 
 /// The share of the faults in the Verilog that the shipped bench should notice, among the faults that it or a longer bench

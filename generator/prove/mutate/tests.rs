@@ -31,6 +31,7 @@ fn faults_that_read_other_nets_are_no_proof_and_no_panic() {
     assert!(proved < wired.len(), "{proved} of {}", wired.len());
 }
 
+/// The number of points with which most faults show.
 const POINTS: u64 = 200;
 
 fn at(path: &str) -> PathBuf {

@@ -21,6 +21,7 @@ use glint_core::package::{self, EmitInputs, FileKind, OutputFile, OutputFiles};
 use glint_tools::transient::Directory;
 use glint_tools::{BuiltBench, Tool, VerilogSimulator, Waveform};
 
+/// The number of results of the longer bench, which runs if the shipped bench notices nothing.
 const POINTS: u64 = 10_000;
 
 /// The time limit of Yosys for the proof that a fault changes nothing. Proofs that succeed take some seconds, so the limit is

@@ -19,12 +19,14 @@ use glint_rtl::sim::{CompiledDesign, Machine};
 /// The number of points that enter the pipelines in the same clock, each in a simulation of its own.
 const LANES: usize = 64;
 
+/// The number of clocks of a search.
 const CLOCKS: usize = 1 << 16;
 
 /// The search ends after so many calls of `confirm` without a confirmed point. The golden model predicts a checkpoint only for
 /// points that execute its microinstruction, so some differences are not confirmed.
 const TRIES: usize = 32;
 
+/// The largest number of points that are kept and changed further.
 const KEPT: usize = 32;
 
 const SEED: u64 = 4;

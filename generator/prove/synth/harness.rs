@@ -9,7 +9,9 @@ use glint_base::fill;
 
 use glint_rtl::netlist::{Design, Port};
 
+/// The name of the harness module.
 pub const TOP: &str = "glint_harness";
+/// The name of the core's instance in the harness module.
 pub const CORE: &str = "core";
 
 /// The bits `low` to `high` of a port in the shift register that feeds all inputs or captures all outputs. For example, ports

@@ -92,6 +92,7 @@ pub fn longest_interval(sequential: &Architecture, target: Target) -> Option<Arc
     intervals(sequential).rev().find_map(|interval| pipeline(base, target, interval).ok())
 }
 
+/// The largest value of `pipeline.interval`.
 const LONGEST: u32 = 64;
 
 fn intervals(sequential: &Architecture) -> std::ops::RangeInclusive<u32> {

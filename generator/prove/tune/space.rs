@@ -16,8 +16,10 @@ use glint_core::registry::Device;
 use glint_golden::Contract;
 use glint_rtl::netlist::Design;
 
+/// The steps by which the value of an integer key is changed.
 const STEPS: [i64; 3] = [1, 2, 4];
 
+/// The tables of keys that define the computation and its domain.
 const STATEMENT: [&str; 2] = ["domain", "function"];
 
 /// The points are drawn like the points of a test: at most of them the formula is neither 0 nor flat.

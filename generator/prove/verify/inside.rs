@@ -22,6 +22,7 @@ const POINTS: [u64; 2] = [TEST_POINTS, 100 * TEST_POINTS];
 /// The largest number of evaluations of the golden model without full effort. They take some seconds.
 const EVALUATIONS: u64 = 1 << 28;
 
+/// The approximate number of evaluations of `f` that are repeated for a recorded proof.
 const AGAIN: u64 = 1 << 24;
 
 /// The largest number of faults that are planted without full effort. The check then takes a minute or two.
@@ -330,6 +331,7 @@ fn faults(subject: &CheckSubject<'_>) -> (Faults, usize) {
     (faults, all)
 }
 
+/// The largest number of faults that a finding names.
 const NAMED: usize = 20;
 
 /// Returns at most 20 ids of faults as text, and the number of the others. No ids give an empty text.

@@ -36,8 +36,10 @@ const STATEMENT: Duration = Duration::from_secs(10);
 /// The time limit of the solver for each of the proofs of [`EQUALITY`] and [`TEXT`], without full effort.
 const EQUAL: Duration = Duration::from_secs(300);
 
+/// The version of cocotb that the benches in Python are written for.
 const COCOTB_VERSION: &str = "2.1.0";
 
+/// The number of results of a bench around a netlist.
 const GATE_POINTS: u64 = 40;
 
 /// If the statements cannot be written, or Gappa does not prove one in time, the check is unconfirmed. It does not fail,
@@ -359,6 +361,7 @@ pub const FORMAL: Check = Check {
     },
 };
 
+/// Runs the emitted benches in Python with cocotb. The benches know the core only from its manifest.
 pub const COCOTB: Check = Check {
     id: "cocotb",
     title: "Emitted Verilog driven from Python",

@@ -8,6 +8,7 @@ use serde_json::json;
 
 use super::{CheckAnswer, CheckTime, VerificationRecord};
 
+/// The HTML element that says which program wrote the page.
 const MARKER: &str = "<meta name=\"generator\" content=\"glint verify\">";
 
 #[glint_base::template::template("verification.html")]

@@ -19,6 +19,7 @@ const STEPS: [i64; 4] = [1, 2, 4, 8];
 /// Smaller reductions of the bound do not count, in output units.
 const GAIN: f64 = 1e-6;
 
+/// The largest number of changes that are tried one after the other until the core keeps its contract.
 const MOST: usize = 40;
 
 /// Changes of keys that make the error bound smaller. For example, as text: "`intensity.fraction = 17` in place of 16 would

@@ -14,6 +14,7 @@ use glint_golden::formulas;
 use glint_golden::{Contract, Highlight};
 use glint_rtl::netlist::{Design, Driver, Op};
 
+/// The number of angles in each degree at which [`accuracy`] compares the reflectance f of a device with `cosⁿγ`.
 pub const ANGLES_PER_DEGREE: u32 = 100;
 
 /// The number of angles from 0 to 90°, both included.
@@ -22,6 +23,7 @@ pub const ANGLES: u32 = 90 * ANGLES_PER_DEGREE + 1;
 /// The exponent n at which the clocks per point are counted, if they depend on n.
 pub const EXPONENT: f64 = 35.0;
 
+/// The angle γ, in degrees, at which the clocks per point are counted.
 const TYPICAL: f64 = 10.0;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]

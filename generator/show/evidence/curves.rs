@@ -15,6 +15,7 @@ use glint_golden::{Contract, Highlight, formulas};
 pub const EXPONENTS: [u32; 20] =
     [1, 2, 3, 4, 6, 8, 11, 16, 23, 32, 45, 64, 91, 128, 181, 256, 362, 512, 724, 1000];
 
+/// The exponents with a curve over the angle.
 const SHOWN: [u32; 5] = [2, 8, 35, 128, 1000];
 
 /// The largest value of `√n·γ` on the curves over the angle.
@@ -25,6 +26,7 @@ const REACH: f64 = 4.0;
 const PLACES: u32 = 100;
 const ANGLES: u32 = 12;
 
+/// The lowest error on a logarithmic axis. Smaller errors are shown there.
 const FLOOR: f64 = 1e-6;
 
 /// The error curves of a device, with the facts that a page shows next to them.

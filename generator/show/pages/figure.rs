@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use super::plots;
 use crate::evidence::chart::{AxisScale, Chart};
 
+/// The number of rows of the table beside a plot.
 const ROWS: usize = 11;
 
 pub struct Figure<'a> {

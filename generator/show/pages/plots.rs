@@ -7,6 +7,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use crate::evidence::chart::{AxisScale, Chart, ChartAxis};
 
+/// The number of curves that the style sheet can distinguish, by colour and by dashes.
 pub const STYLES: usize = 10;
 
 /// The number of the plotting library's units in a unit of the page at full size. The library rounds positions to whole units,
@@ -15,6 +16,7 @@ const FINE: u32 = 4;
 
 /// The width of a plot, in units of the plotting library.
 pub const WIDTH: u32 = 480 * FINE;
+/// The height of a plot, in units of the plotting library.
 pub const HEIGHT: u32 = 300 * FINE;
 
 /// Placeholder colours for the roles of lines and text; [`themed`] replaces them by classes.

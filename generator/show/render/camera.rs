@@ -26,8 +26,10 @@ pub struct View {
     pub field: f64,
 }
 
+/// The default direction from the target to the camera: from the front and a little above.
 const DIRECTION: Vector = Vector::new(0.0, 0.28, 1.0);
 
+/// The share of the picture's width or height that the objects fill by default.
 const FILLED: f64 = 0.92;
 
 impl Camera {

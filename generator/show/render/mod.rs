@@ -40,8 +40,10 @@ use glint_golden::{Contract, nearer};
 use shade::{Shaded, Shader};
 use visibility::{Raster, Visibility};
 
+/// The largest width or height of a picture in pixels.
 pub const LARGEST_SIDE: u32 = 8192;
 
+/// The largest number of samples along each side of a pixel.
 pub const MOST_SAMPLES: u32 = 8;
 
 /// Pixels times samples per pixel.

@@ -6,13 +6,16 @@ use png::{BitDepth, ColorType, Compression, Encoder, Filter};
 
 use super::vector::Vector;
 
+/// The height of the letters of a caption.
 const LETTERS: RasterHeight = RasterHeight::Size16;
 
 /// The number of empty rows of pixels above a caption, and below it.
 const AROUND: usize = 3;
 
+/// The background colour of a caption, as red, green and blue.
 const STRIP: [u8; 3] = [24, 26, 30];
 
+/// The colour of the letters of a caption.
 const LETTER: [u8; 3] = [232, 233, 235];
 
 /// Rows of pixels, from the top.

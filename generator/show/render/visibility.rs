@@ -12,6 +12,7 @@ use super::camera::Camera;
 use super::scene::{Scene, Shape};
 use super::vector::Vector;
 
+/// The number of rows of samples in a band.
 const BAND: usize = 16;
 
 /// The first surface that the ray through a sample meets.

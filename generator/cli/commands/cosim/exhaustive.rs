@@ -21,6 +21,7 @@ use glint_core::registry::Registry;
 use glint_golden::Sweep;
 use show::{announce, report};
 
+/// The time between two writes of the state.
 const SAVE: Duration = Duration::from_secs(5);
 
 /// A division among more cores is suggested from this estimated duration on.

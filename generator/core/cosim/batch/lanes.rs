@@ -16,6 +16,7 @@ use crate::cosim::instances::Instances;
 use glint_golden::Contract;
 use glint_rtl::netlist::{Design, NetId, Role};
 
+/// The number of clocks after which a computation counts as a computation that never ends.
 const LIMIT: u64 = 1 << 16;
 
 /// An [`Engine`] that simulates the design with rust_hdl.

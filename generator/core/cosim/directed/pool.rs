@@ -24,12 +24,16 @@ const MOST_VALUES: u64 = 4096;
 const FIRST_VALUES: [i64; 6] = [0, 1, 2, 3, 7, 15];
 const LINE_BITS: std::ops::RangeInclusive<u32> = 8..=12;
 
+/// The largest length operand of a line among the drawn points.
 const LONGEST: i64 = 1023;
 
+/// The value of the formula at which a wrong word shows best in the results.
 const VALUE: f64 = 0.6;
 
+/// The largest number of corners. The ends of the operands' formats are used only if this number is not exceeded.
 const MOST_CORNERS: usize = 128;
 
+/// The length operand of a line in a corner.
 const CORNER_LENGTH: i64 = 2;
 
 pub struct Pool {

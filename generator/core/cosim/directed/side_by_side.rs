@@ -12,8 +12,10 @@ use glint_golden::Contract;
 use glint_rtl::netlist::{Design, NetId};
 use glint_rtl::sim::Machine;
 
+/// The number of computations that are simulated at once.
 pub const LANES: usize = 32;
 
+/// The number of clocks after which a computation counts as a computation that never ends.
 const LIMIT: u32 = 1 << 16;
 
 /// A set of lanes as a bit mask: bit i is 1 if lane i is in the set.

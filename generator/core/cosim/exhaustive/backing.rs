@@ -14,6 +14,7 @@ use glint_base::input;
 use glint_base::program::Program;
 use glint_golden::Contract;
 
+/// The folder with the records of `glint certify`, inside the directory of the records.
 const CERTIFICATES: &str = "certificates";
 
 /// The largest accepted difference between the recorded and the stated bound, in units.

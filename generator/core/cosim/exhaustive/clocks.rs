@@ -29,6 +29,7 @@ pub const MOST_BITS: u32 = 26;
 /// The number of combinations that one lane runs from power-up on.
 const RUN: u64 = 512;
 
+/// The number of combinations in a block.
 const BLOCK: u64 = RUN * LANES as u64;
 
 /// The progress of a shard in the clock-by-clock comparison.

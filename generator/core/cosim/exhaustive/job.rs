@@ -22,6 +22,7 @@ use glint_golden::{Contract, Sweep};
 /// A larger number is probably a typing error.
 pub const MOST_SHARDS: u64 = 1_000_000;
 
+/// The largest number of missing shards that an error message names.
 const NAMED: usize = 10;
 
 /// The number of blocks for each thread between two calls of `look` in [`Job::run`]. They take some tenths of a second.

@@ -13,6 +13,7 @@ use glint_base::input;
 use glint_base::program::Program;
 use glint_golden::{Axis, Contract, Sweep, Values};
 
+/// The largest difference between a recorded figure and the same figure when Glint computes it again.
 const SAME: f64 = 1e-9;
 
 #[derive(Clone, Debug, Deserialize)]

@@ -9,6 +9,7 @@ use crate::cosim::ports::Ports;
 use glint_golden::Model;
 use glint_rtl::netlist::{Design, NetId, Pipeline};
 
+/// The number of clocks after which a computation counts as a computation that never ends.
 const MOST_CLOCKS: usize = 8192;
 
 #[derive(Clone)]

@@ -27,6 +27,7 @@ use glint_rtl::verilog::text::{ascii, statement};
 /// The number of intervals with MPFR limits that the program reserves for each part of a formula, such as a sum.
 const VALUES: usize = 8;
 
+/// The largest number of combinations of operands that a program computes.
 pub const MOST_COMBINATIONS: u128 = 1 << 32;
 
 /// The contract of a core, as far as a program can recompute it.

@@ -12,6 +12,7 @@ use crate::package::bench::packed;
 use glint_base::fixed::mask;
 use glint_rtl::netlist::{Design, Port, Role};
 
+/// The largest number of results in the list. A computation with which the list would exceed this number is left out.
 const RESULTS: usize = 4096;
 
 /// The bit patterns of a finished computation, in the order of the ports.

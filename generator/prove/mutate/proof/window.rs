@@ -26,6 +26,7 @@ type NetLanes = [u64; LANES];
 /// The lanes of nets. For a mutant, only nets that the fault may change have lanes.
 type LanesByNet = Vec<Option<Box<NetLanes>>>;
 
+/// The largest number of combinations that are tried, as a power of two.
 const BITS: u32 = 22;
 
 /// The distance between the chunks of combinations that are tried one after the other. It is prime, so that all chunks are

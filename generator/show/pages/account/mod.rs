@@ -36,8 +36,10 @@ pub struct PageInputs<'a> {
     pub line: Option<&'a LineClocks>,
 }
 
+/// The largest number of combinations for which an exhaustive check of a highlight takes minutes: some 30 ns for each.
 const MOST_OF_F: u64 = 1 << 34;
 
+/// The largest number of combinations for which an exhaustive check of any other device takes minutes: some µs for each.
 const MOST_OF_OUTPUTS: u64 = 1 << 28;
 
 pub const FORMATS: &str = "Formats: `uI.F` is unsigned, `sI.F` two's complement, with I integer bits (a sign bit apart) \

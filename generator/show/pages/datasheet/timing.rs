@@ -9,13 +9,16 @@ use crate::pages::drawing::{Drawing, Item, SIZE, text_width};
 /// The distance from one lane to the next, in units of the drawing.
 const PITCH: i32 = 26;
 
+/// The vertical distance from a low signal to a high one.
 const SWING: i32 = 16;
 
 /// The space above the first lane for the numbers of the clocks.
 const HEAD: i32 = 24;
 
+/// The smallest and the largest width of a clock.
 const CLOCK: std::ops::RangeInclusive<i32> = 34..=104;
 
+/// The horizontal length of a slanted edge.
 const SLANT: i32 = 3;
 
 /// A frame with a value is wider than its text by this.
@@ -24,6 +27,7 @@ const MARGIN: i32 = 10;
 /// A page shows a drawing of this width without scrolling.
 const ROOM: i32 = 1120;
 
+/// The vertical distance between two strips of a waveform that is too wide for one strip.
 const APART: i32 = 22;
 
 pub fn drawing(waves: &Waves) -> Drawing {

@@ -17,8 +17,10 @@ use glint_rtl::netlist::{Design, Driver, Handshake, NetId, Port, RegisterKind, R
 /// The diagram leaves out the middle of a computation with more clocks.
 const MOST: usize = 40;
 
+/// The number of clocks that the diagram shows of the beginning of a long computation.
 const HEAD: usize = 24;
 
+/// The number of clocks that the diagram shows of the end of a long computation.
 const TAIL: usize = 8;
 
 pub const MICROINSTRUCTION: &str = "microinstruction";

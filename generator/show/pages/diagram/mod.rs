@@ -18,25 +18,34 @@ use graph::{BoxForm, DiagramBox, DiagramGraph};
 use place::Placement;
 use route::{Body, LANE, Routes, WireRoute, WireSegment};
 
+/// The height of a line of text in a box, in units of the drawing.
 const LINE: i32 = 14;
 
+/// The space above, and below, the text in a box.
 const PADDING: i32 = 6;
 
 /// The longest caption on one line, in characters. A longer one has a line for each of its parts, separated by ` · `.
 const LONG: usize = 17;
 
+/// The smallest distance between two pins of a box.
 const PIN: f64 = 9.0;
 
+/// The length of the arrow of the control lines beside a box.
 const STUB: f64 = 14.0;
 
+/// The space on each side of the text in a box.
 const MARGIN: i32 = 10;
 
+/// The height of the triangular tip at the lower end of the shape that is drawn for a port.
 const NECK: i32 = 8;
 
+/// The width of the empty border around the drawing.
 const BORDER: i32 = 12;
 
+/// The width of the notes beside a stage.
 const ASIDE: i32 = 140;
 
+/// The distance from the boxes of a stage to the registers at its end.
 const REGISTERS: f64 = 7.0;
 
 pub fn drawing(design: &Design) -> Drawing {

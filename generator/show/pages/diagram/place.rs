@@ -10,8 +10,10 @@ use dagre::{EdgeLabel, LayoutOptions, NodeLabel, RankDir, Ranker, layout};
 use super::graph::{BoxForm, DiagramGraph, DiagramWire};
 use crate::pages::account::blocks::BlockKind;
 
+/// The distance between two boxes of a column.
 const BOXES: f64 = 12.0;
 
+/// The distance between two wires that pass a column.
 const WIRES: f64 = 8.0;
 
 /// The weight of a wire at a port. The layout keeps wires with a larger weight shorter.

@@ -12,8 +12,10 @@ use super::tracks::{Side, Trunk, assign};
 /// The distance from one track to the next, in units of the drawing.
 const TRACK: f64 = 9.0;
 
+/// The space on each side of the tracks of a gap.
 const MARGIN: f64 = 14.0;
 
+/// The distance from the border of a box to its first pin.
 const EDGE: f64 = 8.0;
 
 /// The width of a lane, in which a wire that leads back to an earlier column runs around a box.

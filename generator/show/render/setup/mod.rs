@@ -22,14 +22,17 @@ use std::fmt;
 
 use super::vector::Vector;
 
+/// Two normals whose cosine is at most this count as opposite: the rotation between them is half a turn.
 const OPPOSITE: f64 = -1.0 + 1e-12;
 
+/// If γ, in radians, is larger than this, the half vectors count as opposite.
 const LARGEST_GAMMA: f64 = PI - 1e-6;
 
 /// If γ, in radians, is at most this, the half vector counts as constant. After rounding, so short an arc has no direction,
 /// and the angle changes by less than half an ulp of the usual operand.
 const STILL: f64 = 1e-8;
 
+/// The amount by which rounding may make the cosine of the smallest angle to the normal exceed 1.
 const ROUNDING: f64 = 1e-6;
 
 #[derive(Clone, Debug, PartialEq)]
