@@ -6,6 +6,7 @@ use glint_golden::Contract;
 
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct WorkedExample {
+    /// The operands, in the order of the operand ports.
     pub operands: Vec<Quantity>,
     /// The outputs, in the order of the result ports: of the first result, if the computation has several.
     pub outputs: Vec<Quantity>,
@@ -18,8 +19,11 @@ pub struct WorkedExample {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LineClocks {
     pub length: String,
+    /// The number of the last clock in which `valid` is high.
     pub last_valid: Linear,
+    /// The number of the clock in which `done` is high.
     pub done: Linear,
+    /// The number of the first clock in which the device takes the next `start`.
     pub next_start: Linear,
 }
 
@@ -104,7 +108,9 @@ impl ContractFacts {
 pub struct Computation {
     /// The raw operands, in the order of [`ContractFacts::domain`].
     pub operands: Vec<i64>,
+    /// The outputs in every clock in which `valid` is high.
     pub results: Vec<TimedResult>,
+    /// The number of the clock in which `done` is high.
     pub done: u32,
 }
 
@@ -118,6 +124,7 @@ impl Computation {
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TimedResult {
+    /// The number of the clock in which `valid` is high for this result.
     pub clock: u32,
     /// The raw outputs, in the order of [`ContractFacts::outputs`].
     pub outputs: Vec<i64>,
@@ -127,7 +134,9 @@ pub struct TimedResult {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Quantity {
     pub name: String,
+    /// The integer that the bits of the port denote.
     pub raw: i128,
+    /// The number that the port represents: `raw · 2^-F` with F fraction bits.
     pub value: f64,
 }
 

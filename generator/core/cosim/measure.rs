@@ -15,6 +15,7 @@ pub(super) struct Measure<'a> {
 }
 
 struct OutputQuantity {
+    /// The index of the output among the compared signals.
     at: usize,
     format: Format,
     /// The weight of the last bit of the output, and the inverse of this weight.

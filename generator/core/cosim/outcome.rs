@@ -92,6 +92,7 @@ pub struct Worst {
     /// are compared.
     pub weighted: f64,
     pub output: String,
+    /// The raw operands, each with its name.
     pub operands: Vec<(String, i64)>,
 }
 
@@ -104,7 +105,9 @@ pub struct Mismatch {
     /// The number of rising clock edges of the stream, from power-up to the difference.
     pub clock: u64,
     pub signal: String,
+    /// The golden model's value, a bit pattern.
     pub golden: u64,
+    /// The simulated hardware's value, a bit pattern.
     pub simulated: u64,
     /// For a core, the microinstruction that was executed at the edge: ``microinstruction `count` ``. For a pipeline, the
     /// stage of the signal: `stage 3`.

@@ -25,6 +25,7 @@ pub(super) struct Ports {
     /// Whether the core takes a `start` in the clock in which `done` is high.
     pub(super) overlaps: bool,
     pub(super) side_out: Option<NetId>,
+    /// The result outputs, in the order of `Contract::outputs`.
     pub(super) results: Vec<(NetId, Format)>,
 }
 
@@ -35,6 +36,7 @@ pub(super) struct OperandPort {
     /// The index of the operand's strobe among the inputs. A pipeline takes all operands at once, by `in_valid`.
     pub(super) strobe: usize,
     pub(super) format: Format,
+    /// The index of the operand in the contract.
     pub(super) at: usize,
 }
 

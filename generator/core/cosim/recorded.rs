@@ -17,6 +17,7 @@ impl Recording {
 
 pub(super) struct RecordedInputs {
     recording: Arc<Recording>,
+    /// The index in `words` at which the inputs of the next clock begin.
     next: usize,
 }
 

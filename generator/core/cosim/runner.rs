@@ -24,6 +24,7 @@ pub(super) struct Runner<'a, const LANES: usize> {
     binding: &'a Binding<'a>,
     pub(super) simulator: Simulator<LANES>,
     streams: Vec<Stream>,
+    /// For each lane, whether something differed in a stream whose clocks were computed ahead.
     differ: [bool; LANES],
     /// The clocks that are computed together: one or [`AHEAD`].
     ahead: Vec<PredictedClock<LANES>>,
@@ -38,6 +39,7 @@ struct PredictedClock<const LANES: usize> {
     predicted: Vec<[u64; LANES]>,
     /// A mask for each signal and lane: all ones if the value is predicted. Empty for a core, where every value is predicted.
     known: Vec<[u64; LANES]>,
+    /// A mask for each lane: all ones if its stream is compared in this clock, 0 if it has ended.
     compared: [u64; LANES],
 }
 

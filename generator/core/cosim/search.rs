@@ -39,7 +39,9 @@ pub struct Reached {
     /// The error in units, multiplied by the weight of the output (`Bounds::weights`), by which errors of different outputs
     /// are compared.
     pub weighted: f64,
+    /// The raw operands, in the order of `Contract::operands`.
     pub operands: Vec<i64>,
+    /// The index of the output in `Contract::outputs`.
     pub output: usize,
     /// The computed output as a raw value, and the value of the formula in the same units.
     pub raw: i64,

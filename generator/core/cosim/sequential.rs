@@ -15,6 +15,7 @@ pub(super) struct SequentialModel {
     model: Box<dyn Model>,
     /// For each input of the model, its index among the design's inputs. `None` if the order is the same.
     order: Option<Vec<usize>>,
+    /// The model's inputs in the model's order, if that is different from the design's.
     reordered: Vec<u64>,
     /// Indices among the model's signals. `overlaps` is the index of `done` if the core accepts `start` while `done` is high.
     busy: usize,

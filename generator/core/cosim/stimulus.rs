@@ -25,6 +25,7 @@ enum Phase {
     Reset(u32),
     /// Operands are being written. Bit i of the mask is 1 if operand port i must still be written.
     Writing(u64),
+    /// The idle clocks until `start` is due.
     Starting(u32),
     /// A computation runs. The number is the clocks until a reset interrupts it, if one does.
     Running(Option<u64>),
@@ -37,6 +38,7 @@ pub(super) struct Stimulus {
     inputs: Vec<u64>,
     /// Whether the latest inputs hold `rst_n` high and everything else at 0.
     idle: bool,
+    /// The raw operands of the next point, in the order of `Contract::operands`.
     next: Vec<i64>,
     /// The raw values in the device's operand registers or buffers.
     written: Vec<i64>,

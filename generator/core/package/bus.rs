@@ -42,6 +42,7 @@ pub struct Protocol {
     pub version: &'static str,
     /// The type in Intel's Platform Designer.
     pub platform: &'static str,
+    /// Whether the module is the receiving side of the interface.
     pub is_slave: bool,
 }
 

@@ -58,7 +58,9 @@ struct Manifest<'a> {
 
 #[derive(Serialize)]
 struct ComputationNames<'a> {
+    /// The operands of each point, in the order of the ports.
     operands: Vec<&'a str>,
+    /// The results, in the order of the ports.
     results: Vec<&'a str>,
     /// The computations, each as JSON on a single line.
     points: Vec<Box<RawValue>>,

@@ -33,10 +33,13 @@ const FIRST_OPERAND: u32 = 8;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Access {
+    /// Software can read the bits, and writes have no effect.
     Read,
+    /// Software can write and read the bits.
     Write,
     /// Writing 1 triggers an action, such as a start. The bits read as 0.
     Trigger,
+    /// Software can read the bits, and writing 1 to a bit clears it.
     Clear,
 }
 

@@ -24,7 +24,9 @@ pub struct PointsBench {
     /// The module's name; its file has the same with `.v`.
     pub name: String,
     pub text: String,
+    /// The operand ports, in the order of the values on a line of the operand file.
     pub operands: Vec<String>,
+    /// The result ports, in the order of the values on a line of the result file.
     pub results: Vec<String>,
 }
 

@@ -82,6 +82,7 @@ pub struct Surroundings {
     /// Whether the streams have `tkeep`, which marks the valid bytes of a transfer.
     pub keep: bool,
     pub registers: Option<&'static Bus>,
+    /// Whether to emit a C model, in `software/<name>/`.
     pub software: bool,
     /// Whether to emit a C program that compares the results of every combination of operands with the formulas.
     pub recomputation: bool,

@@ -36,6 +36,7 @@ pub type WordLookup<'a> = &'a dyn Fn(RomId, u64) -> i128;
 #[derive(Clone, Copy)]
 pub struct UnrolledComputation<'a> {
     pub graph: &'a Graph,
+    /// A function that returns the word of a ROM at an address, as a raw value.
     pub words: WordLookup<'a>,
     /// The dividers, each by the node that concatenates the bits of its quotient.
     pub quotients: &'a BTreeMap<NodeId, Quotient>,

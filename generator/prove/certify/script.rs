@@ -23,6 +23,7 @@ pub struct GappaScript<'a> {
     pub terms: &'a RealTerms,
     /// The number of terms that belong to the hardware. They come before the terms of the formula.
     pub hardware_terms: usize,
+    /// The variables of the script, with their numbers of fraction bits.
     pub placed: &'a Variables,
     /// The intervals of terms that the script takes as hypotheses.
     pub presupposed: &'a BTreeMap<RealTermId, (f64, f64)>,

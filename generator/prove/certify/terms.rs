@@ -37,6 +37,7 @@ pub enum RealTerm {
 #[derive(Clone, Debug, Default)]
 pub struct RealTerms {
     terms: Vec<(RealTerm, String)>,
+    /// The variables of each term, and its degree in them.
     shapes: Vec<(Vec<RealTermId>, u32)>,
     known: HashMap<String, RealTermId>,
 }

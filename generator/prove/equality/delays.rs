@@ -44,6 +44,7 @@ struct ClockConstants {
     registers: RegisterValues,
     /// The accesses to each memory; `None` if it is not known which word is written.
     memories: Vec<Option<MemoryClock>>,
+    /// The value of `in_ready`; `None` if it is not constant.
     ready: Option<u64>,
 }
 

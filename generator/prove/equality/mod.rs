@@ -80,9 +80,12 @@ pub struct EqualityProof {
 /// the sequential core for cos_gamma=0x3ff".
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OutputDifference {
+    /// The bit patterns of the operands, by name.
     pub operands: Vec<(String, u64)>,
     pub output: String,
+    /// The bit pattern that the sequential core computes.
     pub sequential: u64,
+    /// The bit pattern that the pipeline computes.
     pub pipeline: u64,
 }
 

@@ -13,6 +13,7 @@ pub struct DesignPair<'a> {
     pub operands: Vec<String>,
     /// The name of each output of the pipeline, with its net in the pipeline and in the core.
     pub outputs: Vec<(String, NetId, NetId)>,
+    /// The number of clocks from taking a point to its results.
     pub latency: usize,
 }
 

@@ -120,6 +120,7 @@ struct TextComparison<'p> {
     counters: &'p Counters,
     latency: usize,
     terms: VectorTerms,
+    /// The terms of the inputs, by name and clock.
     inputs: HashMap<(String, usize), VectorTermId>,
     products: Vec<Product>,
     /// For the term of each register of the netlist in the present clock, an unknown of the same width.

@@ -15,11 +15,14 @@ use glint_rtl::pipeline::delay_of;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Features {
+    /// The number of bits of sums, differences and comparisons.
     pub adder: f64,
+    /// The number of bits of muxes, for each input beyond the first. For example, a mux of 3 inputs of 8 bits counts 16.
     pub mux: f64,
     /// The number of bits of gates. A reduction counts a third of its operand's bits, and an equality a third of the bits of
     /// both operands. Inverters do not count.
     pub logic: f64,
+    /// The number of bits of the ROMs that are made of look-up tables, divided by 16.
     pub rom: f64,
     /// The number of bits in the sums of partial products: half the width of the product for each multiplier beyond the first.
     /// For a family without DSP blocks, the number of look-up tables that its products take.

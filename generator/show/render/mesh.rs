@@ -33,6 +33,7 @@ pub struct Mesh {
     pub degenerate: usize,
 }
 
+/// A corner of a triangle: indices into the lists of a [`Mesh`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Corner {
     pub position: u32,

@@ -69,6 +69,7 @@ pub struct Settings {
     pub material: Material,
     /// The colour where no object is visible, from 0 to 1.
     pub background: Vector,
+    /// Whether to render also Blinn's function cosⁿγ in f64, for comparison.
     pub compare: bool,
     /// Operands that have the same value at every point, among them all operands that a scene cannot supply.
     pub operands: Vec<(String, f64)>,

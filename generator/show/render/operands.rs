@@ -35,10 +35,13 @@ pub struct Point {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Surface {
     pub normal: Vector,
+    /// The unit vector to the light.
     pub light: Vector,
     /// The half vector H between the directions to the light and to the viewer, of length 1.
     pub half: Vector,
+    /// The ambient light that the surface reflects, from 0 to 1.
     pub ambient: Vector,
+    /// The share of the light that the surface reflects diffusely, from 0 to 1.
     pub diffuse: Vector,
 }
 

@@ -10,6 +10,7 @@ use anyhow::Result;
 pub struct Scene {
     /// The objects, at least one.
     pub objects: Vec<Object>,
+    /// The lights, which are so far away that their directions are the same everywhere.
     pub lights: Vec<Light>,
     /// The height map that tilts the normals of all objects.
     pub relief: Option<Relief>,

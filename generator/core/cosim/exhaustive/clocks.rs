@@ -48,6 +48,7 @@ pub struct Difference {
     pub place: u64,
     /// The number of clocks since `start`, which is 0 in the clock that takes `start`.
     pub clock: u64,
+    /// The operands of the combination: each name with its bit pattern.
     pub operands: Vec<(String, u64)>,
     /// The signal that differs, with its value in the model and in the hardware. The clock in this field is counted from the
     /// power-up of the simulated instance.

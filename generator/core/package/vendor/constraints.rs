@@ -18,6 +18,7 @@ pub fn files(job: &EmitJob, tops: &[Top], clock_mhz: f64, files: &mut OutputFile
         ] {
             let text = fill!("constraints.sdc" {
                 top: &'a Top, regenerate: &'a str = job.regenerate(), clock_mhz: f64,
+                // The period of the clock in nanoseconds.
                 period: String = period(clock_mhz),
                 // Who reads the file, and how.
                 reader: &'a str,

@@ -19,6 +19,7 @@ struct IpXactComponent<'a> {
     version: &'a str,
     buses: Vec<BusInterface>,
     registers: &'a [BusRegister],
+    /// The number of bytes that the registers occupy.
     range: usize,
     memories: Vec<String>,
 }
@@ -31,6 +32,7 @@ struct BusInterface {
     bus: &'static str,
     version: &'static str,
     is_slave: bool,
+    /// Whether the interface gives access to the registers.
     mapped: bool,
     /// Pairs of the name in the definition and the name of the port.
     ports: Vec<(String, String)>,

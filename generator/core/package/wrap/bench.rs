@@ -60,6 +60,7 @@ pub fn files(job: &EmitJob, vectors: &Vectors, files: &mut OutputFiles) -> Resul
             word_high: u32 = out_high + u32::from(job.is_line()),
             user_bits: u32,
             keep: bool = job.inputs.around.keep,
+            // Words of 32 bits that tuser needs.
             user_words: u32 = user_bits.div_ceil(32),
             offer_high: u32 = out_high + 1 + user_bits,
         })?;

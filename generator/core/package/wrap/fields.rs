@@ -14,6 +14,7 @@ pub struct StreamField {
     pub label: String,
     pub signed: bool,
     pub width: u32,
+    /// The lowest bit of the value in the transfer.
     pub low: u32,
     /// The input that writes the operand, if the core has a microprogram; otherwise empty.
     pub strobe: String,

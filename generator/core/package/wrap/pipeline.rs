@@ -70,6 +70,7 @@ pub fn modules(job: &EmitJob, pipeline: &Pipeline, files: &mut OutputFiles) -> R
         in_high: u32,
         out_high: u32,
         stages: usize,
+        // The number of address bits of the memory for tlast and tuser, if there is one.
         memory: Option<u32>,
         interval: usize = pipeline.interval,
         // The signal that is 1 if the points in the core move at the next edge.

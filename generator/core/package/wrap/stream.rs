@@ -104,6 +104,7 @@ pub fn modules(job: &EmitJob, files: &mut OutputFiles) -> Result<()> {
         output: &'a str = if line.is_some() { "wire" } else { "reg " },
         line: Option<&'a LineStream> = line.as_ref(),
         unused: Vec<String> = sink(&unused),
+        // Whether the core also accepts `start` in the clock of `done`.
         overlaps: bool,
     })?;
     files.add_verilog(FileKind::StreamWrapper, vec![format!("{name}_axis")], text);

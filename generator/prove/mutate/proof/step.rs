@@ -14,6 +14,7 @@ pub(super) type PairState = Vec<Pairs>;
 
 pub(super) struct Order<'a> {
     pub(super) design: &'a Design,
+    /// The nets in an order in which each comes after the nets that it reads.
     order: Vec<NetId>,
     /// For each net, the first net with the same driver, and so with the same value.
     same: Vec<NetId>,

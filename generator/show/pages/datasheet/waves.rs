@@ -27,6 +27,7 @@ pub const MICROINSTRUCTION: &str = "microinstruction";
 
 pub struct Waves {
     pub name: String,
+    /// Whether the waveform shows several points in a pipeline; otherwise it shows one computation.
     pub pipelined: bool,
     pub what: &'static str,
     /// The numbers of the shown clocks, from 0. A jump in the numbers means that clocks are left out.

@@ -87,6 +87,7 @@ struct GraphBuilder<'a> {
     design: &'a Design,
     blocks: Blocks<'a>,
     graph: DiagramGraph,
+    /// For each net at the output of a box, the index of the box.
     driver: HashMap<NetId, usize>,
 }
 

@@ -20,6 +20,7 @@ pub enum Side {
 /// The vertical piece of one box's wires in the gap between two columns, with horizontal taps to both sides.
 #[derive(Clone, Debug)]
 pub struct Trunk {
+    /// The index of the box that drives the wires.
     pub net: usize,
     pub entry: (f64, Side),
     pub exits: Vec<(f64, Side)>,
