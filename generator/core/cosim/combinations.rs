@@ -106,6 +106,7 @@ impl Combinations {
         self.first + self.started.saturating_sub(1)
     }
 
+    /// Counts clocks; the clock that takes `start` is number 0.
     pub(super) fn since_start(&self) -> u64 {
         self.since_start
     }

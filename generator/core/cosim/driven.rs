@@ -66,6 +66,7 @@ impl Driven {
         self.values()[self.valid] == 1
     }
 
+    /// Returns bit patterns in the order of [`Driven::names`].
     pub fn values(&self) -> &[u64] {
         self.model.values()
     }

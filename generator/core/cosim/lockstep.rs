@@ -269,6 +269,7 @@ impl<'a> Lockstep<'a> {
         Runner::new(&self.binding, [self.course(points, 1, 0)])
     }
 
+    /// The course has the stream's seed and its share of the results.
     fn course(&self, points: u64, streams: u64, number: u64) -> Course {
         Course::Random {
             seed: stream_seed(self.seed, number),

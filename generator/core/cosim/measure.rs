@@ -63,6 +63,7 @@ impl<'a> Measure<'a> {
         Ok(Self { contract, outputs })
     }
 
+    /// `operands` are raw, in the order of `Contract::operands`.
     pub(super) fn inside(&self, operands: &[i64]) -> bool {
         let mut pairs = self.contract.operands().iter().zip(operands);
         pairs.all(|(operand, raw)| (operand.domain.0..=operand.domain.1).contains(raw))

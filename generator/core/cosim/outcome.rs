@@ -136,6 +136,7 @@ pub(super) struct StreamRecord {
     pub(super) exact: Vec<[f64; 2]>,
 }
 
+/// Stream 0 has the seed of the run.
 pub(super) fn stream_seed(seed: u64, number: u64) -> u64 {
     if number == 0 {
         seed

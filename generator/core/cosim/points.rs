@@ -72,6 +72,7 @@ pub struct PointSource<'a> {
 }
 
 impl<'a> PointSource<'a> {
+    /// Searches for the operands with the largest `f`, if the device is a highlight.
     pub fn new(contract: &'a dyn Contract) -> Self {
         let highlight = contract.highlight();
         let operands = contract.operands().to_vec();
@@ -371,6 +372,7 @@ struct Way {
 }
 
 impl Way {
+    /// Scale 0 is the peak, and 1 is the far end.
     #[inline]
     fn go(&self, scale: f64, operands: &mut [i64]) {
         let ends = self.peak.iter().zip(&self.far);
@@ -425,6 +427,7 @@ fn power(parts: usize) -> f64 {
     POWERS[parts % PARTS] * exp2(-((parts / PARTS) as i32))
 }
 
+/// Takes the first result of a computation.
 #[inline]
 fn value(highlight: &Highlight, control: &[i64]) -> f64 {
     highlight.reference(&highlight.point(control, 0))

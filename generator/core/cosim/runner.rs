@@ -72,6 +72,7 @@ impl<'a, const LANES: usize> Runner<'a, LANES> {
         })
     }
 
+    /// Returns whether all streams have ended, or all up to the first that differs.
     pub(super) fn ended(&self) -> bool {
         for (stream, differs) in self.streams.iter().zip(self.differ) {
             if differs || !stream.ended() || stream.seen.mismatch.is_some() {

@@ -168,6 +168,7 @@ impl<'a> Climber<'a> {
         }
     }
 
+    /// Multiplies the errors by the weights of the outputs.
     fn largest_error(&self, operands: &[i64]) -> f64 {
         let errors = self.contract.errors(operands);
         errors.iter().zip(&self.weights).map(|(error, weight)| error * weight).fold(0.0, f64::max)
@@ -270,6 +271,7 @@ impl<'a> Climber<'a> {
         }
     }
 
+    /// Returns the largest error in units, and the colour with this error.
     fn of_output(&self, highlight: &Highlight, control: &[i64]) -> (f64, i64) {
         let point = highlight.point(control, 0);
         let (f, right) = (highlight.f(&point), highlight.references(&point));

@@ -80,6 +80,7 @@ impl SequentialModel {
         Ok((core, compared))
     }
 
+    /// `inputs` has the bit patterns of the design's inputs, in the design's order.
     #[inline]
     pub(super) fn clock(&mut self, inputs: &[u64]) {
         match &self.order {

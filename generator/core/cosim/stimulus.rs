@@ -64,6 +64,7 @@ impl Stimulus {
         }
     }
 
+    /// Returns raw operands in the order of `Contract::operands`.
     pub(super) fn accepted(&self) -> &[i64] {
         self.taken.as_ref().unwrap_or(&self.written)
     }

@@ -174,6 +174,7 @@ fn role(role: Role) -> &'static str {
     }
 }
 
+/// Returns the fields from the highest bits to the lowest.
 pub fn fields(design: &Design) -> Vec<FieldFacts<'_>> {
     let positions = design.field_positions();
     design

@@ -56,6 +56,7 @@ fn component<'a>(top: &'a Top, of_core: &[String]) -> VhdlComponent<'a> {
     }
 }
 
+/// Writes components of all modules, and an entity around the core whose ports have fixed-point types.
 fn vhdl(job: &EmitJob, tops: &[Top]) -> Result<String> {
     let (name, design, naming) = (job.name(), job.design, job.naming);
     let (mut generics, mut passed) = (Vec::new(), Vec::new());
@@ -229,6 +230,7 @@ struct Structure {
     members: Vec<String>,
 }
 
+/// Writes types, limits and conversions of all operands and results, and the layout of stream transfers.
 fn systemverilog(job: &EmitJob) -> Result<String> {
     let (name, design) = (job.name(), job.design);
     let mut names = Names::new(design.nets.iter().map(|net| net.name.as_str()));

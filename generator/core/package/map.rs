@@ -165,6 +165,7 @@ impl Map {
         last_place(&self.operands)
     }
 
+    /// Returns the word address of the last register, which holds a result.
     pub fn last(&self) -> u32 {
         last_place(&self.results)
     }

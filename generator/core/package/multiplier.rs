@@ -26,6 +26,7 @@ const ECP5: &str = "This is the form for ECP5: a DSP block in which only the out
                     nextpnr-ecp5 times the paths into the block, which end in that register, and the paths \
                     from the register. The portable form is in the directory above.";
 
+/// Adds nothing unless `pipeline.multipliers` is "registered", which puts the register behind a product into the DSP block.
 pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<()> {
     let Some(pipeline) = job.design.pipeline.as_ref().filter(|it| !it.registered.is_empty()) else {
         return Ok(());

@@ -104,7 +104,7 @@ pub struct Surroundings {
     pub licence: String,
 }
 
-/// Has the values of a configuration that sets no key of `interface` and `package`.
+/// Gives the values of a configuration that sets no key of `interface` and `package`.
 impl Default for Surroundings {
     fn default() -> Self {
         let schema = Schema { device: "", keys: Vec::new(), check: |_, _| () };

@@ -122,6 +122,7 @@ fn key_error(error: &PipelineError, keys: &Shared, name: &str) -> ConfigError {
     }
 }
 
+/// Adds the code of the diagnostic and the location in the Rust source, in brackets.
 fn with_location(message: &str, diagnostic: &Diagnostic) -> String {
     format!("{message} ({}, {})", diagnostic.code, diagnostic.location)
 }

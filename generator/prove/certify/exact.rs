@@ -126,6 +126,7 @@ pub fn divisors(formula: &Expression, found: &mut HashMap<String, Option<i32>>) 
     }
 }
 
+/// Stores 0 if another power is already stored.
 fn note_divisor(name: &str, power: i32, found: &mut HashMap<String, Option<i32>>) {
     let noted = found.entry(name.to_owned()).or_insert(Some(power));
     if *noted != Some(power) {

@@ -363,6 +363,7 @@ fn unextended(graph: &Graph, id: NodeId) -> NodeId {
     }
 }
 
+/// Returns the node from which a slice takes its bits, and the lowest bit of the slice.
 fn sliced(graph: &Graph, id: NodeId) -> Option<(NodeId, u32)> {
     match &graph.node(id).cell {
         Cell::Op(NodeOp::Slice { of, low }) => Some((widened(graph, *of), *low)),

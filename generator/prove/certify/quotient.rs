@@ -104,6 +104,7 @@ fn step(graph: &Graph, bit: NodeId) -> Option<DivisionStep> {
     })
 }
 
+/// Returns whether a node is the remainder that `step` leaves, and has at least as many bits as the divisor.
 fn is_left(graph: &Graph, id: NodeId, step: &DivisionStep) -> bool {
     let Cell::Op(NodeOp::Slice { of, low: 0 }) = graph.node(id).cell else { return false };
     let left = NodeOp::Mux { select: step.bit, inputs: vec![step.doubled, step.trial] };

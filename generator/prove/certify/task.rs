@@ -45,6 +45,7 @@ impl Task<'_> {
         cases::learn(self.graph(), known, &ranges, node, range)
     }
 
+    /// Returns `None` if no result depends on the operand.
     pub(super) fn operand(&self, name: &str) -> Option<NodeId> {
         let mut ports = self.unrolled.operands.iter();
         let at = ports.position(|&port| self.design.net(port).name == name)?;

@@ -238,6 +238,7 @@ fn rows(terms: &mut VectorTerms, bits: VectorTermId, other: VectorTermId) -> Vec
     sum
 }
 
+/// The result has 64 bits.
 pub fn shifted(terms: &mut VectorTerms, id: VectorTermId, by: u32) -> VectorTermId {
     if by == 0 {
         return id;

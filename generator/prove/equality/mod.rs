@@ -415,6 +415,7 @@ impl<'p> PipelineComparison<'p> {
         Ok(EqualityAnswer::Equal)
     }
 
+    /// Returns one-bit terms that are all 1 if and only if each condition has its value.
     fn holding(&mut self, conditions: &[(VectorTermId, bool)]) -> Vec<VectorTermId> {
         let mut holding = Vec::new();
         for &(condition, value) in conditions {

@@ -50,6 +50,7 @@ impl Candidates {
     }
 }
 
+/// Compares the widths, and the values at 24 sets of random values of the unknowns.
 pub fn agree(terms: &VectorTerms, one: VectorTermId, other: VectorTermId) -> bool {
     let cone = terms.cone([one, other]);
     terms.width(one) == terms.width(other)

@@ -257,6 +257,7 @@ impl TextComparison<'_> {
         Ok(())
     }
 
+    /// Returns a one-bit term that is 1 if a counter has another value `after` a clock than `before`.
     fn counts(&mut self, before: VectorTermId, after: VectorTermId) -> VectorTermId {
         match *self.terms.term(after) {
             // The condition itself, so that it can be replaced by its value in other terms.

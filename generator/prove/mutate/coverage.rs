@@ -46,6 +46,7 @@ impl<'a> PlaceWatch<'a> {
         Self { seed, addresses, operands, places: no_places(design) }
     }
 
+    /// `points` is the number of results so far.
     fn note(&mut self, points: u64, simulator: &Simulator) {
         for ((address, latest), places) in self.addresses.iter_mut().zip(&mut self.places) {
             let word = simulator.value(*address);

@@ -224,6 +224,7 @@ impl VerilogText {
         files
     }
 
+    /// Returns an empty text without a bench.
     fn bench(&self) -> &str {
         let bench = self.files.iter().find(|file| file.kind == FileKind::Bench);
         bench.map_or("", OutputFile::main_module)

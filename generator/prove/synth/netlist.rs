@@ -113,6 +113,7 @@ impl Netlist {
     }
 }
 
+/// `name` is `netnames` for the nets, and `cells` for the cells.
 fn part_of_top<'j>(json: &'j Value, name: &str) -> Result<&'j Map<String, Value>> {
     let part = json["modules"][TOP][name].as_object();
     part.with_context(|| format!("the netlist of `yosys` has no {name} of `{TOP}`"))

@@ -283,19 +283,19 @@ impl Check {
 
 #[derive(Clone, Debug, Serialize)]
 pub struct CheckAnswer {
-    /// [`Check::id`].
+    /// The same as [`Check::id`].
     pub check: &'static str,
-    /// [`Check::title`].
+    /// The same as [`Check::title`].
     pub title: &'static str,
-    /// [`Check::question`].
+    /// The same as [`Check::question`].
     pub question: &'static str,
-    /// [`Check::reads`].
+    /// The same as [`Check::reads`].
     pub reads: &'static str,
     /// The versions of the outside tools that the check used; empty if a tool is missing.
     pub tools: Vec<String>,
     #[serde(flatten)]
     pub finding: Finding,
-    /// It is not serialised, because it differs from run to run.
+    /// The record leaves out the time, because it differs from run to run.
     #[serde(skip)]
     pub timing: CheckTime,
 }
@@ -303,7 +303,7 @@ pub struct CheckAnswer {
 /// The time is kept apart from the findings because it differs from run to run.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct CheckTime {
-    /// [`Check::id`].
+    /// The same as [`Check::id`].
     pub check: &'static str,
     pub seconds: f64,
 }

@@ -144,7 +144,7 @@ pub const EQUALITY: Check = Check {
     },
 };
 
-/// Yosys reads the emitted Verilog, and z3 proves it. A sequential core has no such check.
+/// Yosys reads the emitted Verilog, and z3 proves that it equals the netlist. A sequential core has no such check.
 pub const TEXT: Check = Check {
     id: "text",
     title: "Emitted Verilog equal to the netlist",

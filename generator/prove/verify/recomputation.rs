@@ -20,7 +20,7 @@ use glint_core::package::{FileKind, OutputFile};
 use glint_golden::Operand;
 use glint_tools::Tool;
 
-/// MPFR computes each operand.
+/// MPFR computes the result of each of these operands.
 const MOST_OPERANDS: u128 = 1 << 20;
 
 /// Doubles decide most of these combinations.

@@ -47,9 +47,9 @@ struct Better {
     bound: Bound,
 }
 
-/// Returns changes that reduce the error bound of a core. If the core violates its accuracy contract, at most 40 steps may
-/// find enough changes to keep it. Otherwise only one key changes: among the smallest steps that help any key, the key that
-/// reduces the bound most.
+/// Returns changes that reduce the error bound of a core. If the core violates its accuracy contract, the function looks for
+/// changes that keep it, in at most 40 steps. Otherwise only one key changes: among the smallest steps that help any key, the
+/// key that reduces the bound most.
 pub fn of(core: &Core) -> Option<Advice> {
     let device = core.device();
     let bound = core.contract.bounds().governing().clone();

@@ -126,6 +126,7 @@ pub fn configuration(
     }
 }
 
+/// Returns values of `√n·γ` from 0 to 4, in 100 steps.
 fn places() -> Vec<f64> {
     even(0.0, REACH, PLACES)
 }

@@ -58,7 +58,7 @@ fn cell(value: f64, scale: AxisScale) -> String {
     }
 }
 
-/// Has one digit after the point. For example, 0.00123 is `1.2e−3`, and 0 is `0`.
+/// The text has one digit after the point. For example, 0.00123 is `1.2e−3`, and 0 is `0`.
 pub fn scientific(value: f64) -> String {
     match value {
         0.0 => "0".to_owned(),
@@ -66,7 +66,7 @@ pub fn scientific(value: f64) -> String {
     }
 }
 
-/// Has at most three digits after the point. For example, 2.5 is `2.5`, and 0.12345 is `0.123`.
+/// The text has at most three digits after the point. For example, 2.5 is `2.5`, and 0.12345 is `0.123`.
 fn number(value: f64) -> String {
     let text = format!("{value:.3}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()

@@ -24,6 +24,7 @@ const INK: RGBColor = RGBColor(1, 0, 0);
 const GRID: RGBColor = RGBColor(2, 0, 0);
 const MARK: RGBColor = RGBColor(3, 0, 0);
 
+/// Returns a placeholder colour, which [`themed`] replaces by the class from [`class`].
 fn style(at: usize) -> RGBColor {
     RGBColor(4, 0, (at % STYLES) as u8)
 }
@@ -252,8 +253,8 @@ fn ticks(axis: &ChartAxis) -> Vec<f64> {
     }
 }
 
-/// Has at most six digits after the point, without trailing zeros. A number nearer to 0 than 0.001 has at most two digits and
-/// an exponent. For example, `0.5`, or `1.5e−4`.
+/// The text has at most six digits after the point, without trailing zeros. A number nearer to 0 than 0.001 has at most two
+/// digits and an exponent. For example, `0.5`, or `1.5e−4`.
 fn number(value: f64) -> String {
     if value != 0.0 && value.abs() < 0.001 {
         return format!("{value:.1e}").replace(".0e", "e").replace("e-", "e\u{2212}");

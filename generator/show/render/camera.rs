@@ -106,6 +106,7 @@ impl Camera {
         self.right * x + self.up * y + self.back * z
     }
 
+    /// Returns half the width and half the height of the visible area at distance 1.
     pub fn half(&self) -> (f64, f64) {
         self.half
     }

@@ -24,7 +24,7 @@ const FARTHEST: f64 = 1e30;
 pub struct Mesh {
     /// The corners' positions, in coordinates of the scene.
     pub positions: Vec<Vector>,
-    /// Vectors of length 1.
+    /// The normals have the length 1.
     pub normals: Vec<Vector>,
     pub textures: Vec<[f64; 2]>,
     /// The corners are indices into the other lists.

@@ -321,6 +321,7 @@ impl Portions<'_> {
         sums
     }
 
+    /// Compares with the device's own formula, in output units.
     fn error(&self, points: &Points, outputs: &[i64]) -> f64 {
         let contract = self.core.contract.as_ref();
         let width = contract.outputs().len();

@@ -274,6 +274,7 @@ impl Feed {
         })
     }
 
+    /// Returns the largest number of intervals of a line, if the device computes lines.
     pub fn longest(&self) -> Option<usize> {
         self.longest
     }

@@ -76,6 +76,7 @@ impl SurfacePoint {
         self.smooth.dot(light.direction) > 0.0
     }
 
+    /// Returns the half vector H between light and eye, of length 1.
     fn half(&self, light: &Light) -> Vector {
         let sum = light.direction + self.toward_eye;
         sum.unit().unwrap_or(self.smooth)

@@ -44,6 +44,7 @@ impl Shard {
         (1..=MOST_SHARDS).contains(&self.of) && (1..=self.of).contains(&self.number)
     }
 
+    /// Shard 1 of 4 has 3 of 10 blocks, for example, and shard 4 has 2.
     fn count(self, blocks: u64) -> u64 {
         (blocks + self.of - self.number) / self.of
     }
@@ -119,6 +120,7 @@ pub struct ShardState {
 }
 
 impl ShardState {
+    /// `digest` is [`crate::core::Core::fingerprint`].
     pub fn new(digest: &str, shard: Shard) -> Self {
         let nothing = Progress { done: 0, peak: Peak::NONE };
         Self {

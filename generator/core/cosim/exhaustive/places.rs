@@ -179,6 +179,7 @@ impl<'a> Places<'a> {
         begin.elapsed() / count.max(1) as u32
     }
 
+    /// Returns the first place with the largest error.
     fn peak(&self, places: Range<u64>) -> Peak {
         let mut peak = Peak::NONE;
         let Some(inner) = self.sweep.axes.last() else {

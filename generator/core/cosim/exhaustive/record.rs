@@ -190,6 +190,7 @@ impl Record {
     }
 }
 
+/// Returns the numbers of evenly spread blocks that together have about `count` places, at least one block.
 fn part(places: &Places<'_>, count: u64) -> Vec<u64> {
     let stride = (places.count() / count).max(1);
     (0..places.blocks()).step_by(stride as usize).collect()

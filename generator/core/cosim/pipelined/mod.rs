@@ -154,6 +154,7 @@ impl Pipe {
         self.stages.stage(self.columns[at].1).map(|point| (point.place, point.taken))
     }
 
+    /// Assumes that the receiver takes the results.
     pub(super) fn is_ready(&self) -> bool {
         self.stages.takes(true)
     }

@@ -54,6 +54,7 @@ struct OperandConversion {
 }
 
 impl OperandConversion {
+    /// The registers that hold the raw integer have 32 or 64 bits.
     fn bits(&self) -> u32 {
         if self.format.width() <= 32 { 32 } else { 64 }
     }

@@ -99,6 +99,7 @@ pub fn files(job: &EmitJob, vectors: &Vectors, files: &mut OutputFiles) -> Resul
     Ok(())
 }
 
+/// Adds nothing if the core has no bench in Python.
 fn add_python(job: &EmitJob, wrapper: &str, tests: &[&str], files: &mut OutputFiles) -> Result<()> {
     if job.inputs.example.is_some() && job.inputs.accuracy.is_some() {
         let name = job.name();

@@ -174,6 +174,7 @@ fn read(map: &Map, register: &BusRegister) -> Vec<String> {
     statement(12, &format!("assert (read_data == {value});"))
 }
 
+/// The expression is as wide as the field.
 fn source(map: &Map, register: &BusRegister, bits: &RegisterBits) -> String {
     if register.place < map::CONSTANTS {
         return literal(bits.reset, bits.width);

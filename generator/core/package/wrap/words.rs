@@ -59,6 +59,7 @@ pub fn constants(map: &Map) -> Vec<String> {
     constants
 }
 
+/// Leaves out the registers that never change.
 pub fn words(design: &Design, map: &Map) -> Vec<Word> {
     let word_bits = map.address_bits() - 2;
     let start_pad = literal(0, 24 - word_bits);

@@ -103,6 +103,7 @@ impl<'a> Prover<'a> {
         true
     }
 
+    /// The effect of a reset is no part of the proof.
     fn changes_reset(&self, site: &Site) -> bool {
         let design = self.order.design;
         match site {

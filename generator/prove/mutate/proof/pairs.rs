@@ -70,6 +70,7 @@ impl Pairs {
         Self(pairs)
     }
 
+    /// Returns a mask of the bits that may differ between the fault-free design and the mutant.
     pub(super) fn differ(self) -> u64 {
         self.0[1] | self.0[2]
     }
@@ -79,6 +80,7 @@ impl Pairs {
         [self.0[0] | self.0[2], self.0[1] | self.0[3]]
     }
 
+    /// Does the same as [`Pairs::fault_free`] for the mutant.
     fn mutant(self) -> [u64; 2] {
         [self.0[0] | self.0[1], self.0[2] | self.0[3]]
     }

@@ -269,6 +269,7 @@ fn taken(design: &Design, driver: &Driver, value: &impl Fn(NetId) -> Pairs) -> O
     }
 }
 
+/// Counts microinstructions, or the slots of a pipeline.
 pub(super) fn count(design: &Design) -> usize {
     match &design.pipeline {
         Some(pipeline) => pipeline.interval,

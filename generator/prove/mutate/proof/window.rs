@@ -153,6 +153,7 @@ impl<'a> Windows<'a> {
         read.into_inner().ok()
     }
 
+    /// Returns whether the fault changes no net at the end of some window.
     fn stays_inside(&self, net: NetId, site: &Site) -> bool {
         // Windows that end at multipliers come first, because others need more combinations.
         let mut tried = Vec::new();

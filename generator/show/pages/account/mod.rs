@@ -250,8 +250,8 @@ pub fn fields(design: &Design) -> TextTable {
     table.without_empty("lines")
 }
 
-/// Has the form of the source patents: a row for each microinstruction, and a column for each field of the control word. A
-/// cell has the bits of the field, for example `0 1`.
+/// The table has the form of the source patents: a row for each microinstruction, and a column for each field of the control
+/// word. A cell has the bits of the field, for example `0 1`.
 pub fn microprogram(design: &Design) -> TextTable {
     let fields = facts::fields(design);
     let mut headings = String::new();
@@ -459,7 +459,7 @@ fn shortened(text: String) -> String {
     }
 }
 
-/// Returns six decimals, without trailing zeros. For example, `0.866026`, `-0.25` and `1000`.
+/// Writes six decimals, without trailing zeros. For example, `0.866026`, `-0.25` and `1000`.
 pub fn short(value: f64) -> String {
     let text = format!("{value:.6}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()

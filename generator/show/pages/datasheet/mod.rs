@@ -51,7 +51,7 @@ pub struct Datasheet {
     pub wavedrom: String,
 }
 
-/// What simulation, rendering, measurement or synthesis must compute for a page.
+/// The results for a page that simulation, rendering, measurement or synthesis must compute.
 struct DatasheetResults {
     timing: HandshakeTiming,
     example: WorkedExample,

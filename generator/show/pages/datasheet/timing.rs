@@ -30,6 +30,7 @@ const ROOM: i32 = 1120;
 /// The vertical distance between two strips of a waveform that is too wide for one strip.
 const APART: i32 = 22;
 
+/// A waveform that is too long for one strip continues in strips below.
 pub fn drawing(waves: &Waves) -> Drawing {
     let widest = waves.lanes.iter().map(|lane| text_width(&label(lane)));
     let left = widest.max().unwrap_or(0) + 16;
@@ -176,6 +177,7 @@ impl Grid<'_> {
         (f64::from(self.x(to) - self.x(from) - 2 * SLANT) / (SIZE * 0.6)) as usize
     }
 
+    /// Draws a frame with the value for each range of clocks in which the value stays the same.
     fn bus(&self, lane: &Lane, top: i32, items: &mut Vec<Item>) {
         let (middle, low) = (top + SWING / 2, top + SWING);
         let segments = segments(lane, self.places.clone());

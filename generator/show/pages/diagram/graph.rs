@@ -207,6 +207,7 @@ impl<'a> GraphBuilder<'a> {
         at
     }
 
+    /// Adds a wire to the control unit from each block or port on which a condition of the microprogram depends.
     fn conditions(&mut self, control: usize) {
         for microinstruction in &self.design.control.microprogram {
             if let Sequence::LoopWhile { condition, .. } = microinstruction.sequence {
@@ -248,6 +249,7 @@ impl<'a> GraphBuilder<'a> {
         added
     }
 
+    /// Returns the numbers or names of a block's control lines, and of the strobe that writes it.
     fn turned_by(&self, block: &Block) -> String {
         let (fields, strobes) = self.blocks.controls(block);
         let mut lines: Vec<String> = fields.into_iter().map(|field| self.lines(field)).collect();
@@ -259,6 +261,7 @@ impl<'a> GraphBuilder<'a> {
         lines.join(" ")
     }
 
+    /// Returns the numbers in the source's figure, or the name of a field without numbers.
     fn lines(&self, field: FieldId) -> String {
         let field = &self.design.control.fields[field.index()];
         let lines: Vec<String> = field.lines.iter().map(u16::to_string).collect();

@@ -138,10 +138,12 @@ impl Sizes {
         }
     }
 
+    /// Includes the lanes and the control arrow beside the box.
     fn all(&self) -> f64 {
         self.lanes + self.stub + self.height
     }
 
+    /// `middle` is the middle of the whole height.
     fn body(&self, middle: f64) -> Body {
         let top = (middle - self.all() / 2.0).round();
         let upper = top + self.lanes + self.stub;

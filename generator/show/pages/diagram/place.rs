@@ -232,6 +232,7 @@ fn back_weight(graph: &DiagramGraph, at: usize) -> usize {
     }
 }
 
+/// Follows the wires in their direction, except the wires that lead back.
 fn reaches(graph: &DiagramGraph, back: &[bool], from: usize, to: usize) -> bool {
     let mut seen = vec![false; graph.boxes.len()];
     let mut pending = vec![from];

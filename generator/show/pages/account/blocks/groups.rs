@@ -18,7 +18,8 @@ pub struct Groups<'a> {
     /// For each net, whether it makes its group a block: it is a register, a ROM or an operator, or the description documents
     /// or numbers it.
     pub cell: Vec<bool>,
-    /// For each net, its sources. In a pipeline, a source may lie several clocks back.
+    /// For each net, its sources: the blocks, ports and ROMs whose values reach it within a clock. In a pipeline, a source may
+    /// lie several clocks back.
     pub sources: Vec<Vec<NetId>>,
     pub head: Vec<Option<NetId>>,
     pub joints: BTreeSet<NetId>,
@@ -283,6 +284,7 @@ impl<'a> Groups<'a> {
         }
     }
 
+    /// Finds the joints: the nets at which several signals meet before a block or an output port takes them.
     fn meet(&mut self) {
         let mut read: Vec<NetId> = Vec::new();
         for port in self.design.outputs() {

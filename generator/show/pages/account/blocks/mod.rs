@@ -52,6 +52,7 @@ fn stage(design: &Design, pipeline: &Pipeline, cell: NetId) -> usize {
     }
 }
 
+/// The hardware of one statement of the description.
 #[derive(Clone, Debug)]
 pub struct Block {
     pub number: Option<u16>,
@@ -277,6 +278,7 @@ impl<'a> Blocks<'a> {
         names
     }
 
+    /// The block of a joint is drawn for gates in which several signals meet, or for their concatenation.
     fn meeting(&self, joint: NetId) -> Block {
         let net = self.design.net(joint);
         let inputs = self.groups.sources[joint.index()].clone();
