@@ -39,6 +39,7 @@ const PIPELINE_POINTS: u64 = 2000;
 /// The seed of the random inputs of emitted test benches.
 pub const BENCH_SEED: u64 = 1;
 
+/// A configuration of a device, with the netlist and the accuracy contract that are built from it.
 pub struct Core {
     pub opened: OpenedConfig,
     /// The netlist, as the device's description builds it.

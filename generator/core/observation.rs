@@ -27,6 +27,7 @@ pub struct LineClocks {
     pub next_start: Linear,
 }
 
+/// A linear function of the length of a line: `constant + each · length`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Linear {
     /// The value for the length 0, in clocks.
@@ -122,6 +123,7 @@ impl Computation {
     }
 }
 
+/// A result of a computation, and the clock in which it is shown.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TimedResult {
     /// The number of the clock in which `valid` is high for this result.

@@ -18,6 +18,7 @@ pub use design_error::DesignError;
 pub use opened::{DeviceParts, KeyParts, OpenedConfig};
 pub use pipeline_keys::CLOCK_MHZ;
 
+/// The parts of a device for a configuration, or the error of the key whose value the device cannot have.
 pub type PartsResult = Result<Arc<dyn DeviceParts>, ConfigError>;
 
 /// A device that Glint can generate, simulate and check.

@@ -13,6 +13,7 @@ use glint_base::target::{FAMILIES, Family, Usage};
 
 pub use record::{DIRECTORY, Rate, SynthesisRecord, tools};
 
+/// An FPGA family or a standard-cell library for which cores are measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Target {

@@ -10,6 +10,7 @@ use super::VerilogSimulator;
 use super::bench::{BuiltBench, Waveform};
 use crate::window::{WINDOW_FILE, window};
 
+/// The first difference between simulated and expected outputs that a test bench printed.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BenchDifference {
     /// The number of the clock in the bench, from 0.

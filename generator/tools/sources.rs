@@ -11,6 +11,7 @@ use super::Tool;
 use crate::file_names::is_verilog;
 use crate::transient::Directory;
 
+/// Verilog and memory files in a temporary directory, with the Yosys that reads them.
 pub struct YosysSources<'a> {
     directory: Directory,
     yosys: &'a Tool,

@@ -12,6 +12,7 @@ use serde::Deserialize;
 use super::Tool;
 use crate::transient::Directory;
 
+/// A test of a tool: an input, and the text that the tool must print about it.
 #[derive(Deserialize)]
 struct Trial {
     tool: String,

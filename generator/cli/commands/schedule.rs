@@ -86,6 +86,7 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     Ok(true)
 }
 
+/// The passes that rewrite the computation of a configuration, with their results.
 struct PassList<'a> {
     path: &'a str,
     results: Vec<PassResult>,

@@ -94,6 +94,7 @@ const OF_LINE: [&str; 2] = [
 const OF_POINT: [&str; 2] =
     ["normal perturbed half light view", "gamma dgamma exponent red green blue"];
 
+/// The inputs of a device, and the code that computes operands from them.
 struct HostInputs<'a> {
     one: &'a Loaded,
     feed: Feed,

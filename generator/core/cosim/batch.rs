@@ -80,6 +80,7 @@ impl Points {
     }
 }
 
+/// Computes the results of many points (sets of operands).
 pub trait Engine {
     /// Returns the raw outputs of all computations, one after another. Each result has one value for each output, in the order
     /// of the [`Contract`]. A computation with several results has them in the order of their index.

@@ -17,6 +17,7 @@ use super::sequential::{SequentialModel, registers};
 use glint_golden::{Contract, Model};
 use glint_rtl::netlist::{Design, NetId};
 
+/// The model that predicts the signals of a device: for a core with a microprogram, or for a pipeline.
 #[derive(Clone)]
 pub(super) enum Host {
     Core(SequentialModel),

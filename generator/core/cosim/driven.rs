@@ -6,6 +6,7 @@ use anyhow::{Context, Result};
 
 use glint_golden::Model;
 
+/// A golden model together with the bit patterns of its inputs, which the caller sets through [`Driven::start`].
 #[derive(Clone)]
 pub struct Driven {
     model: Box<dyn Model>,

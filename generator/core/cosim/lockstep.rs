@@ -49,6 +49,7 @@ const FEWEST_PIPELINES: u64 = 4;
 /// The number of results after which the progress is reported.
 const TOLD: u64 = 1024;
 
+/// The comparison of a design with its golden model, which run side by side on the same inputs.
 pub struct Lockstep<'a> {
     binding: Binding<'a>,
     seed: u64,

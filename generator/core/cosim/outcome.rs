@@ -84,6 +84,7 @@ impl Outcome {
     }
 }
 
+/// The largest error of an output against the formula, and its operands.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Worst {
     /// The error in output units; infinite if the formula has no value at the operands.

@@ -30,6 +30,7 @@ pub(super) struct Runner<'a, const LANES: usize> {
     ahead: Vec<PredictedClock<LANES>>,
 }
 
+/// The inputs of a clock and the values predicted after it, for each signal and lane.
 #[derive(Clone)]
 struct PredictedClock<const LANES: usize> {
     /// Empty if only a single clock is prepared, because its inputs are written to the simulator directly.

@@ -32,6 +32,7 @@ const MOST_AROUND: u64 = 1 << 16;
 /// After this number of starts only the points with the largest errors are kept, so that memory does not grow.
 const BATCH: u64 = 1 << 10;
 
+/// An error that the search has found, with its operands and its output.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reached {
     /// The absolute error in output units; infinite if the formula has no value at the operands.

@@ -10,6 +10,7 @@ use super::ports::Ports;
 use glint_golden::Model;
 use glint_rtl::netlist::{Design, NetId, RegisterKind};
 
+/// The golden model of a core with a microprogram, which gets the same inputs as the core.
 #[derive(Clone)]
 pub(super) struct SequentialModel {
     model: Box<dyn Model>,

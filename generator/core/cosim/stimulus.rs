@@ -31,6 +31,7 @@ enum Phase {
     Running(Option<u64>),
 }
 
+/// The random inputs of a core with a microprogram. Each call of [`Stimulus::next`] gives the inputs of one clock.
 pub(super) struct Stimulus {
     ports: Arc<Ports>,
     random: Random,

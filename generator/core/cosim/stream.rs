@@ -52,6 +52,7 @@ impl Source {
     }
 }
 
+/// A stream: the inputs of one simulated instance, and the predictions of its signals.
 pub(super) struct Stream {
     pub(super) seen: StreamRecord,
     /// The kind of the inputs, and their seed or number, from which the same stream can be made again.

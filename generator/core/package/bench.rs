@@ -32,6 +32,7 @@ struct ExpectedOutput {
     select: String,
 }
 
+/// A microinstruction: its name, and its address as a Verilog literal and as a number.
 struct StepLabel {
     label: String,
     address: usize,

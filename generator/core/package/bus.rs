@@ -5,6 +5,7 @@
 use anyhow::Result;
 use glint_base::fill;
 
+/// A bus, such as AXI4-Lite, on which software can reach the registers of a core.
 #[derive(Debug)]
 pub struct Bus {
     pub key: &'static str,

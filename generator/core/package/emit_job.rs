@@ -9,6 +9,7 @@ use super::map::Map;
 use glint_rtl::netlist::Design;
 use glint_rtl::verilog::naming::Naming;
 
+/// A core to emit: its netlist, and everything else that its files are generated from.
 pub struct EmitJob<'a> {
     pub design: &'a Design,
     pub inputs: &'a EmitInputs,

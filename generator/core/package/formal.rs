@@ -70,6 +70,7 @@ struct Latest {
     end: String,
 }
 
+/// The parameters of the Yosys commands that prepare a proof, for `yosys-smtbmc` or for SymbiYosys.
 pub(super) struct Script<'a> {
     pub(super) name: &'a str,
     /// The cells whose ROMs the proof replaces by free values, as a selection of Yosys.

@@ -36,6 +36,7 @@ struct Turn {
     slot: String,
 }
 
+/// The number of a stage, and the net with its side value.
 struct SideStage {
     number: usize,
     value: String,

@@ -170,6 +170,7 @@ const VHDL_2008: &str = "
     wait when while with xnor xor
 ";
 
+/// An operand or a result as the SystemVerilog package declares it, with a type and conversion functions.
 struct VerilogConstant {
     name: String,
     constant: String,

@@ -43,6 +43,7 @@ pub enum Access {
     Clear,
 }
 
+/// A field of a bus register of a core: some of its bits with a meaning of their own.
 #[derive(Clone, Debug, Deserialize)]
 pub struct RegisterBits {
     /// The name, in plain lower-case words.
@@ -101,6 +102,7 @@ pub struct PortBits {
     pub width: u32,
 }
 
+/// The register map of a core: the registers that software reads and writes over a bus, with their addresses.
 #[derive(Clone, Debug)]
 pub struct Map {
     /// The registers in the order of their addresses, which have no gaps.

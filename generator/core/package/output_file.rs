@@ -3,6 +3,7 @@
 use super::file_kind::FileKind;
 use sha2::{Digest, Sha256};
 
+/// A generated file that is not written yet: its kind, path and contents.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OutputFile {
     pub kind: FileKind,

@@ -20,6 +20,7 @@ pub const POINTS_FILE: &str = "points.hex";
 /// [`PointsBench::results`]. A line with a dot follows the last result of each computation.
 pub const RESULTS_FILE: &str = "results.hex";
 
+/// A test bench that reads operands from a file and writes results to another file.
 pub struct PointsBench {
     /// The module's name; its file has the same with `.v`.
     pub name: String,

@@ -72,6 +72,7 @@ pub fn check_rom_style(config: &Config, design: &Design) -> Result<(), ConfigErr
     ))
 }
 
+/// The wrappers and packages that a configuration asks for in addition to the core.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surroundings {
     pub stream: bool,

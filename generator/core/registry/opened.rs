@@ -40,6 +40,7 @@ pub trait DeviceParts: Send + Sync {
     fn contract(&self, config: &Config) -> Box<dyn Contract>;
 }
 
+/// The parts of a device whose functions read all that they need from the configuration.
 pub struct KeyParts {
     pub describe: fn(&Designer, &Config),
     pub model: fn(&Config) -> Box<dyn Model>,
@@ -60,6 +61,7 @@ impl DeviceParts for KeyParts {
     }
 }
 
+/// A configuration of a device, with the parts that the device made for it.
 #[derive(Clone)]
 pub struct OpenedConfig {
     pub device: Device,

@@ -33,6 +33,7 @@ pub struct Case {
 
 pub type WordLookup<'a> = &'a dyn Fn(RomId, u64) -> i128;
 
+/// A computation as a graph of values, with the words of its ROMs and with its dividers.
 #[derive(Clone, Copy)]
 pub struct UnrolledComputation<'a> {
     pub graph: &'a Graph,

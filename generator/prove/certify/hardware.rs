@@ -149,6 +149,9 @@ impl<'a> Hardware<'a> {
     }
 
     /// Returns the dividend and the divisor of a divider as terms with the same number of fraction bits.
+    ///
+    /// # Errors
+    /// Fails if one of them has no translation.
     pub fn fraction(
         &mut self,
         terms: &mut RealTerms,

@@ -14,6 +14,7 @@ use super::terms::{RealTerm, RealTermId, RealTerms, number};
 use glint_base::fixed::exp2;
 use glint_rtl::pipeline::NodeId;
 
+/// A premise: a statement about an intermediate value that other statements take for granted.
 pub struct Premise {
     pub about: String,
     pub script: String,

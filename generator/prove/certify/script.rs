@@ -19,6 +19,7 @@ use glint_base::fixed::exp2;
 const SAMPLES: usize = 24;
 const TRIES: usize = 2_000;
 
+/// The parts that all Gappa scripts of one case have in common.
 pub struct GappaScript<'a> {
     pub terms: &'a RealTerms,
     /// The number of terms that belong to the hardware. They come before the terms of the formula.

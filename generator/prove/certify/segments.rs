@@ -105,6 +105,7 @@ fn lobe(formula: &Expression) -> Option<(&Expression, u32)> {
     Some((angle, power as u32))
 }
 
+/// The angle along a line of points, in the names of operands.
 struct AngleWalk {
     /// The operand with the angle of the first point.
     start: String,

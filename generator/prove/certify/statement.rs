@@ -34,6 +34,7 @@ impl Statement {
     }
 }
 
+/// A collection of Gappa statements in which equal statements occur only once.
 #[derive(Default)]
 pub(super) struct Statements {
     pub(super) list: Vec<Statement>,

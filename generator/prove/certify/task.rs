@@ -16,6 +16,7 @@ const SPLIT: i64 = 1024;
 /// 5, 7 are two runs.
 const RUNS: usize = 16;
 
+/// The subject of a proof by Gappa: a design, its contract with the error bound, and the unrolled computation as a graph.
 pub(super) struct Task<'a> {
     pub(super) design: &'a Design,
     pub(super) contract: &'a dyn Contract,

@@ -16,6 +16,7 @@ pub enum RoundingDirection {
     Nearest,
 }
 
+/// An expression over the real numbers for a Gappa script, whose operands are other such terms.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RealTerm {
     Variable(String),

@@ -13,6 +13,7 @@ use super::cells::{Bit, Connection, WireValues};
 use super::term::{VectorTermId, VectorTerms};
 use glint_base::fixed::MAX_WIDTH;
 
+/// The computation of a combinational cell: an operation, or a read from a memory.
 enum What {
     Cell {
         kind: String,

@@ -7,6 +7,7 @@ use anyhow::{Context, Result, bail};
 use super::MOST_CLOCKS;
 use glint_rtl::netlist::{Design, Interpreter, NetId, Role};
 
+/// A pipeline and its sequential core, with the operands and outputs that both have.
 pub struct DesignPair<'a> {
     pub sequential: &'a Design,
     pub pipeline: &'a Design,

@@ -16,6 +16,7 @@ use super::term::{ADDRESS, VectorTerm, VectorTermId, VectorTerms};
 use glint_tools::transient::Directory;
 use glint_tools::{LimitReached, Tool};
 
+/// The solver's answer to the question whether some terms can all be 1.
 pub enum SolverAnswer {
     Unsatisfiable,
     /// The terms are all 1 for these values of the unknowns. The values of products and memory words behind them may be

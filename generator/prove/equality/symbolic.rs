@@ -32,6 +32,7 @@ impl SymbolicState {
     }
 }
 
+/// The symbolic execution of a design: every net carries an expression of the unknown operands in place of a number.
 pub struct Execution<'a> {
     pub design: &'a Design,
     order: Vec<NetId>,

@@ -42,6 +42,7 @@ impl BitChange {
     }
 }
 
+/// The place of a fault in a netlist, and the change at this place.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Site {
     Bit(NetId, u32, BitChange),

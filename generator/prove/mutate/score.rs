@@ -79,6 +79,7 @@ impl Tally {
     }
 }
 
+/// The numbers of faults in the netlist of one configuration, or of one part of it, by verdict and by kind.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Score {
     pub all: Tally,
@@ -111,6 +112,7 @@ impl Score {
     }
 }
 
+/// The numbers of faults in the emitted Verilog of one configuration, by verdict.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TextScore {
     pub planted: usize,

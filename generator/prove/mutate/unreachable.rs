@@ -9,6 +9,7 @@ use glint_core::core::{Core, TEST_POINTS, TEST_SEED};
 use glint_rtl::netlist::NetId;
 use glint_rtl::sim::Simulator;
 
+/// Records, for each bit of some nets, whether it was 0 and whether it was 1 in a test.
 struct BitWatch<'a> {
     nets: &'a [NetId],
     /// For each net, the bits that were 0, and the bits that were 1.

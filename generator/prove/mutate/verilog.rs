@@ -28,6 +28,7 @@ const POINTS: u64 = 10_000;
 /// enough even on a busy machine.
 const PROOF_LIMIT: Duration = Duration::from_secs(120);
 
+/// A fault in the text of the emitted Verilog. For example, `4'd9` becomes `4'd8`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TextFault {
     /// The file, the line number, the kind of fault, and a number among the faults of this kind in the line. For example,
@@ -70,6 +71,7 @@ pub struct TextFaultResult {
 
 const TOOLS: [&str; 4] = ["iverilog", "vvp", "verilator", "yosys"];
 
+/// The Verilog files of a configuration in which faults are planted, and the test benches and proofs that may notice the faults.
 pub struct VerilogText {
     files: Vec<OutputFile>,
     /// The longer bench, all of whose points are random, and its vectors. They replace the shipped ones.

@@ -31,6 +31,7 @@ const KEPT: usize = 32;
 
 const SEED: u64 = 4;
 
+/// A fault-free pipeline, prepared for the search for points at which mutants differ from it.
 pub(super) struct PointSearch {
     sound: Arc<CompiledDesign>,
     /// `high` has the indices of the inputs that are 1 after a clock of reset (reset, `in_valid`, `out_ready`), so that a
@@ -201,6 +202,7 @@ fn differing<'m>(
     (0..LANES).filter(move |&lane| differences[lane] != 0)
 }
 
+/// The points that make registers differ in the latest stage that was reached so far.
 #[derive(Default)]
 struct DeepestPoints {
     depth: usize,

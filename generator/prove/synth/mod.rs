@@ -37,6 +37,7 @@ use glint_tools::Tool;
 use glint_tools::gates::cells::MAPPING;
 use glint_tools::synthesis::{self, synthesise};
 
+/// A target for synthesis, such as ECP5, with the outside tools that measure the area and frequency of a core for it.
 pub struct Flow {
     target: Target,
     yosys: Tool,
@@ -47,6 +48,7 @@ pub struct Flow {
     versions: Vec<String>,
 }
 
+/// The core whose area and frequency are measured, and the settings of the measurement.
 pub struct SynthesisSubject<'a> {
     pub design: &'a Design,
     /// Pairs of a file name and contents.

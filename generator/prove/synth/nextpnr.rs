@@ -15,6 +15,7 @@ use glint_base::target::Chip;
 use glint_show::figures::{Figures, PathPoint, Target};
 use glint_tools::Tool;
 
+/// The settings with which nextpnr measures a core on an FPGA family.
 pub struct Recipe {
     pub target: Target,
     /// The speed grade in words, for example `speed grade 6`; may be empty.

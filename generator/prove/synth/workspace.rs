@@ -11,6 +11,7 @@ use glint_tools::Tool;
 use glint_tools::sources::YosysSources;
 use glint_tools::synthesis::{self, Usage};
 
+/// A directory with the Verilog of a core and of its harness.
 pub struct Workspace<'a> {
     pub sources: YosysSources<'a>,
     subject: &'a SynthesisSubject<'a>,

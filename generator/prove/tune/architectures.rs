@@ -78,6 +78,7 @@ fn multipliers(design: &Design) -> usize {
     products.count()
 }
 
+/// Fails if the configuration makes no core.
 pub fn sequential(base: &OpenedConfig, target: Target) -> Result<Architecture> {
     let mut config = base.config.clone();
     config.set("architecture", Value::Text("sequential".to_owned()));

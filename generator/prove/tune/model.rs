@@ -13,6 +13,7 @@ use glint_base::target::{ECP5, Family};
 use glint_rtl::netlist::{Design, Driver, NetId, Op, RegId};
 use glint_rtl::pipeline::delay_of;
 
+/// Counts of a netlist's logic, from which the number of look-up tables is estimated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Features {
     /// The number of bits of sums, differences and comparisons.

@@ -19,6 +19,7 @@ use glint_core::registry::Device;
 use glint_golden::{Bounds, Term};
 use glint_show::evidence::comparison::{EXPONENT, clocks_per_point};
 
+/// A configuration that `glint tune` has evaluated, with its error bound, its cost and its rate.
 #[derive(Clone, Debug)]
 pub struct Candidate {
     pub config: Config,
@@ -36,6 +37,7 @@ impl Candidate {
     }
 }
 
+/// The result of `glint tune`: the best configuration that it found, and the alternatives.
 #[derive(Clone, Debug)]
 pub struct Answer {
     pub best: Candidate,

@@ -150,6 +150,7 @@ fn applies(schema: &Schema, values: &[(String, Value)], name: &str) -> bool {
     true
 }
 
+/// The interface of a core: its ports, its number of microinstructions, and the values of its formula at 600 random points.
 struct CoreInterface {
     ports: Vec<String>,
     microinstructions: usize,

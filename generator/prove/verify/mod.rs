@@ -27,6 +27,7 @@ use glint_core::core::Core;
 use glint_core::package::{self, FileKind, OutputFiles};
 use glint_tools::{LimitReached, Tool};
 
+/// A configuration that `glint verify` checks, with the settings of the verification.
 pub struct CheckSubject<'a> {
     /// The path of the configuration file on the command line.
     pub path: &'a str,
@@ -281,6 +282,7 @@ impl Check {
     }
 }
 
+/// A check of `glint verify`, with its finding and the time that it took.
 #[derive(Clone, Debug, Serialize)]
 pub struct CheckAnswer {
     /// The same as [`Check::id`].

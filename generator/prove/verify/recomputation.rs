@@ -82,6 +82,7 @@ fn left_out(subject: &CheckSubject<'_>) -> Option<Finding> {
     })
 }
 
+/// The C compiler, in a directory with the program and the files that it includes.
 struct ProgramCompiler<'a> {
     tool: &'a Tool,
     dir: &'a Path,

@@ -42,6 +42,7 @@ impl fmt::Display for Advice {
     }
 }
 
+/// A changed configuration and its error bound, which is smaller than the bound before the change.
 struct Better {
     config: Config,
     bound: Bound,

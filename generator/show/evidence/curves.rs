@@ -45,6 +45,7 @@ pub struct DeviceCurves {
     pub charts: Vec<Chart>,
 }
 
+/// The largest errors of `f` at one exponent, over all angles from 0 to 90°.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct AtExponent {
     pub n: u32,

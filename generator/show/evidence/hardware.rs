@@ -24,6 +24,7 @@ pub trait Synthesis: Sync {
     fn usage(&self, files: &[(String, String)], top: &str, family: &Family) -> Result<Usage>;
 }
 
+/// The number of cells that a core takes on an FPGA family, before placement.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FamilyUsage {
     pub family: &'static str,

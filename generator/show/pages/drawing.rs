@@ -60,11 +60,18 @@ impl Item {
 }
 
 impl Drawing {
+    /// Returns an `svg` element.
+    ///
+    /// # Errors
+    /// Fails if the template cannot be printed.
     pub fn svg(&self) -> Result<String> {
         Ok(self.render()?)
     }
 
     /// Returns an SVG file that ends with a newline.
+    ///
+    /// # Errors
+    /// Fails if a template cannot be printed.
     pub fn file(&self) -> Result<String> {
         fill!("standalone.svg" {
             drawing: String = self.svg()?,

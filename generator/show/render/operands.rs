@@ -32,6 +32,7 @@ pub struct Point {
     pub surface: Surface,
 }
 
+/// A point of a surface under one light: its normal, its vectors and its light.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Surface {
     pub normal: Vector,

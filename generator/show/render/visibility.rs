@@ -236,6 +236,7 @@ impl<'a> Visibility<'a> {
     }
 }
 
+/// The three planes through the eye and an edge of a triangle.
 struct Planes {
     normals: [Vector; 3],
     /// Six times the signed volume of the tetrahedron of eye and triangle.

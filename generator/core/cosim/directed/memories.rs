@@ -7,6 +7,7 @@ use glint_base::fixed::Format;
 use glint_rtl::netlist::{Design, Driver, Net, NetId, Op, Port, Role};
 use glint_rtl::sim::Machine;
 
+/// The ROMs of a design after each lane got its own copy of them, with the position of each word in the copy of each lane.
 pub struct Memories {
     /// Selects the copy that a lane reads. The caller must drive this input with the number of the lane.
     pub lane: NetId,

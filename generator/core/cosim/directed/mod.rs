@@ -218,6 +218,7 @@ fn choose(candidates: &[PoolComputation], words: usize, count: usize, chosen: &m
     }
 }
 
+/// The number of times that each feature must still be exercised, and the clocks of the chosen computations.
 struct FeatureCoverage {
     /// How many more times each feature must be exercised.
     wanted: Vec<u8>,

@@ -36,6 +36,7 @@ const MOST_CORNERS: usize = 128;
 /// The length operand of a line in a corner.
 const CORNER_LENGTH: i64 = 2;
 
+/// The candidates from which the computations of a test bench are chosen.
 pub struct Pool {
     /// Computations in which every operand that determines `f` is at an end of its domain, or, if there are few enough such
     /// computations, at an end of its format. The length operand of a line is at most 2. There are at most 128 of these

@@ -21,6 +21,7 @@ const LIMIT: u32 = 1 << 16;
 /// A set of lanes as a bit mask: bit i is 1 if lane i is in the set.
 pub type Lanes = u32;
 
+/// The outputs of one computation, with the clocks in which they appeared.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct OutputTrace {
     /// The number of clocks from the computation's `start` to the first clock in which the core is not busy.

@@ -37,6 +37,7 @@ const ROUNDS_BEYOND: usize = 6;
 /// computations near them.
 const KEPT: usize = 8;
 
+/// The computations that were chosen because they detect faults in ROM words.
 #[derive(Default)]
 pub struct Chosen {
     pub chosen: BTreeSet<usize>,

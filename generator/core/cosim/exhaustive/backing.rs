@@ -33,6 +33,7 @@ pub enum Backing {
     Author,
 }
 
+/// The record of `glint certify`: the result of a proof of a configuration.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Certificate {
     /// The version of Glint that wrote the record.

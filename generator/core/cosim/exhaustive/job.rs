@@ -105,6 +105,7 @@ pub struct Progress {
     pub peak: Peak,
 }
 
+/// The progress of a shard, which is one machine's part of a job, in all parts of the check.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ShardState {

@@ -21,6 +21,7 @@ use glint_golden::pipeline::Occupancy;
 use glint_rtl::netlist::{Design, NetId, Pipeline, Role};
 use reference::{Expected, Reference};
 
+/// A point that the pipeline has taken and whose results were not read.
 #[derive(Clone, Debug)]
 struct PipelinedPoint {
     /// Raw operands, in the order of `Contract::operands`.
@@ -32,6 +33,7 @@ struct PipelinedPoint {
     taken: u64,
 }
 
+/// The points that are in a pipeline, and the signals that are predicted from them.
 #[derive(Clone)]
 pub(super) struct Pipe {
     columns: Arc<Vec<(ComparedValue, usize)>>,

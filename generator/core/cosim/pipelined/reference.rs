@@ -12,6 +12,7 @@ use glint_rtl::netlist::{Design, NetId, Pipeline};
 /// The number of clocks after which a computation counts as a computation that never ends.
 const MOST_CLOCKS: usize = 8192;
 
+/// The golden model of the sequential core, which computes one point at a time.
 #[derive(Clone)]
 pub(super) struct Reference {
     model: Driven,

@@ -38,6 +38,7 @@ enum RecomputedContract<'f> {
     Expression(&'f [Option<Comparison>]),
 }
 
+/// The parts of a contract that the program needs: one operand with its domain, one result, and its formula.
 struct RecomputedFormula<'f> {
     operand: &'f str,
     domain: (i64, i64),
@@ -115,6 +116,7 @@ pub fn file(job: &EmitJob, read: &[RomId], files: &mut OutputFiles) -> Result<()
     Ok(())
 }
 
+/// The memory files that the program compares with the tables of the C model.
 struct CheckedMemories {
     /// The memory file, the name of the table, and the number of words.
     files: Vec<(String, String, usize)>,

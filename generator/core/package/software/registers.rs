@@ -47,6 +47,7 @@ impl BitField<'_> {
     }
 }
 
+/// An operand, for which the files have a function that converts a fixed-point number to its raw integer.
 struct OperandConversion {
     name: String,
     constant: String,

@@ -8,6 +8,7 @@ use crate::package::emit_job::EmitJob;
 use glint_rtl::netlist::{Design, Port, Role};
 use glint_rtl::verilog::text::{ascii, literal, statement};
 
+/// An operand or a result as a field in a transfer of an AXI4-Stream.
 pub struct StreamField {
     pub name: String,
     /// The name and the format of the value, for comments.
@@ -89,6 +90,7 @@ fn side_by_side<'a>(
     fields
 }
 
+/// The layout of a transfer: its fields, and its total number of bits.
 pub struct Transfer {
     pub fields: Vec<StreamField>,
     pub bits: u32,

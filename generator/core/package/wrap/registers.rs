@@ -17,6 +17,7 @@ use crate::package::output_files::OutputFiles;
 use glint_rtl::netlist::Role;
 use glint_rtl::verilog::text::{comment, literal, range, statement};
 
+/// An operand, with the byte lanes through which bus registers write it.
 struct OperandWords {
     name: String,
     strobe: String,

@@ -5,6 +5,7 @@ use crate::package::map::{self, Map, PortBits, PortPlacement};
 use glint_rtl::netlist::Design;
 use glint_rtl::verilog::text::{literal, statement};
 
+/// A bus register, with the Verilog expression that a read of it returns.
 pub struct Word {
     /// The address in words of 32 bits.
     pub number: u64,

@@ -9,6 +9,7 @@ use std::collections::BTreeSet;
 use super::pairs::Pairs;
 use glint_rtl::netlist::{Design, Driver, FieldId, NetId};
 
+/// Whether a register or a synchronous ROM takes a new value in a microinstruction.
 #[derive(Clone, Copy, PartialEq)]
 enum Load {
     Never,

@@ -12,6 +12,7 @@ use glint_rtl::netlist::{Design, Driver, NetId, Op, RegId, RomId};
 /// The possible pairs of each register and synchronous ROM between two clocks.
 pub(super) type PairState = Vec<Pairs>;
 
+/// A design, with the order in which its nets are evaluated for a proof about a fault.
 pub(super) struct Order<'a> {
     pub(super) design: &'a Design,
     /// The nets in an order in which each comes after the nets that it reads.

@@ -21,6 +21,7 @@ use glint_rtl::netlist::{Design, Driver, NetId, Op, RomId, eval};
 /// The number of combinations that are evaluated together, each in a lane.
 const LANES: usize = 128;
 
+/// The bit patterns of a net in all lanes.
 type NetLanes = [u64; LANES];
 
 /// The lanes of nets. For a mutant, only nets that the fault may change have lanes.
@@ -33,6 +34,7 @@ const BITS: u32 = 22;
 /// tried, and large, because neighbouring combinations tend to give the same answer.
 const STRIDE: u64 = 40_009;
 
+/// A prover for one design that tries every combination of values in a window, a small part of the netlist around a fault.
 pub(super) struct Windows<'a> {
     design: Cow<'a, Design>,
     order: Vec<NetId>,

@@ -65,6 +65,7 @@ struct DatasheetResults {
     synthesis: Option<(String, Vec<FamilyUsage>)>,
 }
 
+/// A picture that the golden model computes, beside the picture with Blinn's function in f64 and their difference.
 struct HighlightPicture {
     /// The picture of the golden model, the picture with Blinn's function in f64, and their difference, side by side as PNG.
     png: Vec<u8>,

@@ -113,6 +113,7 @@ pub fn svg(design: &Design) -> Result<String> {
     drawing(design).file()
 }
 
+/// The size of a box in the layout. The page shows the layout turned, so a height in the layout is a width on the page.
 struct Sizes {
     lanes: f64,
     stub: f64,

@@ -9,6 +9,7 @@ const NEAR: f64 = 5.0;
 /// gap.
 const OVERLAP: usize = 1000;
 
+/// The side of the gap between two columns at which a wire enters or leaves the gap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
     /// The side of columns with lower numbers.

@@ -11,6 +11,7 @@ use std::collections::BTreeSet;
 use super::kind::{MULTIPLIER, MUX, operator};
 use glint_rtl::netlist::{Design, Driver, Net, NetId, Op, Partition, Role, RomId};
 
+/// The nets of a design, grouped into blocks, and the sources of each net.
 pub struct Groups<'a> {
     pub design: &'a Design,
     /// For each net, its group: the lowest number of a net in the group.
