@@ -5,10 +5,9 @@ use glint_prove::tune::{ErrorUnit, Objective};
 use glint_show::figures::{TARGETS, Target};
 use glint_show::render::BuiltIn;
 
-/// A word of an argument, the value that it selects, and its meaning for `--help`.
+/// The word, the value that it selects, and its meaning for `--help`.
 type Choice<T> = (&'static str, T, &'static str);
 
-/// Returns a parser of an argument that must be one of the words.
 fn one_of<T: Copy + Send + Sync + 'static>(
     choices: Vec<Choice<T>>,
 ) -> impl TypedValueParser<Value = T> {
@@ -22,12 +21,10 @@ fn one_of<T: Copy + Send + Sync + 'static>(
     })
 }
 
-/// Returns a parser for the name of a synthesis target, such as `ecp5`.
 pub fn target() -> impl TypedValueParser<Value = Target> {
     one_of(TARGETS.map(|target| (target.name(), target, target.title())).to_vec())
 }
 
-/// Returns a parser for the unit of an error: `f` or `output`.
 pub fn error_unit() -> impl TypedValueParser<Value = ErrorUnit> {
     one_of(vec![
         ("f", ErrorUnit::F, "The reflectance f, from 0 to 1"),
@@ -35,7 +32,6 @@ pub fn error_unit() -> impl TypedValueParser<Value = ErrorUnit> {
     ])
 }
 
-/// Returns a parser for the cost that is minimised: `area`, `luts`, `dsps` or `memory`.
 pub fn objective() -> impl TypedValueParser<Value = Objective> {
     const AREA: &str = "The area in look-up tables; a DSP block or a block RAM counts as the number of \
                         look-up tables that the chip has per such block";
@@ -55,7 +51,6 @@ pub fn objective() -> impl TypedValueParser<Value = Objective> {
     ])
 }
 
-/// Returns a parser for the name of a built-in shape: `sphere`, `torus`, `vase` or `group`.
 pub fn shape() -> impl TypedValueParser<Value = BuiltIn> {
     one_of(vec![
         ("sphere", BuiltIn::Sphere, "A ball"),

@@ -15,8 +15,7 @@ use glint_tools::transient::Directory;
 /// The name of the file while Glint writes it, in a temporary directory next to its place.
 const UNFINISHED: &str = "unfinished";
 
-/// The destination of a file. The file is written under another name in the same directory, and moved to its place when it is
-/// complete. A pipe or a device is written directly.
+/// A file that is written under another name in the same directory, and moved to its place when it is complete.
 pub struct Destination {
     path: PathBuf,
     sink: Sink,
@@ -30,9 +29,9 @@ enum Sink {
 }
 
 impl Destination {
-    /// Makes sure that `path` can be written. Directories that do not exist are made. A path that is no regular file, such as a
-    /// pipe, is opened and written itself. A command must call this function before it does any work for the file. If `path` is
-    /// a symbolic link, the file to which the link leads is replaced, and not the link.
+    /// A command opens the destination before it does any work for the file. A path that is no regular file, such as a pipe,
+    /// is opened and written itself. If `path` is a symbolic link, the command replaces the file to which the link leads, and
+    /// not the link.
     ///
     /// # Errors
     /// Fails if `path` cannot be written, if a link leads nowhere, or if its directory cannot be made.
@@ -61,10 +60,10 @@ impl Destination {
         Ok(Self { path, sink, made })
     }
 
-    /// Opens a destination as [`Destination::open`] does, if no file is there yet. With `force`, an existing file may be replaced.
+    /// Opens the destination only if no file is there yet. With `force`, an existing file may be replaced.
     ///
     /// # Errors
-    /// Without `force`, fails if the file exists. Fails if [`Destination::open`] fails.
+    /// Fails as [`Destination::open`] does, and without `force` also if the file exists.
     pub fn fresh(path: &Path, force: bool) -> Result<Self> {
         if path.is_file() && !force {
             bail!(
@@ -75,7 +74,7 @@ impl Destination {
         Self::open(path)
     }
 
-    /// Returns the open file to which the caller must write.
+    /// The caller must write to this file.
     ///
     /// # Errors
     /// Fails if the file cannot be opened.
@@ -89,12 +88,11 @@ impl Destination {
         file.with_context(|| cannot(&self.path))
     }
 
-    /// Returns the path of the finished file.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Moves the file into its place. The caller must have written the whole file.
+    /// The caller must have written the whole file.
     ///
     /// # Errors
     /// Fails if the file cannot be moved; then nothing was changed.
@@ -107,9 +105,6 @@ impl Destination {
         Ok(())
     }
 
-    /// Writes the whole file and moves it into its place.
-    ///
-    /// # Errors
     /// Fails if the file cannot be written or moved; then the old file is unchanged. A pipe or a device may have received a
     /// part of the contents.
     pub fn write(self, contents: impl AsRef<[u8]>) -> Result<()> {
@@ -118,8 +113,8 @@ impl Destination {
     }
 }
 
-/// Replaces the file `path` as a whole, or leaves the old file unchanged, for example if the disk is full. A pipe or a device
-/// is written directly.
+/// Replaces the file `path` as a whole. If that is not possible, for example because the disk is full, the old file stays
+/// unchanged. A pipe or a device is written directly.
 ///
 /// # Errors
 /// Fails if the file cannot be written.
@@ -127,7 +122,6 @@ pub fn replace(path: &Path, contents: impl AsRef<[u8]>) -> Result<()> {
     Destination::open(path)?.write(contents)
 }
 
-/// Returns the message for a file that cannot be written.
 fn cannot(path: &Path) -> String {
     format!("cannot write `{}`", path.display())
 }

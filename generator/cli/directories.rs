@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 
-/// Directories that Glint created for a file. If the file is not written in the end, they are removed again, unless something else
-/// is in them. For example, for `made/for/it.txt` in an empty directory these are `made` and `made/for`.
+/// Directories that Glint created for a file. Unless the file is written in the end, they are removed again if nothing else is
+/// in them. For `made/for/it.txt` in an empty directory, these are `made` and `made/for`.
 #[derive(Default)]
 pub struct MadeDirectories {
     /// The paths of the directories, the outermost first.
@@ -14,7 +14,7 @@ pub struct MadeDirectories {
 }
 
 impl MadeDirectories {
-    /// Makes a directory, and the directories above it that are missing.
+    /// Makes also the missing directories above `directory`.
     ///
     /// # Errors
     /// Fails if a directory cannot be made.
@@ -28,7 +28,7 @@ impl MadeDirectories {
         Ok(made)
     }
 
-    /// Marks the directories as needed, so that they are not removed. A caller must call this function once the file is written.
+    /// A caller calls this function once the file is written, so that the directories stay.
     pub fn keep(&mut self) {
         self.paths.clear();
     }
@@ -43,7 +43,7 @@ impl Drop for MadeDirectories {
     }
 }
 
-/// Makes a directory, and the directories above it.
+/// Makes also the missing directories above `path`.
 ///
 /// # Errors
 /// Fails if the directory cannot be made.
@@ -52,7 +52,7 @@ pub fn create_directory(path: &Path) -> Result<()> {
         .with_context(|| format!("cannot create the directory `{}`", path.display()))
 }
 
-/// Creates the directory that contains the file `path`, and the missing directories above it.
+/// Creates the directory for the file `path`, and the missing directories above it.
 ///
 /// # Errors
 /// Fails if the directory cannot be made.

@@ -9,22 +9,21 @@ use serde_json::{Value, json};
 use super::interrupt::Interrupted;
 use glint_config::Problems;
 
-/// An error that has its own exit code or its own form of printing. All other errors are printed as text with their causes, and
-/// have exit code 1.
+/// An error that has its own exit code or its own form of printing. Any other error is printed as text with its causes, and
+/// has exit code 1.
 #[derive(Debug)]
 pub enum Failure {
-    /// A mistake on the command line that clap cannot find, only the command itself: exit code 2.
+    /// A mistake on the command line that only the command can find, and not clap: exit code 2.
     WrongUsage(String),
     /// A signal arrived, and the command has saved its work.
     Interrupted(Interrupted),
-    /// The problems of a configuration.
     Problems(Problems),
-    /// Several independent errors, for example the errors of several configurations.
+    /// Independent errors, for example of several configurations.
     Several(Vec<anyhow::Error>),
 }
 
 impl Failure {
-    /// Returns the failure inside an error, even if context was added to the error. Returns `None` for any other error.
+    /// Finds the failure even if context was added to the error.
     fn of_error(error: &anyhow::Error) -> Option<&Self> {
         error.downcast_ref()
     }
@@ -49,8 +48,7 @@ macro_rules! wrong_usage {
 }
 pub(crate) use wrong_usage;
 
-/// Returns the exit code for an error. For example, the code is 2 for wrong usage, 130 after Ctrl-C, and 1 for a file that
-/// cannot be read.
+/// The code is 2 for wrong usage, 130 after Ctrl-C, and 1 for most other errors, such as a file that cannot be read.
 pub fn exit_code(error: &anyhow::Error) -> ExitCode {
     match Failure::of_error(error) {
         Some(Failure::WrongUsage(_)) => ExitCode::from(2),
@@ -59,7 +57,7 @@ pub fn exit_code(error: &anyhow::Error) -> ExitCode {
     }
 }
 
-/// Prints an error with its causes: to standard error as text, or with `as_json` to standard output as a JSON object.
+/// Prints an error with its causes: as text to standard error, or with `as_json` as a JSON object to standard output.
 pub fn print(error: &anyhow::Error, as_json: bool) {
     if as_json {
         print_problems(problems(error));
@@ -68,19 +66,18 @@ pub fn print(error: &anyhow::Error, as_json: bool) {
     }
 }
 
-/// Prints problems to standard output as a JSON object with the keys `ok`, which is false, and `problems`. Each problem must
-/// have the keys of [`Problems::to_json`].
+/// Prints a JSON object with the keys `ok`, which is false, and `problems`. Each problem must have the keys of
+/// [`Problems::to_json`].
 pub fn print_problems(problems: Vec<Value>) {
     super::tables::print_json(&json!({ "ok": false, "problems": problems }));
 }
 
-/// Returns the JSON of a problem that has no location in a configuration file. The object has the same keys as a problem with a
-/// location; all but `message` are null.
+/// Returns a problem without a location in a configuration file. It has the same keys as one with a location, but all except
+/// `message` are null.
 pub fn problem(message: &str) -> Value {
     json!({ "file": null, "line": null, "column": null, "key": null, "message": message, "remedy": null })
 }
 
-/// Returns the problems in an error, as JSON for scripts.
 fn problems(error: &anyhow::Error) -> Vec<Value> {
     match Failure::of_error(error) {
         Some(Failure::Several(errors)) => errors.iter().flat_map(problems).collect(),
@@ -94,7 +91,7 @@ fn problems(error: &anyhow::Error) -> Vec<Value> {
     }
 }
 
-/// Prints an error to standard error: with its causes, or, for problems of a configuration, with snippets of the file.
+/// Problems of a configuration are printed with snippets of the file.
 fn print_text(error: &anyhow::Error) {
     match Failure::of_error(error) {
         Some(Failure::Several(errors)) => {
@@ -115,13 +112,12 @@ fn print_text(error: &anyhow::Error) {
     }
 }
 
-/// Prints a warning to standard error, after `warning: `. For example, the line may be `warning: my_core.toml: no waveform`.
+/// Prints a warning to standard error, such as `warning: my_core.toml: no waveform`.
 pub fn warn(message: &str) {
     print_line(&format!("warning: {message}"));
 }
 
-/// Prints a line to standard error. The function ignores a failure to write, because the failure could not be reported
-/// anywhere.
+/// Ignores a failure to write, because it could not be reported anywhere.
 fn print_line(line: &str) {
     let _ = writeln!(std::io::stderr().lock(), "{line}");
 }

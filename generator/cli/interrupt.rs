@@ -1,5 +1,5 @@
-//! Ends the program on Ctrl-C and on other signals that ask a process to end. The module ends the child processes and deletes
-//! the temporary files. On a system without such signals, it does nothing.
+//! Ends the program on Ctrl-C and on other signals that ask a process to end. Before the end, the module ends the child
+//! processes and deletes the temporary files. On a system without such signals, it does nothing.
 //!
 //! A command can delay the end until it has saved its work. A second signal then ends the program at once.
 
@@ -14,14 +14,12 @@ static NOTED: AtomicI32 = AtomicI32::new(0);
 /// The error of a command that was interrupted after it saved its work.
 #[derive(Debug)]
 pub struct Interrupted {
-    /// The number of the signal.
     signal: i32,
-    /// A description of the work that was saved.
     saved: String,
 }
 
 impl Interrupted {
-    /// Returns the exit code that shells use for a signal. For example, SIGINT is signal 2 and gives 130.
+    /// Returns the exit code that shells use for a signal: 130 for SIGINT, which is signal 2.
     pub fn exit_code(&self) -> u8 {
         128 + self.signal as u8
     }
@@ -34,23 +32,22 @@ impl fmt::Display for Interrupted {
 }
 
 /// While this value exists, the first signal only sets a flag, so that the command can save its work. The second signal ends
-/// the process. For example, `cosim --exhaustive --resume FILE` saves its progress in this way.
+/// the process. `cosim --exhaustive --resume FILE` saves its progress in this way.
 pub struct Deferred(());
 
 impl Deferred {
-    /// Begins to defer the end of the process on a signal. Dropping the returned value ends this.
+    /// The caller drops the returned value when a signal may end the process at once again.
     pub fn begin() -> Self {
         DEFERRED.store(true, Ordering::SeqCst);
         Self(())
     }
 
-    /// Returns whether a signal has arrived. If so, the command must save its work and end.
+    /// If so, the command must save its work and end.
     pub fn noted(&self) -> bool {
         NOTED.load(Ordering::SeqCst) != 0
     }
 
-    /// Returns the error with which the command must end if a signal has arrived, and `None` otherwise. `saved` returns a
-    /// description of the saved work.
+    /// Returns the error with which the command must end if a signal has arrived. `saved` describes the saved work.
     pub fn end(self, saved: impl FnOnce() -> String) -> Option<Interrupted> {
         match NOTED.load(Ordering::SeqCst) {
             0 => None,
@@ -65,8 +62,8 @@ impl Drop for Deferred {
     }
 }
 
-/// Installs the signal handler. After this call, SIGINT, SIGTERM and SIGHUP end this process with all its child processes, and
-/// delete its temporary files. A signal that the process was told to ignore, as under `nohup`, stays ignored.
+/// After this call, SIGINT, SIGTERM and SIGHUP end this process with all its child processes, and delete its temporary files.
+/// A signal that the process was told to ignore, as under `nohup`, stays ignored.
 ///
 /// # Errors
 /// Fails if the system cannot install the handler.
@@ -98,16 +95,13 @@ pub fn listen() -> std::io::Result<()> {
 }
 
 /// Does nothing: this system has no such signals, and ends the process itself.
-///
-/// # Errors
-/// Never fails.
 #[cfg(not(unix))]
 pub fn listen() -> std::io::Result<()> {
     Ok(())
 }
 
-/// Returns the signals that this process was told to ignore, as a mask: bit i is 1 for signal i + 1. Returns 0 if the system
-/// does not state them. For example, under `nohup` bit 0 is 1, because SIGHUP is signal 1.
+/// Returns the signals that this process was told to ignore, as a mask: bit i is 1 for signal i + 1. Under `nohup`, bit 0 is
+/// 1, because SIGHUP is signal 1. The mask is 0 if the system does not state it.
 #[cfg(unix)]
 fn ignored() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();

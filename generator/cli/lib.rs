@@ -136,8 +136,8 @@ struct OutputOptions {
     quiet: bool,
 }
 
-/// Parses a command line. The examples in the help texts have the name of the running program. Fails with clap's error for
-/// wrong usage, and also for `--help` and `--version`.
+/// Puts the name of the running program into the examples of the help texts. Fails with clap's error for wrong usage, and also
+/// for `--help` and `--version`.
 fn parse(arguments: &[OsString]) -> Result<Cli, clap::Error> {
     let examples = |command: clap::Command| match command.get_after_help() {
         None => command,
@@ -150,14 +150,14 @@ fn parse(arguments: &[OsString]) -> Result<Cli, clap::Error> {
     Cli::from_arg_matches(&command.try_get_matches_from_mut(arguments)?)
 }
 
-/// Parses a finite number. For example, `0.75` and `12e6` are numbers. Fails for any other text, such as `inf`.
+/// Accepts only finite numbers, such as `0.75` and `12e6`.
 fn number(text: &str) -> Result<f64, String> {
     let number = text.parse().ok().filter(|number: &f64| number.is_finite());
     number.ok_or_else(|| "expected a number, for example 0.75 or 12e6".to_owned())
 }
 
-/// Parses a whole number of at least 1. For example, `1000000`, `1_000_000` and `1e6` are a million, and `1.5e3` is 1500. Fails
-/// for 0, for fractions such as `1.5`, and for numbers beyond 64 bits.
+/// Parses a whole number of at least 1 and at most 64 bits. Exponents are allowed: `1000000`, `1_000_000` and `1e6` are a
+/// million, and `1.5e3` is 1500.
 fn count(text: &str) -> Result<u64, String> {
     let wanted = || "expected a whole number of at least 1, for example 1000000 or 1e6".to_owned();
     let number = match text.split_once(['e', 'E']) {
@@ -173,22 +173,21 @@ fn count(text: &str) -> Result<u64, String> {
     number.filter(|number| *number > 0).ok_or_else(wanted)
 }
 
-/// Runs the command line of this process with the devices of `registry`, and returns its exit code. Messages call the program
-/// by the name of its executable file.
+/// Runs the command line of this process with the devices of `registry`. Messages call the program by the name of its
+/// executable file.
 pub fn run(registry: &Registry) -> ExitCode {
     let path = std::env::args_os().next().unwrap_or_default();
     let name = Path::new(&path).file_stem().and_then(OsStr::to_str).unwrap_or("glint");
     run_as(name, registry)
 }
 
-/// Runs the command line of this process, and returns its exit code. Messages and written files call the program `program`.
+/// Runs the command line of this process. Messages and written files call the program `program`.
 pub fn run_as(program: &str, registry: &Registry) -> ExitCode {
     run_with(program, registry, std::env::args_os())
 }
 
-/// Runs a command line under the name `program`, and returns its exit code. `arguments` begins with the program's name. A
-/// caller uses this function if the arguments of its process are not the command line; for example, the process may be a Python
-/// interpreter.
+/// Runs a command line that is not the process's own, for example inside a Python interpreter. `arguments` begins with the
+/// program's name. Messages and written files call the program `program`.
 pub fn run_with(
     program: &str,
     registry: &Registry,
@@ -203,8 +202,7 @@ pub fn run_with(
     run_from(registry, arguments)
 }
 
-/// Runs the command line `arguments`, whose first entry is the program's name, and returns its exit code. The function installs
-/// no signal handler.
+/// Runs a command line without installing a signal handler. `arguments` begins with the program's name.
 pub fn run_from(registry: &Registry, arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let arguments: Vec<OsString> = arguments.into_iter().collect();
     let cli = match parse(&arguments) {
@@ -216,8 +214,8 @@ pub fn run_from(registry: &Registry, arguments: impl IntoIterator<Item = OsStrin
             return ExitCode::from(error.exit_code() as u8);
         }
         Err(error) => {
-            // Help and version go to standard output with exit code 0, and wrong usage goes to standard error with exit code 2.
-            // A closed pipe is no error.
+            // Help and version go to standard output with exit code 0, and wrong usage goes to standard error with exit code
+            // 2. A closed pipe is no error.
             let _ = error.print();
             return ExitCode::from(error.exit_code() as u8);
         }

@@ -12,7 +12,6 @@ use super::record_text::record_text;
 use super::store;
 use glint_core::package::{Seal, sealed, sealed_object};
 
-/// A file that will be written, with its destination.
 pub struct OwnFile {
     path: PathBuf,
     seal: Seal,
@@ -20,9 +19,8 @@ pub struct OwnFile {
 }
 
 impl OwnFile {
-    /// Prepares to write the file `name` in `directory`, which is created if it is missing. A command calls this function before
-    /// the work for the file, so that a path that cannot be written is reported early. `seal` is the place of the digest in the
-    /// file.
+    /// Creates `directory` if it is missing. A command calls this function before the work for the file, so that a path that
+    /// cannot be written is reported early. `seal` is the place of the digest in the file.
     ///
     /// # Errors
     /// Fails if Glint did not write the file that is there, or if somebody edited it since. Fails if the file cannot be written.
@@ -36,8 +34,8 @@ impl OwnFile {
         Ok(Self { path, seal, destination })
     }
 
-    /// Returns the record `<name>.json`, if there is a directory for records. For example, `--out mutation` makes
-    /// `mutation/rough.json` the record of `rough`. Returns `None` without a directory.
+    /// Prepares the record `<name>.json`, if there is a directory for records: `--out mutation` makes `mutation/rough.json`
+    /// the record of `rough`.
     ///
     /// # Errors
     /// Fails as [`OwnFile::new`] does.
@@ -45,7 +43,7 @@ impl OwnFile {
         directory.map(|it| Self::new(it, &format!("{name}.json"), Seal::Json)).transpose()
     }
 
-    /// Writes the text `contents`, followed by the line with its digest, and returns the path of the file.
+    /// Adds the line with the digest, and returns the path of the file.
     ///
     /// # Errors
     /// Fails if the file cannot be written.
@@ -54,7 +52,7 @@ impl OwnFile {
         self.write_as_it_is(&text)
     }
 
-    /// Writes `value` as the JSON of a record, with one member more for the digest, and returns the path of the file.
+    /// Writes `value` with one member more for the digest, and returns the path of the file.
     ///
     /// # Errors
     /// Fails if the value is no object, or if the file cannot be written.

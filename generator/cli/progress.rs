@@ -27,9 +27,8 @@ const FIRST: Duration = Duration::from_secs(10);
 /// The time between two such lines.
 const EVERY: Duration = Duration::from_secs(60);
 
-/// Returns a progress bar on standard error over `total` steps, with the name `what`. The bar is hidden with `--json` or
-/// `--quiet`. If standard error is no terminal, lines of text replace the bar: the first after ten seconds, and then one every
-/// minute.
+/// Returns a progress bar over `total` steps with the name `what`, which is hidden with `--json` or `--quiet`. If standard
+/// error is no terminal, lines of text replace the bar: the first after ten seconds, and then one every minute.
 pub fn bar(output: OutputOptions, total: u64, what: &str) -> ProgressBar {
     let is_hidden = output.quiet || !output.is_for_people();
     let target = if is_hidden {
@@ -51,7 +50,7 @@ pub fn bar(output: OutputOptions, total: u64, what: &str) -> ProgressBar {
     bar
 }
 
-/// Prints a line about the progress of a bar after ten seconds and then every minute, until the bar is finished or dropped.
+/// Prints the lines that replace a bar, until the bar is finished or dropped.
 fn told(bar: &WeakProgressBar, what: &str) {
     let mut wait = FIRST;
     loop {
@@ -69,7 +68,7 @@ fn told(bar: &WeakProgressBar, what: &str) {
     }
 }
 
-/// Returns the bar with a style whose line fits into `width` characters.
+/// The line fits into `width` characters.
 fn styled(bar: ProgressBar, width: usize, what: &str) -> ProgressBar {
     if let Ok(style) = ProgressStyle::with_template(&template(width)) {
         let rate = |state: &ProgressState, out: &mut dyn Write| {
@@ -95,8 +94,8 @@ fn template(width: usize) -> String {
     }
 }
 
-/// Formats a number with three digits, and with k, M or G for thousands, millions or billions. A number below 1000 has no
-/// letter, and one of 10¹² or more has more digits. For example, 1234.5678 is `1.23k`.
+/// Formats a number with three digits, and with k, M or G for thousands, millions or billions: 1234.5678 is `1.23k`. A number
+/// below 1000 has no letter, and one of 10¹² or more has more digits.
 fn rounded(number: f64) -> String {
     let (size, unit) = match number {
         1e9.. => (1e9, "G"),
@@ -113,8 +112,8 @@ fn rounded(number: f64) -> String {
     format!("{scaled:.decimals$}{unit}")
 }
 
-/// Returns the remaining time, at the average pace so far, as text. Returns `None` before the first step and after the last
-/// one. For example, 10 of 40 steps in 2 seconds leave `6 s`.
+/// Returns the remaining time at the average pace so far: 10 of 40 steps in 2 seconds leave `6 s`. Returns `None` before the
+/// first step and after the last one.
 fn remaining(elapsed: Duration, done: u64, all: u64) -> Option<String> {
     if done == 0 || done >= all {
         return None;

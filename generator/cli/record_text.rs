@@ -5,10 +5,9 @@
 
 use serde_json::Value;
 
-/// The longest line in characters that a value may occupy without being broken into several lines.
+/// The longest line in characters.
 const WIDTH: usize = 150;
 
-/// Returns the text of a record as JSON, with a newline at its end. The outermost object is always broken into lines.
 pub fn record_text(value: &Value) -> String {
     let mut text = String::new();
     broken(value, 0, &mut text);
@@ -16,8 +15,6 @@ pub fn record_text(value: &Value) -> String {
     text
 }
 
-/// Appends a value. The value stays in one line if the line has at most [`WIDTH`] characters then. Otherwise it is broken into
-/// lines, indented by `depth` levels.
 fn append(value: &Value, depth: usize, text: &mut String) {
     let line = one_line(value);
     let start = text.rfind('\n').map_or(0, |newline| newline + 1);
@@ -28,7 +25,6 @@ fn append(value: &Value, depth: usize, text: &mut String) {
     }
 }
 
-/// Appends a value with a line for each entry. The entries are indented by `depth` + 1 levels.
 fn broken(value: &Value, depth: usize, text: &mut String) {
     let indent = "  ".repeat(depth + 1);
     let (open, close, count) = match value {
@@ -64,7 +60,6 @@ fn broken(value: &Value, depth: usize, text: &mut String) {
     text.push(close);
 }
 
-/// Returns the JSON text of a value in one line, with blanks between its entries.
 fn one_line(value: &Value) -> String {
     match value {
         Value::Array(entries) => {

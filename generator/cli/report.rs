@@ -11,21 +11,15 @@ use crate::{OutputOptions, tables};
 
 /// The answer of a command, or one part of it.
 pub trait CommandReport {
-    /// Returns the answer as JSON, for scripts.
-    ///
-    /// # Errors
     /// Fails if a part of the answer cannot be computed or written.
     fn json(&self) -> Result<Value>;
 
-    /// Prints the answer as text, for people.
-    ///
-    /// # Errors
     /// Fails if a part of the answer cannot be computed or written.
     fn print(&self) -> Result<()>;
 }
 
 impl OutputOptions {
-    /// Prints a report: as JSON with `--json`, and otherwise as text.
+    /// Prints JSON with `--json`, and otherwise text.
     ///
     /// # Errors
     /// Fails if the report's own method fails.
@@ -38,30 +32,24 @@ impl OutputOptions {
         }
     }
 
-    /// Returns whether the answer is text for people, and not JSON for a script. For example, only people get an estimate of
-    /// the duration of a long check.
+    /// Only people get text such as an estimate of the duration of a long check.
     pub fn is_for_people(self) -> bool {
         !self.json
     }
 
-    /// Begins a list of reports.
     pub fn list(self) -> ReportList {
         ReportList { output: self, reports: Vec::new() }
     }
 }
 
-/// A list of reports of the same kind, for example one for each configuration. As text, each report is printed when it is
-/// added. As JSON, all reports are printed together at the end.
+/// Reports of the same kind, for example one for each configuration. As text, each report is printed when it is added. As
+/// JSON, all reports are printed together at the end.
 pub struct ReportList {
     output: OutputOptions,
     reports: Vec<Value>,
 }
 
 impl ReportList {
-    /// Adds a report. If the command prints text, prints the report at once; with `--json`, stores the report as JSON until the
-    /// list ends.
-    ///
-    /// # Errors
     /// Fails if the report's own method fails.
     pub fn add(&mut self, report: &impl CommandReport) -> Result<()> {
         if self.output.json {
@@ -72,18 +60,14 @@ impl ReportList {
         }
     }
 
-    /// Ends the list of reports and returns `holds`, which must say whether everything that the command checked holds. With
-    /// `--json` it prints an object with the keys `ok`, which is `holds`, and `configurations`, the list of reports.
-    ///
-    /// # Errors
-    /// Never fails with the reports as JSON values; [`ReportList::finish`] has the general rule.
+    /// Ends the list and returns `holds`, which must say whether everything that the command checked holds. With `--json` it
+    /// prints an object with the keys `ok`, which is `holds`, and `configurations`, the list of reports.
     pub fn conclude(self, holds: bool) -> Result<bool> {
         self.finish(|reports| Ok(json!({ "ok": holds, "configurations": reports })))?;
         Ok(holds)
     }
 
-    /// Ends the list. With `--json` it prints the value that `answer` makes from the list of all reports. For example,
-    /// `finish(|reports| Ok(json!({ "ok": true, "schedules": reports })))`.
+    /// With `--json`, prints the value that `answer` makes from the list of all reports.
     ///
     /// # Errors
     /// Fails if `answer` fails.

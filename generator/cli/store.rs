@@ -26,10 +26,9 @@ use glint_core::package::{OutputFile, Seal, is_sealed};
 use staging::Staging;
 use survey::Survey;
 
-/// Whether [`write()`] or [`write_sealed`] changed any file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Written {
-    /// No file changed: all files were there already, byte for byte.
+    /// All files were there already with the same bytes.
     Unchanged,
     /// At least one file was written, replaced or deleted.
     Replaced,
@@ -44,9 +43,8 @@ impl fmt::Display for Written {
     }
 }
 
-/// Writes the files of the configuration `name` below the directory `out`, and deletes files of an earlier run that are no
-/// longer needed. Returns whether any file changed. A file of the user stays, unless it has the path of a file that must be
-/// written.
+/// Also deletes the files of an earlier run that the configuration `name` no longer needs. A file of the user stays, unless it
+/// has the path of a file that must be written.
 ///
 /// # Errors
 /// Without `force`, fails if somebody edited a file that Glint wrote, or if a file that Glint did not write is in the way. With
@@ -74,16 +72,16 @@ pub fn write(out: &Path, name: &str, files: &[OutputFile], force: bool) -> Resul
     Ok(Written::Replaced)
 }
 
-/// Waits until no other run of Glint writes below a directory, and locks the directory until the result is dropped. Returns
-/// `None`, without a lock, on a system that locks no directories.
+/// Waits until no other run of Glint writes below the directory. The lock ends when the result is dropped. Returns `None` on a
+/// system that locks no directories.
 fn locked(directory: &Path) -> Option<fs::File> {
     let opened = fs::File::open(directory).ok()?;
     opened.lock().ok()?;
     Some(opened)
 }
 
-/// Returns the paths of the files below `out` that differ from `files` or are missing, and of the files that Glint wrote
-/// earlier and that are no longer in `files`. For example, `rtl_out/rough/rough.v` after somebody edited this file.
+/// Returns the paths of the files below `out` that differ from `files` or are missing. The list also has the files that Glint
+/// wrote earlier and no longer needs.
 ///
 /// # Errors
 /// Fails if a file cannot be read.
@@ -91,7 +89,7 @@ pub fn differences(out: &Path, name: &str, files: &[OutputFile]) -> Result<Vec<S
     Ok(Survey::new(out, name, files)?.different)
 }
 
-/// Writes a single file that contains the digest of its own text, and returns whether the file changed.
+/// Writes a single file that contains the digest of its own text.
 ///
 /// # Errors
 /// Without `force`, fails if Glint did not write the file that is there, or if somebody edited it since. Fails if the file
@@ -105,7 +103,7 @@ pub fn write_sealed(path: &Path, text: &str, seal: Seal, force: bool) -> Result<
     Ok(Written::Replaced)
 }
 
-/// Checks that [`write_sealed`] may replace the file at `path`, and returns its contents; `None` if there is no file.
+/// Returns the contents of the file that [`write_sealed`] would replace, or `None` if there is no file.
 ///
 /// # Errors
 /// Without `force`, fails if Glint did not write the file, or if somebody edited the file since. Fails if the file cannot be
@@ -141,7 +139,6 @@ fn not_glints(path: &Path) -> String {
     )
 }
 
-/// Returns the contents of a file; `None` if there is no file. Fails if the file cannot be read.
 fn contents(path: &Path) -> Result<Option<Vec<u8>>> {
     match fs::read(path) {
         Ok(found) => Ok(Some(found)),
@@ -150,7 +147,7 @@ fn contents(path: &Path) -> Result<Option<Vec<u8>>> {
     }
 }
 
-/// Returns whether a file below `out` is missing, or differs from `file`.
+/// A file that is missing below `out` differs from `file` too.
 ///
 /// # Errors
 /// Fails if the file cannot be read.
@@ -169,7 +166,6 @@ pub fn differs(out: &Path, file: &OutputFile) -> Result<bool> {
     }
 }
 
-/// Returns the directories of a configuration: for example, `rtl_out/rough`, `testbench/rough` and `software/rough`.
 fn directories(out: &Path, name: &str) -> [PathBuf; 3] {
     ["rtl_out", "testbench", "software"].map(|top| out.join(top).join(name))
 }

@@ -10,7 +10,6 @@ use serde_json::Value;
 /// The number of characters around the text of a cell: two blanks and a bar.
 const FRAME: usize = 3;
 
-/// A column of a table.
 #[derive(Clone, Copy)]
 struct TerminalColumn<'a> {
     heading: &'a str,
@@ -22,8 +21,7 @@ struct TerminalColumn<'a> {
 }
 
 impl<'a> TerminalColumn<'a> {
-    /// Parses headings, which are separated by bars. For example, `device | points:2` is a column of words and a column of
-    /// numbers.
+    /// Parses headings, which are separated by bars: `device | points:2` is a column of words and a column of numbers.
     ///
     /// A heading with a colon belongs to a column of numbers. Any other column has words, which may be broken into lines. A
     /// digit after a colon or a semicolon states the order in which the column may be left out.
@@ -41,16 +39,16 @@ impl<'a> TerminalColumn<'a> {
     }
 }
 
-/// Prints rows under headings, no wider than the terminal. `headings` has the form `device | points: | clocks:2 | remark;1`. A
-/// colon marks a column of numbers, and a digit marks a column that the table may leave out if it is too wide. The column with
-/// the largest digit is left out first. If the table is still too wide, the cells of a row are printed below each other.
+/// Prints rows no wider than the terminal. `headings` has the form `device | points: | clocks:2 | remark;1`. A colon marks a
+/// column of numbers, and a digit marks a column that the table may leave out if it is too wide. The column with the largest
+/// digit is left out first. If the table is still too wide, the cells of a row are printed below each other.
 pub fn print(headings: &str, rows: impl IntoIterator<Item = Vec<String>>) {
     let rows: Vec<Vec<String>> = rows.into_iter().collect();
     print_line(&text(&TerminalColumn::all(headings), &rows, width()));
 }
 
-/// Returns the largest width of a line in characters: the value of the environment variable `COLUMNS`, or else the width of the
-/// terminal. Returns `None` without either; then a line may have any width. For example, `COLUMNS=80` gives 80.
+/// Returns the largest width of a line in characters: the value of the environment variable `COLUMNS`, or else the width of
+/// the terminal. Without either, a line may have any width.
 fn width() -> Option<usize> {
     let width = match std::env::var("COLUMNS").unwrap_or_default().parse() {
         Ok(width) => width,
@@ -90,8 +88,8 @@ fn text(columns: &[TerminalColumn<'_>], rows: &[Vec<String>], room: Option<usize
     }
 }
 
-/// Returns the widths of the columns `shown`, so that the table has at most `room` characters in a line. Numbers and words stay
-/// unbroken. Returns `None` if the table would be wider.
+/// Returns the widths of the columns `shown` in a table of at most `room` characters a line. Numbers and words stay unbroken.
+/// Returns `None` if the table would be wider.
 fn fit(
     columns: &[TerminalColumn<'_>],
     rows: &[Vec<String>],
@@ -163,8 +161,8 @@ fn drawn(
     table.to_string()
 }
 
-/// Returns the table as text without columns, for a narrow terminal. Each row becomes its first cell, and below it a line for
-/// each other cell with the heading. Lines are broken at `room` characters, or not at all if it is `None`.
+/// Lays out a table for a narrow terminal. Each row becomes its first cell, and below it a line for each other cell with the
+/// heading. Lines are broken at `room` characters, or not at all if it is `None`.
 fn stacked(columns: &[TerminalColumn<'_>], rows: &[Vec<String>], room: Option<usize>) -> String {
     let mut lines = Vec::new();
     for row in rows {
@@ -176,7 +174,7 @@ fn stacked(columns: &[TerminalColumn<'_>], rows: &[Vec<String>], room: Option<us
     lines.join("\n")
 }
 
-/// Returns a line, broken between words if it is wider than `room` characters. The second and later parts are indented.
+/// Breaks a line between words if it is wider than `room` characters. The second and later parts are indented.
 fn folded(line: &str, room: Option<usize>) -> String {
     let Some(room) = room else {
         return line.to_owned();
@@ -200,12 +198,11 @@ fn folded(line: &str, room: Option<usize>) -> String {
     text
 }
 
-/// Prints a JSON value to standard output, indented.
 pub fn print_json(value: &Value) {
     print_line(&format!("{value:#}"));
 }
 
-/// Prints rows to standard output as CSV, by RFC 4180.
+/// Prints CSV by RFC 4180.
 ///
 /// # Errors
 /// Fails if a row has more or fewer fields than the first row.
@@ -218,10 +215,9 @@ pub fn print_csv(rows: impl IntoIterator<Item = Vec<String>>) -> Result<()> {
     Ok(())
 }
 
-/// The first failure to write to standard output.
 static FAILURE: OnceLock<io::Error> = OnceLock::new();
 
-/// Prints a line to standard output. An error is kept for [`finish`]. If the reader, such as `head`, has closed the pipe, this
+/// Prints a line to standard output. An error is kept for [`finish`], but a pipe that its reader, such as `head`, has closed
 /// is no error.
 pub fn print_line(line: &str) {
     if let Err(error) = writeln!(io::stdout().lock(), "{line}")
@@ -237,7 +233,7 @@ macro_rules! say {
 }
 pub(crate) use say;
 
-/// Reports the first failure to write to standard output, after all was printed.
+/// Reports the first failure to write to standard output. The program calls this function after it has printed everything.
 ///
 /// # Errors
 /// Fails if a line could not be written, for example because the disk is full.
@@ -259,7 +255,6 @@ mod tests {
         vec![row.map(str::to_owned).to_vec()]
     }
 
-    /// Returns the width of the widest line in characters.
     fn widest(text: &str) -> usize {
         text.lines().map(length).max().expect("a line")
     }

@@ -1,16 +1,14 @@
 //! Build script: sets `GLINT_SOURCES` to a digest of the source files that an exhaustive check depends on.
 //!
-//! An exhaustive check that was interrupted, or divided among machines, must continue with the same sources. This digest is
-//! therefore a part of `Core::fingerprint`. The file of a check has the fingerprint, and `glint cosim --exhaustive --resume`
-//! and `glint merge` compare it.
+//! `Core::fingerprint` includes this digest, so that an interrupted or divided check continues only with the same sources.
+//! `glint cosim --exhaustive --resume` and `glint merge` compare it.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use sha2::{Digest, Sha256};
 
-/// The sources whose change can change the result of an exhaustive check: formats, configurations, golden models, plans,
-/// descriptions, the simulator, and the check itself.
+/// Everything whose change can alter the result of an exhaustive check, from formats to the check itself.
 const SOURCES: [&str; 11] = [
     "../approximate",
     "../base",

@@ -20,17 +20,14 @@ use glint_config::{Config, Key};
 use glint_golden::{Contract, Sweep};
 use glint_rtl::netlist::Design;
 
-/// The number of results that the default test of a configuration checks, in `glint` without a command and in `glint cosim`. An
-/// option of the command can change this number.
+/// The number of results that the default test of a configuration checks. An option of `glint cosim` changes it.
 pub const TEST_POINTS: u64 = 100_000;
 
-/// The seed of the random inputs of the default test.
 pub const TEST_SEED: u64 = 1;
 
-/// The number of random computations at the beginning of the bench that is emitted with a sequential core. These computations use
-/// everything that the handshake allows, such as writes while the core is busy. For a device with lines, random lines are
-/// computed until they have this number times [`BENCH_LINE`] results. The bench of a pipeline has [`PIPELINE_POINTS`] points
-/// instead.
+/// The number of random computations at the beginning of the emitted bench of a sequential core. They use everything that the
+/// handshake allows, such as writes while the core is busy. A device with lines computes random lines until they have this
+/// number times [`BENCH_LINE`] results.
 const BENCH_POINTS: u64 = 64;
 
 /// The largest number of results of a line among these computations.
@@ -44,11 +41,10 @@ pub const BENCH_SEED: u64 = 1;
 
 /// A configuration of a device, with the netlist and the accuracy contract that are built from it.
 pub struct Core {
-    /// The configuration, with its device and the parts that the device made for it.
     pub opened: OpenedConfig,
-    /// The netlist that the device's description builds from the configuration.
+    /// The netlist, as the device's description builds it.
     pub design: Design,
-    /// The accuracy contract of the device for this configuration: operands, formula and error bound.
+    /// Operands, formula and error bound.
     pub contract: Box<dyn Contract>,
 }
 
@@ -70,7 +66,7 @@ impl Core {
         Self::build(device.open(config)?)
     }
 
-    /// Builds the netlist of an opened configuration and checks it, as [`Core::new`] does.
+    /// Does the same as [`Core::new`] for a configuration that is already open.
     ///
     /// # Errors
     /// Fails as [`Core::new`] does.
@@ -79,8 +75,7 @@ impl Core {
         Self::of_design(opened, design)
     }
 
-    /// Builds the core of a configuration that does not set a clock frequency. [`OpenedConfig::design_with_free_clock`] chooses
-    /// the frequency.
+    /// Builds the core of a configuration without a clock frequency; [`OpenedConfig::design_with_free_clock`] chooses one.
     ///
     /// # Errors
     /// Fails if [`Core::new`] fails with that clock, too.
@@ -89,10 +84,6 @@ impl Core {
         Self::of_design(opened, design)
     }
 
-    /// Builds the core of an opened configuration and its netlist.
-    ///
-    /// # Errors
-    /// Fails if `design` is an error, and as [`Core::new`] does.
     fn of_design(opened: OpenedConfig, design: Result<Design, DesignError>) -> Result<Self> {
         let OpenedConfig { device, config, .. } = &opened;
         let mut design = match design {
@@ -125,33 +116,30 @@ impl Core {
         Ok(Self { opened, design, contract })
     }
 
-    /// Returns the device that the configuration names.
     pub fn device(&self) -> &Device {
         &self.opened.device
     }
 
-    /// Returns the configuration: a value for each key of the device.
     pub fn config(&self) -> &Config {
         &self.opened.config
     }
 
-    /// Returns a digest that identifies this configuration and the version of Glint: SHA-256 of the version and the TOML text, in
-    /// hexadecimal.
+    /// Returns a digest that tells two configurations, or two versions of Glint, apart: SHA-256 of the version and the TOML
+    /// text, in hexadecimal.
     pub fn digest(&self) -> String {
         let text = self.config().to_toml(&(self.device().schema)());
         package::digest(format!("{}\n{text}", env!("CARGO_PKG_VERSION")).as_bytes())
     }
 
-    /// Returns a digest that identifies the contract in a record of a proof: SHA-256 in hexadecimal. The digest covers the name
-    /// of the device, and those keys of this device alone that apply and are not at their defaults. Keys that all devices share
-    /// do not change the digest. A key that is added to the device later does not change the digest while it is at its default.
+    /// Returns a digest that identifies the contract in a record of a proof: SHA-256 in hexadecimal. The digest covers the
+    /// name of the device, and its own keys that apply and are not at their defaults. A record therefore stays valid if keys
+    /// that all devices share change, or if the device later gets another key.
     pub fn contract_digest(&self) -> String {
         self.digest_of((self.device().schema)().keys.iter())
     }
 
-    /// Returns the evidence for the contract's bound. `proofs` is the directory of records; a device whose bound is proved in the
-    /// catalogue needs no record. Without a record that proves the bound, the evidence is [`Backing::Author`], the statement of
-    /// the device's author.
+    /// Returns the evidence for the contract's bound, from the records in the directory `proofs`. A device whose bound is
+    /// proved in the catalogue needs no record.
     ///
     /// # Errors
     /// Fails if a record cannot be read, or does not fit the contract.
@@ -162,9 +150,9 @@ impl Core {
         Backing::of_records(proofs, &self.contract_digest(), self.contract.as_ref())
     }
 
-    /// Returns a digest that identifies this core, whatever its name: SHA-256 in hexadecimal. The digest covers the same keys as
-    /// [`Core::contract_digest`], and the keys that all devices share, such as the architecture. Keys of the tables `interface`
-    /// and `package` do not change the digest, because these keys concern only wrappers and packages around the core.
+    /// Returns a digest that identifies this core, whatever its name: SHA-256 in hexadecimal. The digest covers the keys of
+    /// [`Core::contract_digest`] and the shared keys, such as the architecture. It leaves out the tables `interface` and
+    /// `package`, which concern only wrappers and packages around the core.
     pub fn core_digest(&self) -> String {
         let schema = (self.device().schema)();
         self.digest_of(schema.all_keys().filter(|key| {
@@ -185,9 +173,9 @@ impl Core {
         package::digest(text.as_bytes())
     }
 
-    /// Returns a digest that identifies an exhaustive check of this configuration: SHA-256 in hexadecimal. The digest covers the
-    /// configuration, the sweep, the sources of the code that takes part, and the errors at some operand combinations. The errors
-    /// also reveal a changed golden model in another crate. The digest is the same on every machine.
+    /// Returns a digest that an exhaustive check must have to be resumed or merged: SHA-256 in hexadecimal. The digest covers
+    /// the configuration, the sweep, the sources of the code that takes part, and the errors at some operand combinations. The
+    /// errors reveal a changed golden model in another crate. The digest is the same on every machine.
     pub fn fingerprint(&self, sweep: &Sweep) -> String {
         let contract = self.contract.as_ref();
         let places = [Places::of_sweep(contract, sweep.clone()), Places::of_colours(contract)];
@@ -209,45 +197,44 @@ impl Core {
         self.lockstep_of(&self.design, seed)
     }
 
-    /// Returns a co-simulation of the golden model with another netlist that has the same ports and registers, for example a
-    /// mutant.
+    /// Does the same as [`Core::lockstep`] with another netlist that has the same ports and registers, for example a mutant.
     ///
     /// # Errors
-    /// Fails if golden model, design and contract do not have the same signals, operands and outputs.
+    /// Fails as [`Core::lockstep`] does.
     pub fn lockstep_of<'a>(&'a self, design: &'a Design, seed: u64) -> Result<Lockstep<'a>> {
         let model = self.opened.golden();
         Lockstep::new(design, model, self.contract.as_ref(), seed)
     }
 
     /// Returns the exhaustive check of this core. The check tests the error bound and, if the operands have at most 26 bits in
-    /// total, compares model and hardware clock by clock for every combination of operands.
+    /// total, compares model and hardware clock by clock.
     ///
     /// # Errors
-    /// Fails if golden model, design and contract do not have the same signals, operands and outputs.
+    /// Fails as [`Core::lockstep`] does.
     pub fn job(&self) -> Result<Job<'_>> {
         self.job_of(self.contract.sweep())
     }
 
-    /// Returns the exhaustive check of this core for the operand values in `sweep`, instead of the contract's own sweep.
+    /// Returns the exhaustive check for the operand values in `sweep`, in place of the contract's own sweep.
     ///
     /// # Errors
-    /// Fails if golden model, design and contract do not have the same signals, operands and outputs.
+    /// Fails as [`Core::lockstep`] does.
     pub fn job_of(&self, sweep: Sweep) -> Result<Job<'_>> {
         Ok(Job::of_sweep(self.contract.as_ref(), sweep).with(self.clocks()?))
     }
 
-    /// Returns the check that compares golden model and simulated hardware clock by clock for every combination of operands. If
-    /// the operands have more than 26 bits in total, the check compares nothing.
+    /// Returns the clock-by-clock comparison of model and hardware alone. It compares nothing if the operands have more than
+    /// 26 bits.
     ///
     /// # Errors
-    /// Fails if golden model, design and contract do not have the same signals, operands and outputs.
+    /// Fails as [`Core::lockstep`] does.
     pub fn clocks(&self) -> Result<Clocks<'_>> {
         let model = self.opened.golden();
         Clocks::new(&self.design, model, self.contract.as_ref())
     }
 
-    /// Returns the numbers of clocks between the events of the handshake, such as `start` and `valid`. [`trial::timing`]
-    /// measures them. A number that depends on the operands is `None`.
+    /// Measures the numbers of clocks between the events of the handshake, such as `start` and `valid`. A number that depends
+    /// on the operands is `None`.
     ///
     /// # Errors
     /// Fails if a simulated computation does not finish within 65 536 clocks, or never raises `valid`.
@@ -255,25 +242,25 @@ impl Core {
         trial::timing(&self.design, self.contract.as_ref())
     }
 
-    /// Returns a worked example: one computation with the values of all operands and outputs.
+    /// Returns one computation with the values of all operands and outputs, for pages that show an example.
     ///
     /// # Errors
-    /// Fails if a simulated computation does not finish within 65 536 clocks, or never raises `valid`.
+    /// Fails as [`Core::timing`] does.
     pub fn example(&self) -> Result<WorkedExample> {
         trial::example(&self.design, self.contract.as_ref())
     }
 
     /// Returns the clock numbers of a line (the points that the device computes after one `start`) as linear functions of its
-    /// length. Returns `None` if the device computes single points, or if the numbers are no linear functions.
+    /// length. Returns `None` for a device of single points, or if the numbers are no linear functions.
     ///
     /// # Errors
-    /// Fails if a simulated computation does not finish within 65 536 clocks, or never raises `valid`.
+    /// Fails as [`Core::timing`] does.
     pub fn line(&self) -> Result<Option<LineClocks>> {
         trial::line(&self.design, self.contract.as_ref())
     }
 
-    /// Returns the vectors of a test bench: the inputs and the expected outputs of every clock, for random computations with
-    /// `points` results in all. The golden model and the simulated netlist agree on the outputs.
+    /// Returns the inputs and the expected outputs of every clock of a test bench, for random computations with `points`
+    /// results in all. The golden model and the simulated netlist agree on the outputs.
     ///
     /// # Errors
     /// Fails as [`Core::lockstep`] does, or if golden model and simulation differ.
@@ -281,8 +268,8 @@ impl Core {
         self.lockstep(seed)?.record(points, &[])
     }
 
-    /// Returns the vectors of the test bench that is emitted with the core. Random computations use all of the handshake. The
-    /// module `directed` then chooses computations that detect faults in the datapath and its ROMs.
+    /// Returns the vectors of the emitted test bench. Its random computations use all of the handshake. The computations after
+    /// them, which the module `directed` chooses, detect faults in the datapath and its ROMs.
     ///
     /// # Errors
     /// Fails as [`Core::vectors`] does, or if a computation does not end.
@@ -290,9 +277,8 @@ impl Core {
         self.shipped_vectors_of(&directed::ComputationCache::default())
     }
 
-    /// Returns the same as [`Core::shipped_vectors`], but avoids a repeated search. If the cache `known` has the computations
-    /// that were chosen for this design, the function takes them from the cache. Otherwise the function searches for the
-    /// computations and adds them to the cache.
+    /// Does the same as [`Core::shipped_vectors`], but takes the chosen computations from the cache `known` if it has them.
+    /// The search for these computations takes most of the time.
     ///
     /// # Errors
     /// Fails as [`Core::vectors`] does.
@@ -312,8 +298,8 @@ impl Core {
         Ok(Vectors { word_stride: directed.word_stride, ..vectors? })
     }
 
-    /// Returns a C program that recomputes the results of every combination of operands, with the C model that it includes and
-    /// the contents of the ROMs.
+    /// Returns a C program that recomputes the results of every combination of operands. It includes the C model and the
+    /// contents of the ROMs.
     ///
     /// # Errors
     /// Fails if the contract is neither a formula of one operand nor a list of formulas with conditions. Fails if the operands of
@@ -329,18 +315,14 @@ impl Core {
         package::emit(&self.design, &inputs)
     }
 
-    /// Returns the sequential design from which the core was made, if the core is a pipeline and `is_wanted` is true; otherwise
-    /// `None`.
-    ///
-    /// # Errors
-    /// Fails if the sequential design cannot be built.
+    /// Returns the sequential design from which the core was made, if the core is a pipeline and `is_wanted` is true.
     fn microprogram(&self, is_wanted: bool) -> Result<Option<Design>> {
         let wanted = is_wanted && self.design.pipeline.is_some();
         Ok(wanted.then(|| self.opened.sequential()).transpose()?)
     }
 
-    /// Returns every emitted file of the configuration. `config` is the path of the configuration file, which the heads of the
-    /// files print in a command. Without `vectors` there are no test benches and no formal proofs.
+    /// Returns every emitted file. The heads of the files print `config`, the path of the configuration file, in a command.
+    /// Without `vectors` there are no test benches and no formal proofs.
     ///
     /// # Errors
     /// Fails if golden model and simulation differ, if a computation does not end, or if a file or wrapper that the
@@ -375,8 +357,8 @@ impl Core {
         package::instances(&self.design, &inputs)
     }
 
-    /// Returns only the files that synthesis needs: the Verilog of the core and the contents of its ROMs. If a file has a
-    /// special form for an FPGA family, the list has the portable form and the special form.
+    /// Returns only the Verilog of the core and the contents of its ROMs, which synthesis needs. If a file has a special form
+    /// for an FPGA family, the list has the portable form and the special form.
     ///
     /// # Errors
     /// Fails if the design cannot be written as Verilog.
@@ -391,7 +373,7 @@ impl Core {
     /// Returns the files of [`Core::core_files`] in the portable form, as pairs of a file name and contents.
     ///
     /// # Errors
-    /// Fails if the design cannot be written as Verilog.
+    /// Fails as [`Core::core_files`] does.
     pub fn verilog(&self) -> Result<Vec<(String, String)>> {
         self.verilog_for("")
     }
@@ -400,7 +382,7 @@ impl Core {
     /// with a special form for this family replaces the portable one.
     ///
     /// # Errors
-    /// Fails if the design cannot be written as Verilog.
+    /// Fails as [`Core::core_files`] does.
     pub fn verilog_for(&self, target: &str) -> Result<Vec<(String, String)>> {
         Ok(self.core_files()?.sources_for(FileKind::CORE_SOURCES, target))
     }

@@ -1,27 +1,23 @@
-//! Defines the facts about a core that come from simulation or from its contract, and not from its netlist. The facts are
-//! worked examples, computations with their results, the clock numbers of a line, the parts of the contract that a program can
-//! use, and the vectors of a test bench. Manifests and pages print them.
+//! Defines the facts about a core that come from simulation or from its contract, and not from its netlist. Manifests and
+//! pages print them.
 
 use glint_formula::Comparison;
 use glint_golden::Contract;
 
-/// One computation with the values of all operands and outputs.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct WorkedExample {
     /// The operands, in the order of the operand ports.
     pub operands: Vec<Quantity>,
-    /// The outputs, in the order of the result ports. If the computation has several results, the field has the outputs of the
-    /// first result.
+    /// The outputs, in the order of the result ports: of the first result, if the computation has several.
     pub outputs: Vec<Quantity>,
-    /// The outputs of every result of the computation, the first result first.
+    /// The outputs of every result, the first result first.
     pub results: Vec<Vec<Quantity>>,
 }
 
-/// The clock numbers of the handshake for a device that computes a line: several points after one `start`. Each number is a
-/// function of the line's length. The clock that takes `start` is number 0.
+/// The clock numbers of the handshake for a device that computes a line, as functions of the line's length. The clock that
+/// takes `start` is number 0.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LineClocks {
-    /// The name of the operand that gives the length of the line.
     pub length: String,
     /// The number of the last clock in which `valid` is high.
     pub last_valid: Linear,
@@ -34,20 +30,18 @@ pub struct LineClocks {
 /// A linear function of the length of a line: `constant + each · length`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Linear {
-    /// The value of the function for the length 0, in clocks.
+    /// The value for the length 0, in clocks.
     pub constant: i64,
-    /// The increase of the value for each unit of the length, in clocks.
+    /// The increase for each unit of the length, in clocks.
     pub each: i64,
 }
 
 impl Linear {
-    /// Returns the value of the function for a length, in clocks. For example, `4 + length` gives 24 for the length 20.
     pub fn at(self, length: i64) -> i64 {
         self.constant + self.each * length
     }
 
-    /// Returns the function as text, in which `length` is the name of the operand. For example, `4 + length`, `4 + 2 · length`,
-    /// or `4` if the length does not matter.
+    /// Returns the function as text. For example, `4 + length`, `4 + 2 · length`, or `4` if the length does not matter.
     pub fn text(self, length: &str) -> String {
         match self.each {
             0 => self.constant.to_string(),
@@ -57,22 +51,21 @@ impl Linear {
     }
 }
 
-/// The contract of a device's results, in a form that an emitted program can use. For example, `rough` promises for `exponent`
-/// 1 to 1000 that each output is within 0.97 units of the formula.
+/// The contract of a device's results, in a form that an emitted program can use.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ContractFacts {
     /// The operands, each with the smallest and the largest raw value for which the contract holds.
     pub domain: Vec<(String, (i64, i64))>,
-    /// The result outputs. Each has the name of the colour operand that a highlight multiplies by f, or `None` for another
-    /// device.
+    /// The result outputs. Each has the name of the colour operand that a highlight multiplies by f, if the device is a
+    /// highlight.
     pub outputs: Vec<(String, Option<String>)>,
-    /// The operand that gives the number of results beyond the first; `None` if a computation has one result.
+    /// The operand that gives the number of results beyond the first, if a computation can have several.
     pub length: Option<String>,
     /// Python expressions of the correct values: the values of `f` for a highlight, or one value for each output of another
-    /// device. Empty if the contract states no bound, because results could not be compared with anything.
+    /// device. Empty if the contract states no bound.
     pub f: Vec<String>,
-    /// For each output, the comparison under which the error is promised, or `None` for an output whose error is promised for
-    /// the whole domain. The list is `None` if the device does not state its promises as comparisons.
+    /// For each output, the comparison under which the error is promised, or `None` for the whole domain. The list is `None`
+    /// if the device does not state its promises as comparisons.
     pub conditions: Option<Vec<Option<Comparison>>>,
     /// Whether an output may differ from the formula by a multiple of its range, as [`Contract::wraps`] says.
     pub wraps: bool,
@@ -81,7 +74,6 @@ pub struct ContractFacts {
 }
 
 impl ContractFacts {
-    /// Extracts the parts of a contract that a program can use: domain, outputs, formulas and bound.
     pub fn new(contract: &dyn Contract) -> Self {
         let mut domain = Vec::new();
         for operand in contract.operands() {
@@ -111,8 +103,8 @@ impl ContractFacts {
     }
 }
 
-/// A computation with its results and their clocks, as a user of the ports observes it. The clock that takes `start` is number
-/// 0. For example, `rough` shows its result in clock 9, and `done` in clock 10.
+/// A computation with its results, as a user of the ports observes it. The clock that takes `start` is number 0. For example,
+/// `rough` shows its result in clock 9, and `done` in clock 10.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Computation {
     /// The raw operands, in the order of [`ContractFacts::domain`].
@@ -124,7 +116,7 @@ pub struct Computation {
 }
 
 impl Computation {
-    /// Returns whether the last result is shown in the clock of `done`. Returns false for a computation without results.
+    /// Returns whether the last result is shown in the clock of `done`.
     pub fn ends_with_result(&self) -> bool {
         let last = self.results.last();
         last.is_some_and(|result| result.clock == self.done)
@@ -143,7 +135,6 @@ pub struct TimedResult {
 /// The value of a port. For example, `cos_gamma` with 20 fraction bits has the raw integer 1044480 and the value 0.99609375.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Quantity {
-    /// The name of the port.
     pub name: String,
     /// The integer that the bits of the port denote.
     pub raw: i128,
@@ -151,21 +142,20 @@ pub struct Quantity {
     pub value: f64,
 }
 
-/// The vectors of a test bench: inputs and expected outputs of every clock.
+/// The inputs and expected outputs of every clock of a test bench.
 ///
-/// The bench applies the inputs of a clock on the falling edge that begins the clock. The bench compares the outputs just before
-/// the rising edge in the middle of the clock.
+/// The bench applies the inputs of a clock on the falling edge that begins the clock. It compares the outputs just before the
+/// rising edge in the middle of the clock.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Vectors {
     /// For each clock, the bit patterns of all input ports except `clk`, in the order of the ports.
     pub inputs: Vec<Vec<u64>>,
     /// For each clock, the expected bit patterns of all output ports, in the order of the ports.
     pub expected: Vec<Vec<u64>>,
-    /// The index of the first clock in which the bench compares results and status. The bench compares the handshake outputs from
-    /// the first clock after a clock with reset.
+    /// The index of the first clock in which the bench compares results and status. It compares the handshake outputs from the
+    /// first clock after a clock with reset.
     pub known_from: usize,
-    /// The distance between two ROM words with computations that detect faults, in words. For example, 1 means that every word
-    /// has such computations, and 2 that every second word has such computations. The distance is 0 if the bench has no
-    /// computations for ROM words.
+    /// The distance between two ROM words with computations that detect faults. It is 2 if every second word has some, and 0
+    /// if the bench has no computations for ROM words.
     pub word_stride: usize,
 }

@@ -23,37 +23,36 @@ pub type PartsResult = Result<Arc<dyn DeviceParts>, ConfigError>;
 
 /// A device that Glint can generate, simulate and check.
 ///
-/// Callers must call the functions only with configurations that the schema accepts. The file `examples/fresnel` is an
-/// example of a complete device outside Glint.
+/// Callers must call the functions only with configurations that the schema accepts. `examples/fresnel` is a complete device
+/// outside Glint.
 #[derive(Clone, Copy)]
 pub struct Device {
-    /// The name of the device, which the key `device` of a configuration gives. The name must equal [`Schema::device`].
+    /// The value of the key `device`. It must equal [`Schema::device`].
     pub name: &'static str,
-    /// A line about the device, which `glint list` prints.
+    /// A description of one line, which `glint list` prints.
     pub summary: &'static str,
-    /// Returns the device's own configuration keys, with their defaults.
     pub schema: fn() -> Schema,
-    /// Returns the description, golden model and contract for a configuration. A device that has nothing to find first returns
-    /// [`KeyParts`]. The function fails if the device cannot have the values of the keys together; an error that needs no long
-    /// search belongs into the check of the schema.
+    /// Returns the description, golden model and contract for a configuration; [`KeyParts`] if nothing must be found first.
+    /// The function fails if the device cannot have the values of the keys together. An error that needs no long search
+    /// belongs into the check of the schema.
     pub parts: fn(&Config) -> PartsResult,
-    /// Whether the contract's bound is proved for every configuration, by a proof next to the golden model. Otherwise the bound
-    /// is only the statement of the author.
+    /// Whether a proof next to the golden model proves the contract's bound for every configuration. Otherwise the bound is
+    /// only the statement of the author.
     ///
     /// A device that replaces the contract must set this field too: `Device { parts, proved: false, ..own }`.
     pub proved: bool,
 }
 
 impl Device {
-    /// Returns the default configuration of the device. Its module name is [`Schema::module`].
+    /// The module name is [`Schema::module`].
     pub fn defaults(&self) -> Config {
         let schema = (self.schema)();
         Config::defaults(&schema, &schema.module())
     }
 }
 
-/// Makes a list of devices from the modules with their keys, description and golden model, each with its name and summary. The
-/// functions of these modules read all that they need from the keys.
+/// Makes devices from the modules with their keys, description and golden model. The functions of these modules read all that
+/// they need from the keys.
 macro_rules! of_catalogue {
     ($($module:ident: $name:literal, $summary:literal;)*) => {
         vec![$(Device {
@@ -72,7 +71,6 @@ macro_rules! of_catalogue {
     };
 }
 
-/// The device `function`.
 const FUNCTION: Device = Device {
     name: "function",
     summary: "any formula of one operand, by piecewise polynomials with a proved error",
@@ -81,7 +79,6 @@ const FUNCTION: Device = Device {
     proved: true,
 };
 
-/// The device `expression`.
 const EXPRESSION: Device = Device {
     name: "expression",
     summary: "formulas of up to eight operands, by integer operations with a proved error",
@@ -90,7 +87,6 @@ const EXPRESSION: Device = Device {
     proved: true,
 };
 
-/// The device `shading`.
 const SHADING: Device = Device {
     name: "shading",
     summary: "ambient + diffuse*N.L + specular*highlight, from normals of any length",
@@ -99,18 +95,16 @@ const SHADING: Device = Device {
     proved: true,
 };
 
-/// The devices that a command line offers.
 #[derive(Clone)]
 pub struct Registry(Vec<Device>);
 
 impl Registry {
-    /// Returns a registry without devices, for a command line with devices of your own.
+    /// Begins a registry for a command line with devices of your own.
     pub fn empty() -> Self {
         Self(Vec::new())
     }
 
-    /// Returns a registry with the highlight devices, and with the device `function`, which computes a formula of one operand.
-    /// This repository has records of their checks.
+    /// Returns the devices whose checks have records in this repository: the highlight devices, and the device `function`.
     pub fn catalogue() -> Self {
         Self(of_catalogue![
             quad_cosine: "quad-cosine", "cos^k(sqrt(n/k)*delta) along a scan line, k = 1, 2, 4, 16 by n (seed 000)";
@@ -127,8 +121,7 @@ impl Registry {
         .with(FUNCTION)
     }
 
-    /// Returns a registry with all devices of Glint: the catalogue, and the devices without records in this repository, for
-    /// example `normaliser` and `shading`.
+    /// Returns all devices of Glint: the catalogue, and the devices without records in this repository, such as `shading`.
     pub fn shipped() -> Self {
         let mut all = Self::catalogue();
         all.0.extend(of_catalogue![
@@ -138,25 +131,22 @@ impl Registry {
         all.with(EXPRESSION).with(SHADING)
     }
 
-    /// Adds a device to the registry.
     #[must_use]
     pub fn with(mut self, device: Device) -> Self {
         self.0.push(device);
         self
     }
 
-    /// Returns all devices, in the order in which they were added.
+    /// Returns the devices in the order in which they were added.
     pub fn devices(&self) -> &[Device] {
         &self.0
     }
 
-    /// Returns the device with this name, or `None`.
     pub fn device(&self, name: &str) -> Option<&Device> {
         self.0.iter().find(|device| device.name == name)
     }
 
-    /// Reads a configuration file and opens the configuration. Also returns the location of each key in the file, for errors that
-    /// are found later.
+    /// Also returns the location of each key in the file, for errors that are found later.
     ///
     /// # Errors
     /// Fails as [`config::read`] does, or if the device cannot have the configuration ([`Device::open`]).
@@ -164,7 +154,7 @@ impl Registry {
         self.opened(config::read_located(path, &self.schemas())?)
     }
 
-    /// Parses the text of a configuration file and opens the configuration, as [`Registry::read`] does. Messages show `file_name`.
+    /// Does the same as [`Registry::read`] with the text of a configuration file, whose name in messages is `file_name`.
     ///
     /// # Errors
     /// Fails as [`config::parse`] does, or if the device cannot have the configuration ([`Device::open`]).
@@ -187,7 +177,6 @@ impl Registry {
         }
     }
 
-    /// Returns the configuration keys of all devices.
     pub fn schemas(&self) -> Vec<Schema> {
         self.0.iter().map(|device| (device.schema)()).collect()
     }

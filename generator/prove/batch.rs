@@ -1,7 +1,6 @@
 //! Computes many points (sets of operands) at once with the emitted Verilog of a core, under Icarus Verilog or Verilator.
 //!
-//! The bench reads the points from a file and writes the results to another. The module only computes: it compares the results
-//! with nothing.
+//! The bench reads the points from a file and writes the results to another. The module compares the results with nothing.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -16,12 +15,11 @@ use glint_golden::Contract;
 use glint_rtl::netlist::Design;
 use glint_tools::{BuiltBench, VerilogSimulator, Waveform};
 
-/// The limit of a computation in clocks. The bench fails if a computation takes more.
+/// The bench fails if a computation takes more clocks.
 const LIMIT: u32 = 1 << 16;
 
-/// An [`Engine`] that runs the emitted Verilog in an outside simulator, with a test bench that reads points from a file. Each
-/// line of the file has the operands of a point in hexadecimal, as bit patterns. For example, the raw values 5 and −1 in 8 bits
-/// are the line `5 ff`.
+/// An [`Engine`] that runs the emitted Verilog in an outside simulator, with a bench that reads points from a file. A line has
+/// the operands of a point as hexadecimal bit patterns: the raw values 5 and −1 in 8 bits are `5 ff`.
 pub struct Verilog {
     bench: BuiltBench,
     limit: Duration,
@@ -33,7 +31,7 @@ pub struct Verilog {
 
 impl Verilog {
     /// Builds the test bench from the emitted `files`, pairs of a file name and contents. `limit` is the time limit of the
-    /// build, and also of the simulation of each list of points.
+    /// build, and of the simulation of each list of points.
     ///
     /// # Errors
     /// Fails if [`BuiltBench::build`] fails, if the design has an operand that the contract lacks, or if the contract has an

@@ -36,7 +36,6 @@ pub enum Target {
     Osu018,
 }
 
-/// All targets for which Glint can measure a core.
 pub const TARGETS: [Target; 8] = [
     Target::Ice40,
     Target::Ecp5,
@@ -48,12 +47,12 @@ pub const TARGETS: [Target; 8] = [
     Target::Osu018,
 ];
 
-/// The targets that a record of `glint synth` has, and for which a sequential core is measured unless the user names others.
+/// The targets of a record of `glint synth`. A sequential core is measured for them unless the user names others.
 pub const RECORDED_TARGETS: [Target; 4] =
     [Target::Ice40, Target::Ecp5, Target::Xilinx7, Target::Osu018];
 
 impl Target {
-    /// Returns the name of the target in options and JSON. For example, `ice40`.
+    /// The name in options and JSON. For example, `ice40`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Ice40 => "ice40",
@@ -67,17 +66,17 @@ impl Target {
         }
     }
 
-    /// Returns the name of the target in tables and messages. For example, `0.18 µm cells`.
+    /// The name in tables and messages. For example, `0.18 µm cells`.
     pub fn title(self) -> &'static str {
         self.family().map_or("0.18 µm cells", |family| family.title)
     }
 
-    /// Returns whether the target is an FPGA for which open tools time the whole of every path, so that a core has a frequency.
+    /// Returns whether open tools time the whole of every path, so that a core has a frequency.
     pub fn is_timed_fpga(self) -> bool {
         matches!(self, Self::Ice40 | Self::Ecp5 | Self::Nexus | Self::Gatemate)
     }
 
-    /// Returns the data of the FPGA family, or `None` if the target is a standard-cell library.
+    /// Returns `None` for a standard-cell library.
     pub fn family(self) -> Option<&'static Family> {
         FAMILIES.iter().find(|family| family.name() == self.name())
     }
@@ -89,48 +88,40 @@ impl fmt::Display for Target {
     }
 }
 
-/// The measured area and frequency of a core on a target.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Figures {
-    /// The target for which the core was measured.
     pub target: Target,
-    /// The name of the chip or of the cell library.
+    /// The chip or the cell library.
     pub device: String,
-    /// The area of the core, without the registers that the measurement adds around it.
+    /// Excludes the registers that the measurement adds around the core.
     pub area: Area,
-    /// The frequency of the core between the registers that the measurement adds around it. The frequency is `None` for a
-    /// target that is not timed, and for a core that does not fit on the chip.
+    /// The frequency between the registers that the measurement adds around the core. It is `None` for a target that is not
+    /// timed, and for a core that does not fit on the chip.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub frequency: Option<Frequency>,
     /// The longest path between registers in the run with the median frequency, with the names of the description.
     #[serde(skip_serializing_if = "Vec::is_empty", default)]
     pub critical_path: Vec<PathPoint>,
-    /// The reason why no frequency was measured; `None` if a frequency was measured.
+    /// The reason why no frequency was measured.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub untimed: Option<String>,
-    /// The tools that measured, with their versions.
     pub tools: Vec<String>,
 }
 
-/// The area of a core. A resource that a target does not have is `None`.
+/// A resource that a target does not have is `None`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Area {
-    /// The number of look-up tables that the core takes; `None` for standard cells.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub luts: Option<u64>,
-    /// The number of DSP blocks that the core takes; `None` for standard cells.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub dsps: Option<u64>,
-    /// The number of block RAMs that the core takes; `None` for standard cells.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub block_rams: Option<u64>,
-    /// The number of flip-flops that the core takes.
     pub flip_flops: u64,
-    /// The area of the standard cells as a multiple of a two-input NAND gate's area; `None` for an FPGA.
+    /// The area of the standard cells as a multiple of a two-input NAND gate's area.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub gates: Option<f64>,
-    /// The area of the standard cells in µm²; `None` for an FPGA.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub square_micrometres: Option<f64>,
 }
@@ -138,27 +129,24 @@ pub struct Area {
 /// The frequencies in MHz that several runs of placement and routing reached.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Frequency {
-    /// The frequency of the slowest run.
     pub lowest: f64,
     /// The frequency of the run in the middle. For an even number of runs, it is the slower of the two.
     pub median: f64,
-    /// The frequency of the fastest run.
     pub highest: f64,
-    /// The number of runs of placement and routing.
     pub runs: u32,
 }
 
-/// A net on the longest path, and the time at which its value becomes stable.
+/// A net on the longest path.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PathPoint {
-    /// The net, as the description names it. The name of a ROM has `ROM` before it. For example, `ROM coefficient`.
+    /// The name in the description, with `ROM` before a ROM's. For example, `ROM coefficient`.
     pub name: String,
     /// The time in nanoseconds from the clock edge until the value of the net is stable.
     pub ns: f64,
 }
 
 impl Figures {
-    /// Makes a measurement with an area, and without a frequency. `device` is the name of the chip or of the cell library.
+    /// `device` is the name of the chip or of the cell library.
     pub fn new(target: Target, device: &str, area: Area) -> Self {
         Self {
             target,
@@ -171,16 +159,14 @@ impl Figures {
         }
     }
 
-    /// Returns the longest path in words. For example, `first 0.4 → second 3.1 → third 7.9 ns`. Call this function only if the
-    /// path has a point.
+    /// Returns a text such as `first 0.4 → second 3.1 → third 7.9 ns`. The path must have a point.
     pub fn path_in_words(&self) -> String {
         let steps = self.critical_path.iter().map(|step| format!("{} {:.1}", step.name, step.ns));
         format!("{} ns", Vec::from_iter(steps).join(" → "))
     }
 
-    /// Returns the measurement with the results of several runs, each a frequency in MHz and the longest path of the run.
-    /// The critical path comes from the run with the median frequency. For example, the median of runs with 100, 110, 120
-    /// and 130 MHz is 110 MHz. Without runs, the measurement stays as it is.
+    /// Adds the results of several runs, each a frequency in MHz and the longest path. The critical path comes from the run
+    /// with the median frequency. For example, the median of runs with 100, 110, 120 and 130 MHz is 110 MHz.
     pub fn with_runs(mut self, mut runs: Vec<(f64, Vec<PathPoint>)>) -> Self {
         runs.sort_by(|one, other| one.0.total_cmp(&other.0));
         let (Some(first), Some(last)) = (runs.first(), runs.last()) else {
@@ -197,8 +183,7 @@ impl Figures {
 }
 
 impl Area {
-    /// Returns the numbers of look-up tables, DSP blocks, block RAMs and flip-flops, or `None` for an area in standard
-    /// cells.
+    /// Returns `None` for an area in standard cells.
     pub fn usage(&self) -> Option<Usage> {
         let flip_flops = self.flip_flops;
         let (luts, dsps, block_rams) = (self.luts?, self.dsps?, self.block_rams?);
@@ -218,7 +203,7 @@ impl From<Usage> for Area {
     }
 }
 
-/// Rounds a measured number to two decimals, since the tools are not more exact. For example, 3.14159 is 3.14.
+/// Rounds to two decimals, since the tools are not more exact.
 pub fn rounded(number: f64) -> f64 {
     (number * 100.0).round() / 100.0
 }

@@ -13,7 +13,6 @@ use super::{Tool, capture};
 use crate::file_names::is_verilog;
 use crate::transient::Directory;
 
-/// A Verilog simulator: Icarus Verilog, which is event-driven, or Verilator, which compiles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum VerilogSimulator {
     /// Icarus Verilog: starts at once, and runs slowly.
@@ -22,16 +21,14 @@ pub enum VerilogSimulator {
     Verilator,
 }
 
-/// Whether the test bench writes a waveform. Verilator must know this when it builds the bench.
+/// Whether the bench writes a waveform: Verilator must know this when it builds the bench.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Waveform {
-    /// The test bench writes no waveform.
     None,
-    /// The test bench writes a waveform: it calls `$dumpvars`.
+    /// The test bench calls `$dumpvars`.
     Written,
 }
 
-/// The outcome of running a test bench.
 #[derive(Clone, Debug)]
 pub struct BenchOutcome {
     /// Whether the bench passed: it printed a PASS line and no FAIL line, and ended without an error.
@@ -52,10 +49,9 @@ impl fmt::Display for VerilogSimulator {
     }
 }
 
-/// Builds the bench `top` from `files`, pairs of a plain file name and contents, in a temporary directory, and runs it there. The
-/// simulator compiles files that end in `.v` or `.sv`, in the given order. Other files, such as `.mem`, are in the same
-/// directory. The bench must end by itself after a line that begins with `PASS` or `FAIL`. For example, a last line
-/// `PASS rsqrt: 3210 clocks, no difference` is a verdict.
+/// Builds the bench `top` from `files`, pairs of a plain file name and contents, in a temporary directory, and runs it there.
+/// The simulator compiles files that end in `.v` or `.sv`, in the given order. Other files, such as `.mem`, are in the same
+/// directory. The bench must print a line that begins with `PASS` or `FAIL`, and then end by itself.
 ///
 /// # Errors
 /// Fails as [`BuiltBench::build`] does. Fails if building and running take more than `limit` together, or if the bench crashes
@@ -70,8 +66,7 @@ pub fn run_bench<N: AsRef<str>, C: AsRef<[u8]>>(
     run_bench_in(&search, simulator, files, top, limit)
 }
 
-/// Builds and runs a bench as [`run_bench`] does. Looks for the simulator on the search path `search` instead of `PATH`. Fails
-/// as [`run_bench`] does.
+/// Does the same as [`run_bench`], with the search path `search` instead of `PATH`.
 pub(super) fn run_bench_in<N: AsRef<str>, C: AsRef<[u8]>>(
     search: &OsStr,
     simulator: VerilogSimulator,
@@ -96,9 +91,8 @@ pub struct BuiltBench {
 }
 
 impl BuiltBench {
-    /// Builds the bench `top` in a temporary directory from `files`, pairs of a plain file name and contents. Files that end in
-    /// `.v` or `.sv` are compiled, in the given order. If the bench calls `$dumpvars` to write a waveform, `waveform` must be
-    /// [`Waveform::Written`].
+    /// Builds the bench from files as [`run_bench`] describes them. If the bench calls `$dumpvars` to write a waveform,
+    /// `waveform` must be [`Waveform::Written`].
     ///
     /// # Errors
     /// Fails if the simulator is missing or rejects the sources (Verilator: or warns of them), or if building takes more than
@@ -165,17 +159,15 @@ impl BuiltBench {
         Ok(Self { simulator, top: top.to_owned(), program, build, dir })
     }
 
-    /// Returns the directory in which the bench runs. The directory contains the bench's files, and the files that the bench
-    /// writes.
+    /// The bench reads and writes its files in this directory.
     pub fn directory(&self) -> &Path {
         self.dir.path()
     }
 
-    /// Runs the bench and returns its outcome.
+    /// A bench that fails is no error; the outcome says so.
     ///
     /// # Errors
-    /// Fails if the bench takes more than `limit`, crashes, or ends without a verdict. A failing bench is no error; the outcome
-    /// says so.
+    /// Fails if the bench takes more than `limit`, crashes, or ends without a verdict.
     pub fn run(&self, limit: Duration) -> Result<BenchOutcome> {
         let (top, simulator) = (&self.top, self.simulator);
         let (program, arguments) = &self.program;
@@ -202,8 +194,8 @@ impl BuiltBench {
     }
 }
 
-/// Writes the files, and returns the names of the files to compile, in order. Fails if a name contains a directory, begins with a
-/// dash, or occurs twice, or if no file is Verilog. For example, `core/rsqrt.v` and `-o.v` are refused.
+/// Returns the names of the files to compile, in order. Fails if a name contains a directory, begins with a dash, or occurs
+/// twice, or if no file is Verilog.
 fn write_files<'a, N: AsRef<str>, C: AsRef<[u8]>>(
     directory: &Path,
     files: &'a [(N, C)],
@@ -225,8 +217,8 @@ fn write_files<'a, N: AsRef<str>, C: AsRef<[u8]>>(
     Ok(sources)
 }
 
-/// Returns whether the transcript has a PASS line and no FAIL line, or `None` if it has neither. The word must be the first of
-/// its line: for example, `PASS rsqrt: 9 clocks` is a PASS line, and `PASSED` is not.
+/// Returns true for a PASS line without a FAIL line, and `None` if the transcript has neither. The word must be the first of
+/// its line: `PASS rsqrt: 9 clocks` is a PASS line, and `PASSED` is not.
 fn verdict(transcript: &str) -> Option<bool> {
     let says = |word| {
         let first = |line: &str| line.split(|c: char| !c.is_alphanumeric()).next() == Some(word);

@@ -5,9 +5,9 @@ use std::collections::VecDeque;
 use std::io::Read;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// The number of bytes that are kept of the beginning of a long output.
+/// A long output keeps this number of bytes at its beginning.
 const KEEP_FIRST: usize = 64 << 10;
-/// The number of bytes that are kept of the end of a long output, where verdicts and errors are.
+/// A long output keeps this number of bytes at its end, where verdicts and errors are.
 const KEEP_LAST: usize = 1 << 20;
 /// The number of lines of output that an error quotes.
 const QUOTED_LINES: usize = 12;
@@ -26,7 +26,7 @@ struct CaptureBuffer {
 }
 
 impl Capture {
-    /// Reads output until it ends or a read fails. Returns only then.
+    /// Reads output until it ends or a read fails.
     pub(super) fn drain(&self, reader: &mut impl Read) {
         let mut buffer = vec![0; 64 << 10];
         while let Ok(count @ 1..) = reader.read(&mut buffer) {
@@ -35,8 +35,8 @@ impl Capture {
         }
     }
 
-    /// Returns the text that was kept, with a replacement character for bytes that are not UTF-8. If the middle of the output was
-    /// dropped, a line between the two parts says how many bytes, for example `... 4096 bytes left out ...`.
+    /// Replaces bytes that are not UTF-8. If the middle of the output was dropped, a line between the two parts says how much,
+    /// as in `... 4096 bytes left out ...`.
     pub(super) fn text(&self) -> String {
         let kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let mut bytes = kept.first.clone();
@@ -48,7 +48,6 @@ impl Capture {
         String::from_utf8_lossy(&bytes).into_owned()
     }
 
-    /// Returns the last lines of the output for an error message, as the function [`quote`] formats them.
     pub(super) fn quote(&self) -> String {
         quote(&self.text())
     }
@@ -65,9 +64,9 @@ impl CaptureBuffer {
     }
 }
 
-/// Returns the last 12 non-empty lines of `output` as the end of an error message, indented, without control characters, and
-/// cut after [`QUOTED_CHARACTERS`] characters. For example, the output `no module` gives `; its last lines:`, followed by `no
-/// module` on a line of its own. An output without text gives `; it printed nothing`.
+/// Returns the end of an error message: the last 12 non-empty lines of `output`, indented, without control characters, and cut
+/// after [`QUOTED_CHARACTERS`] characters. The output `no module` gives `; its last lines:`, followed by `no module` on a line
+/// of its own. An output without text gives `; it printed nothing`.
 pub(super) fn quote(output: &str) -> String {
     let lines: Vec<&str> = output.lines().filter(|line| !line.trim().is_empty()).collect();
     if lines.is_empty() {

@@ -15,9 +15,8 @@ use crate::window::{WINDOW_FILE, window};
 pub struct BenchDifference {
     /// The number of the clock in the bench, from 0.
     pub clock: u64,
-    /// The microinstruction that the core executes in this clock, ``microinstruction `result` ``; empty for a pipeline.
+    /// The microinstruction that the core executes in this clock, as ``microinstruction `result` ``; empty for a pipeline.
     pub during: String,
-    /// The name of the output that differs.
     pub signal: String,
     /// The simulated value in hexadecimal, which may contain x and z.
     pub simulated: String,
@@ -26,14 +25,13 @@ pub struct BenchDifference {
 }
 
 impl BenchDifference {
-    /// Returns the first difference in the transcript of a bench, or `None` if the bench printed none. For example, the line
-    /// `clock 9: red_out is 1f, expected 20` is a difference of the output `red_out` at clock 9.
+    /// Returns the first difference in the transcript of a bench, or `None` if the bench printed none.
     pub fn first(transcript: &str) -> Option<Self> {
         transcript.lines().find_map(Self::of_line)
     }
 
-    /// Parses a line such as `clock 9, microinstruction 3 (result): red_out is 1f, expected 20`; the line of a pipeline is
-    /// `clock 9: red_out is 1f, expected 20`. Returns `None` for any other line.
+    /// Parses a line such as `clock 9, microinstruction 3 (result): red_out is 1f, expected 20`. The line of a pipeline is
+    /// `clock 9: red_out is 1f, expected 20`.
     fn of_line(line: &str) -> Option<Self> {
         let rest = line.strip_prefix("clock ")?;
         let (clock, rest) = rest.split_at(rest.find([',', ':'])?);
@@ -52,9 +50,9 @@ impl BenchDifference {
     }
 }
 
-/// Builds and runs the bench `top` of `files`, pairs of a file name and contents. Returns the waveform (VCD) of the clocks from
-/// `from` to `to`, both included. A module around the bench writes the waveform: for the bench `rsqrt_tb` it is `rsqrt_tb_window`
-/// in the file `rsqrt_tb_window.v`. Building and running may each take at most `limit`.
+/// Builds and runs the bench `top` of `files`, and returns the waveform (VCD) of the clocks from `from` to `to`, both
+/// included. A module around the bench writes the waveform: for the bench `rsqrt_tb` it is `rsqrt_tb_window` in the file
+/// `rsqrt_tb_window.v`. Building and running may each take at most `limit`.
 ///
 /// # Errors
 /// Fails if the simulator is missing or rejects the sources. Fails if the bench crashes, takes too long or ends without a

@@ -8,9 +8,9 @@ use serde_json::Value;
 use super::Tool;
 use super::sources::YosysSources;
 
-/// Reads Verilog and memory files, pairs of a plain name and contents, and returns the module `top` with everything that it
-/// instantiates. The result is Yosys's JSON object of this module: the cells are under the key `cells`, and the nets under
-/// `netnames`. The netlist has word-level cells, registers and memories. Only logic that nothing reads is optimised away.
+/// Returns the module `top` with everything that it instantiates, as Yosys's JSON object of this module. The cells are under
+/// the key `cells`, and the nets under `netnames`. The netlist has word-level cells, registers and memories. Yosys optimises
+/// away only logic that nothing reads.
 ///
 /// # Errors
 /// Fails if a file cannot be written, or if Yosys refuses the files, takes longer than `limit`, or writes no netlist.

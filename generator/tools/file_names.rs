@@ -1,10 +1,8 @@
 //! Tells Verilog files from memory contents by the ending of their names.
 //!
-//! The functions of this crate take files as pairs of a name and contents. The functions must know which files to compile and
-//! which only to put into the directory. For example, `rough.v` is compiled, and `rough_sine.mem` is not.
+//! The name of a file decides whether the functions of this crate compile it, or only put it into the directory.
 
-/// Returns whether tools compile the file of this name as Verilog or SystemVerilog, which is so if the name ends in `.v` or
-/// `.sv`. For example, `rough.v` is compiled; `rough_sine.mem`, which it reads, is not.
+/// Tools compile `rough.v`, for example, but not `rough_sine.mem`, which `rough.v` reads.
 pub fn is_verilog(name: &str) -> bool {
     name.ends_with(".v") || name.ends_with(".sv")
 }

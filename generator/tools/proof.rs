@@ -13,10 +13,9 @@ use super::{LimitReached, Limits, Tool, capture};
 /// The default limits of each command of a proof.
 pub const PROOF_LIMITS: Limits = Limits { time: Duration::from_secs(300), memory: Some(4 << 30) };
 
-/// Runs the commands that the first lines of the proof `file` list for users. `directory` must contain the proof and the files of
-/// its device. The first lines must list three commands that begin with `$ yosys`: they make the problem, prove the base case,
-/// and prove the induction. For example, the first command of `threshold_levels_axil_formal.sv` is
-/// `yosys -q threshold_levels_axil_formal.ys`. `limits` apply to each command.
+/// Runs the commands that the first lines of the proof `file` list for users. `directory` must contain the proof and the files
+/// of its device. The list must have three commands that begin with `$ yosys`: they make the problem, prove the base case, and
+/// prove the induction. `limits` apply to each command.
 ///
 /// # Errors
 /// Fails if the file does not list three commands, if the proof does not succeed, or if a tool is missing. Fails with
@@ -59,8 +58,8 @@ pub fn prove(directory: &Path, file: &str, limits: impl Into<Limits>) -> Result<
     Ok(())
 }
 
-/// Returns whether Yosys, Python or Z3 report that memory ran out. If the solver dies without a message, yosys-smtbmc finds its
-/// pipes closed, which counts too.
+/// Recognises the messages of Yosys, Python and Z3. If the solver dies without a message, yosys-smtbmc finds its pipes closed,
+/// which counts too.
 fn ran_out_of_memory(output: &str) -> bool {
     const SIGNS: [&str; 5] = [
         "out of memory",

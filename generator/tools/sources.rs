@@ -20,7 +20,7 @@ pub struct YosysSources<'a> {
 }
 
 impl<'a> YosysSources<'a> {
-    /// Writes `files`, pairs of a file name and contents, into a temporary directory. Each run of Yosys may take at most `limit`.
+    /// Each run of Yosys may take at most `limit`.
     ///
     /// # Errors
     /// Fails if the directory or a file cannot be written.
@@ -33,8 +33,8 @@ impl<'a> YosysSources<'a> {
         Ok(sources)
     }
 
-    /// Writes another file into the directory. `name` must not contain a path. [`YosysSources::run`] does not read the file by
-    /// itself, even if it is Verilog.
+    /// Writes another file, whose `name` must not contain a path. [`YosysSources::run`] does not read the file by itself, even
+    /// if it is Verilog.
     ///
     /// # Errors
     /// Fails if the file cannot be written.
@@ -43,13 +43,12 @@ impl<'a> YosysSources<'a> {
             .with_context(|| format!("cannot write `{name}` for synthesis"))
     }
 
-    /// Returns the path of the directory.
     pub fn path(&self) -> &Path {
         self.directory.path()
     }
 
-    /// Lets Yosys read the Verilog files of [`YosysSources::new`] and then run `commands`. For example, for one file `rsqrt.v`
-    /// and the commands `proc; opt` the script is `read_verilog rsqrt.v; proc; opt`.
+    /// Lets Yosys read the Verilog files of [`YosysSources::new`] and then run `commands`: the commands `proc; opt` become the
+    /// script `read_verilog rsqrt.v; proc; opt`.
     ///
     /// # Errors
     /// Fails if Yosys exits with an error, does not start, or takes longer than the limit.
@@ -59,7 +58,7 @@ impl<'a> YosysSources<'a> {
         Ok(())
     }
 
-    /// Returns the text of a file that a tool has written into the directory, for example `statistics.json`.
+    /// Returns the text of a file that a tool has written into the directory, such as `statistics.json`.
     ///
     /// # Errors
     /// Fails if the file does not exist or is not UTF-8.
@@ -68,7 +67,7 @@ impl<'a> YosysSources<'a> {
             .with_context(|| format!("the tool did not write `{name}`"))
     }
 
-    /// Parses a JSON file that a tool has written into the directory, and returns its value.
+    /// Parses a JSON file that a tool has written into the directory.
     ///
     /// # Errors
     /// Fails if the file does not exist, or is no JSON.

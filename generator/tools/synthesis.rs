@@ -10,8 +10,7 @@ use super::sources::YosysSources;
 pub use glint_base::target::Usage;
 use glint_base::target::{Family, Kinds};
 
-/// Synthesises the module `top` of Verilog and memory files, pairs of a plain name and contents, for an FPGA family. Returns the
-/// numbers of cells of the flat netlist.
+/// Returns the numbers of cells of the flat netlist of the module `top`.
 ///
 /// # Errors
 /// Fails if the files cannot be written, or if Yosys fails or takes longer than `limit`. Fails if its statistics do not list the
@@ -29,8 +28,7 @@ pub fn synthesise(
         .with_context(|| format!("`{}` for {}", family.command, family.title))
 }
 
-/// Returns the commands of Yosys that write the files which [`usage`] reads. The commands must come after the synthesis in a
-/// script.
+/// Returns the commands of Yosys that write the files which [`usage`] reads. A script must have them after the synthesis.
 pub fn statistics_commands(family: &Family) -> &'static str {
     match family.fabric_product {
         None => "tee -q -o statistics.json stat -json",
@@ -39,9 +37,6 @@ pub fn statistics_commands(family: &Family) -> &'static str {
     }
 }
 
-/// Counts the resources of the module `top` from the files that [`statistics_commands`] have written.
-///
-/// # Errors
 /// Fails if a file does not exist, is no JSON, or does not list the cells of the module `top`.
 pub fn usage(sources: &YosysSources, top: &str, family: &Family) -> Result<Usage> {
     let text = sources.text("statistics.json").context("`yosys` wrote no statistics")?;
@@ -69,9 +64,9 @@ pub fn usage(sources: &YosysSources, top: &str, family: &Family) -> Result<Usage
     })
 }
 
-/// Returns the number of look-up tables of all products in the netlist of `top`. The products are cells of this `kind`, and
-/// `luts` gives the look-up tables of one cell from its two operand widths. Fails if the netlist has no cells, or if a cell does
-/// not state its widths.
+/// Counts the look-up tables of all products in the netlist of `top`. The products are cells of this `kind`, and `luts` gives
+/// the look-up tables of one cell from its two operand widths. Fails if the netlist has no cells, or if a cell does not state
+/// its widths.
 fn luts_of_products(
     sources: &YosysSources,
     top: &str,
@@ -90,8 +85,7 @@ fn luts_of_products(
     Ok(sum)
 }
 
-/// Returns the value of a numeric parameter of a cell. Yosys writes it in binary, for example `00001001` for 9. Fails if the cell
-/// has no such parameter, or if the parameter is no binary number.
+/// Yosys writes a parameter in binary: `00001001` is 9.
 fn number(cell: &Value, parameter: &str) -> Result<u64> {
     let digits = cell["parameters"][parameter].as_str();
     let value = digits.and_then(|digits| u64::from_str_radix(digits, 2).ok());
@@ -100,8 +94,7 @@ fn number(cell: &Value, parameter: &str) -> Result<u64> {
     })
 }
 
-/// Returns the major and the minor number of Yosys's version. For example, `Yosys 0.70 (git sha1 …)` gives 0 and 70. Returns
-/// `None` if the text has no such numbers.
+/// Returns the major and the minor number: 0 and 70 for `Yosys 0.70 (git sha1 …)`.
 pub fn yosys_version(text: &str) -> Option<(u32, u32)> {
     let numbers = text.strip_prefix("Yosys ")?;
     let (major, rest) = numbers.split_once('.')?;

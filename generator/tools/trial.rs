@@ -1,7 +1,7 @@
 //! Tests an outside tool before Glint trusts it: the tool must reject an input that is wrong.
 //!
 //! A lint counts as passed if the tool reports nothing. A broken tool that never reports anything would let everything pass.
-//! For example, Yosys gets a false claim, and must print `proof did fail`. Tools without a test in `trials.toml` are trusted.
+//! Tools without a test in `trials.toml` are trusted.
 
 use std::fs;
 use std::time::Duration;
@@ -26,16 +26,15 @@ struct Trial {
     says: String,
 }
 
-/// All tests of tools, as in `trials.toml`.
 #[derive(Deserialize)]
 struct Trials {
     trial: Vec<Trial>,
 }
 
 impl Tool {
-    /// Tests a tool with an input that it must reject. If the tool answers only by its exit status, it also gets an input that
-    /// it must accept. For example, `yosys` gets a false claim, and must print `proof did fail`. Each run may take at most
-    /// `limit`. For a tool without such a test in `trials.toml`, the function does nothing.
+    /// Tests a tool with an input that it must reject: `yosys` gets a false claim, and must print `proof did fail`. If the
+    /// tool answers only by its exit status, it also gets an input that it must accept. Each run may take at most `limit`. A
+    /// tool without such a test in `trials.toml` is not tested.
     ///
     /// # Errors
     /// Fails if the tool accepts a wrong input, rejects a correct one, or does not print the expected text. Fails if the tool
@@ -60,8 +59,7 @@ impl Tool {
     }
 }
 
-/// Returns whether `words` are in the output, and not as the end of a longer word. For example, the output `unsat` does not
-/// contain `sat`.
+/// Finds `words` only where they do not end a longer word: the output `unsat` does not contain `sat`.
 fn says(output: &str, words: &str) -> bool {
     let before = |at: usize| output[..at].chars().next_back();
     let mut found = output.match_indices(words);

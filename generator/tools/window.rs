@@ -3,17 +3,16 @@
 use anyhow::Result;
 use glint_base::fill;
 
-/// The name of the waveform file (VCD) that the generated Verilog module writes. The Verilog test bench inside the module must
-/// not write a file of this name.
+/// The name of the waveform file (VCD). The test bench inside the module must not write a file of this name.
 pub const WINDOW_FILE: &str = "window.vcd";
 
 /// The number of units of simulated time in a clock of the bench.
 const CLOCK: u64 = 10;
 
 /// Returns the Verilog of a module `name` around the module `bench`, which must be a bench of `glint_core::package::emit`. The
-/// module writes the waveform of the clocks from `from` to `to`, both included, to [`WINDOW_FILE`]. The module then ends the
-/// run as a failing bench does. A clock takes 10 units of time. For example, the waveform of clocks 3 to 5 begins at time 31
-/// and has a length of 29.
+/// module writes the waveform of the clocks from `from` to `to`, both included, to [`WINDOW_FILE`]. Then it ends the run as a
+/// failing bench does. A clock takes 10 units of time. For clocks 3 to 5, the waveform begins at time 31 and has a length of
+/// 29.
 ///
 /// # Errors
 /// Fails if the template cannot be filled, which would be a bug.

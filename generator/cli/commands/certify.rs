@@ -1,5 +1,5 @@
-//! `glint certify`: lets the prover Gappa prove the error bound of a sequential core's contract, from the netlist and the
-//! microprogram. If the contract states no bound, the command lets Gappa find one.
+//! `glint certify`: lets the prover Gappa prove the error bound of a sequential core's contract. If the contract states no
+//! bound, Gappa finds one.
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -54,11 +54,10 @@ pub struct Arguments {
 /// The first words of a script that Glint wrote.
 const MARKER: &str = "# Certificate by Glint: ";
 
-/// The text before a point at which the hypotheses of the statement hold, in the second line of the file.
+/// This text begins the second line of a script, before a point at which the hypotheses of the statement hold.
 const WITNESS: &str = "# The hypotheses hold at ";
 
-/// Prints the contract's bound and its terms, as a help for the reader of a failed proof. If a device consists of parts, the
-/// bounds of the parts are among the terms.
+/// Helps the reader of a failed proof. If a device consists of parts, the bounds of the parts are among the terms.
 fn tell_terms(bound: &Bound) {
     if bound.is_stated() {
         say!(
@@ -72,10 +71,6 @@ fn tell_terms(bound: &Bound) {
     }
 }
 
-/// Runs `glint certify`, which proves the error bound of a configuration's contract with the prover Gappa, from the netlist and
-/// the microprogram. Returns whether every bound is proved.
-///
-/// # Errors
 /// Fails if a configuration has problems or is a named pipeline, if Gappa or Coq is missing, or if a file was edited or cannot
 /// be written.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
@@ -108,7 +103,7 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
             Ok(stated) => stated,
             Err(step) => {
                 whole = false;
-                // Scripts of an earlier run with other keys would still say that they were accepted, so they are removed.
+                // Scripts of an earlier run with other keys would still say that they were accepted.
                 if let Some(directory) = out
                     && directory.exists()
                 {
@@ -160,8 +155,7 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     Ok(whole)
 }
 
-/// Returns the record of a proof. `certified` says whether all statements in `stated` were proved, and `bound` is in output
-/// units.
+/// `certified` says whether all statements in `stated` were proved. `bound` is in output units.
 fn certificate(one: &Loaded, bound: f64, certified: bool, stated: &[Statement]) -> Certificate {
     Certificate {
         glint: env!("CARGO_PKG_VERSION").to_owned(),
@@ -174,12 +168,11 @@ fn certificate(one: &Loaded, bound: f64, certified: bool, stated: &[Statement]) 
     }
 }
 
-/// A configuration for which no statements can be made, for the report.
+/// A configuration for which no statements can be made.
 struct WithoutStatements<'a> {
     one: &'a Loaded,
-    /// The step of the computation that cannot be a part of a statement, as a phrase.
+    /// A phrase about the step of the computation that cannot be a part of a statement.
     step: String,
-    /// The bound of the contract, which is not proved.
     bound: Bound,
 }
 
@@ -200,22 +193,18 @@ impl CommandReport for WithoutStatements<'_> {
     }
 }
 
-/// The outcome of all statements of a configuration, for the report.
 struct Certification<'a> {
     one: &'a Loaded,
-    /// The error bound in the statements, in output units.
+    /// The bound is in output units.
     bound: f64,
     /// Whether the contract states the bound. Otherwise Gappa has found it.
     is_stated: bool,
-    /// Whether Coq has checked the proofs.
     with_coq: bool,
-    /// The number of statements.
     statements: usize,
     /// The number of proved statements whose hypotheses contradict each other, so that they say nothing.
     contradictory: usize,
     /// The number of proved statements for which no point was found at which the hypotheses hold.
     without_witness: usize,
-    /// The statements that are not proved, each with the reason.
     open: Vec<(&'a Statement, &'a str)>,
 }
 
@@ -305,9 +294,8 @@ impl CommandReport for Certification<'_> {
     }
 }
 
-/// Lets Gappa find an error bound for a contract that states none. Returns the statements with this bound, and the bound in
-/// output units. The inner error is a phrase about a step that cannot be a part of a statement, or about a bound that was not
-/// found.
+/// Lets Gappa find an error bound for a contract that states none, in output units. The inner error is a phrase about a step
+/// that cannot be a part of a statement, or about a bound that was not found.
 fn found(
     design: &Design,
     contract: &dyn Contract,
@@ -322,12 +310,11 @@ fn found(
     Ok(bound.map(|bound| (asked.iter().map(|one| one.within(bound)).collect(), bound)))
 }
 
-/// Writes each script into a file: the accepted script of a proved statement, or the first script of a statement that was not
-/// proved. For example, `red_out_3.g` has statement 3 of the output `red_out`.
+/// Writes each script into a file: the accepted script of a proved statement, or the first script of another. For example,
+/// `red_out_3.g` has statement 3 of the output `red_out`.
 ///
-/// It deletes scripts of an earlier run with more statements, if they still have the name in their first line. A copy under
-/// another name, or an edited script, belongs to the user and stays. Fails if a file that Glint did not write is in the way, or
-/// if a file cannot be written or removed.
+/// The function deletes scripts of an earlier run with more statements, if they still have the name in their first line. A
+/// copy under another name, or an edited script, belongs to the user and stays. A file that Glint did not write is an error.
 fn write(
     directory: &Path,
     config: &str,
@@ -355,8 +342,8 @@ fn write(
             format!("{MARKER}{}, {outputs}, statement {number}: {state}.", input::label(config));
         let script = &scripts[chosen];
         let text = format!("{head} To check: gappa {name}\n{witness}\n{script}");
-        // All files are opened before the first is written. If one of them was not written by Glint, the command fails and
-        // changes nothing.
+        // All files are opened before the first is written, so that the command changes nothing if Glint did not write one of
+        // them.
         let file = OwnFile::new(directory, &name, Seal::Hash)?;
         files.push((file, text));
         names.push(name);

@@ -1,6 +1,4 @@
-//! `glint compare`: compares all highlight devices, and the configurations that the user names, at one exponent n: their errors
-//! against cosⁿγ, cells, frequencies and points a second. Frequencies come from records of `glint synth`, cells from such a
-//! record or from Yosys.
+//! `glint compare`: compares all highlight devices, and the configurations that the user names, at one exponent n.
 
 mod show;
 
@@ -68,7 +66,6 @@ pub struct Arguments {
     time_limit: TimeLimit,
 }
 
-/// One configuration in the comparison.
 struct ComparisonEntry {
     /// The name of the device, or the path of the configuration.
     label: String,
@@ -77,11 +74,10 @@ struct ComparisonEntry {
     /// The resources for each family in `COMPARED`, or the message of a failed synthesis. Empty if neither a record nor Yosys
     /// states them.
     usage: Vec<Result<Usage, String>>,
-    /// The record of `glint synth` for this core, if there is one.
     record: Option<SynthesisRecord>,
 }
 
-/// The figures of a configuration that need no outside tool.
+/// What needs no outside tool.
 struct ModelFigures {
     /// The errors against cosⁿγ. `None` if the exponent is outside the device's domain.
     accuracy: Option<Accuracy>,
@@ -89,11 +85,11 @@ struct ModelFigures {
     multipliers: Vec<MultiplierSize>,
 }
 
-/// Runs `glint compare`, which compares all highlight devices, and the configurations that the user names, at one exponent n:
-/// their errors against cosⁿγ, cells, frequencies and points a second. Returns whether every synthesis run succeeded.
+/// Returns whether every synthesis run succeeded.
 ///
 /// # Errors
-/// Fails if a configuration has problems, if the exponent is outside the domains of all devices, or if a record cannot be read.
+/// Fails if a configuration has problems, if the exponent is outside the domains of all devices, or if a record cannot be
+/// read.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     if arguments.csv && !output.is_for_people() {
         wrong_usage!("--csv and --json cannot be used together: give one of them");
@@ -186,8 +182,8 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     Ok(failures.is_empty())
 }
 
-/// Returns the device's defaults, in which the values in `widths` replace the defaults of keys that the device has. For
-/// example, `--bits 10` sets `colour.bits` to 10. If the device refuses a value, it keeps its default, and a note says so.
+/// Returns the device's defaults with the values in `widths` for keys that the device has. If the device refuses a value, it
+/// keeps its default, and a note says so.
 fn with_widths(device: &Device, widths: &[(&str, Option<i64>)], notes: &mut Vec<String>) -> Config {
     let schema: Schema = (device.schema)();
     let name = schema.module();
@@ -229,8 +225,7 @@ fn figures(core: &Core, n: f64) -> Result<ModelFigures> {
     })
 }
 
-/// Returns the resources in a record for every family in `COMPARED`. Returns an empty list without a record, or if the record
-/// lacks a family.
+/// Returns the resources in a record for every family in `COMPARED`, or an empty list if one is missing.
 fn recorded(record: Option<&SynthesisRecord>) -> Vec<Result<Usage, String>> {
     let Some(record) = record else { return Vec::new() };
     let mut usage = Vec::new();
@@ -241,15 +236,13 @@ fn recorded(record: Option<&SynthesisRecord>) -> Vec<Result<Usage, String>> {
     usage
 }
 
-/// Returns the resources in a record for one family. Returns `None` if the record lacks the family.
 fn usage_of_family(record: &SynthesisRecord, family: &Family) -> Option<Usage> {
     let mut targets = record.targets.iter();
     let figures = targets.find(|figures| figures.target.name() == family.name())?;
     figures.area.usage()
 }
 
-/// Synthesises every core for every family in `COMPARED`. Returns, for each core and family, the resources or the message of
-/// the failure. Calls `done` after each run. Fails if a core cannot be written as Verilog.
+/// Returns, for each core and family in `COMPARED`, the resources or the message of the failure. Calls `done` after each run.
 fn synthesise(
     cores: &[&(String, Core)],
     yosys: &Tool,
@@ -274,8 +267,7 @@ fn synthesise(
     Ok(runs.chunks(COMPARED.len()).map(<[_]>::to_vec).collect())
 }
 
-/// Returns a sentence that says why no errors are shown for a configuration. For example, `my_core.toml: n = 300 is not in its
-/// domain, n = 1 to 255`.
+/// Says why no errors are shown. For example, `my_core.toml: n = 300 is not in its domain, n = 1 to 255`.
 fn outside(entry: &ComparisonEntry, n: u32) -> String {
     let label = &entry.label;
     match domain(&entry.core) {
@@ -288,7 +280,7 @@ fn outside(entry: &ComparisonEntry, n: u32) -> String {
     }
 }
 
-/// Returns the smallest and the largest exponent of a device. Returns `None` if the device has no operand for the exponent.
+/// Returns the smallest and the largest exponent of a device, if it has an operand for it.
 fn domain(core: &Core) -> Option<(f64, f64)> {
     let operands = core.contract.operands();
     let exponent = operands.iter().find(|operand| operand.name == contract::EXPONENT)?;

@@ -1,6 +1,6 @@
-//! `glint cosim`: compares the golden model of a configuration with the simulated hardware: every output and architectural
-//! register, or in a pipeline every output and checkpoint, at every clock. The options `--exhaustive` and `--simulator` select
-//! other checks.
+//! `glint cosim`: compares the golden model of a configuration with the simulated hardware at every clock. It compares every
+//! output, and every architectural register or, in a pipeline, every checkpoint. The options `--exhaustive` and `--simulator`
+//! select other checks.
 
 mod benches;
 pub mod exhaustive;
@@ -84,7 +84,7 @@ pub struct SweepValues {
 }
 
 impl SweepValues {
-    /// Returns the sweep of a configuration's contract, in which the user's values replace the values of some operands.
+    /// The user's values replace the values of some operands in the contract's sweep.
     ///
     /// # Errors
     /// Fails with wrong usage as [`axis::sweep`] does.
@@ -106,10 +106,6 @@ pub enum SimulatorChoice {
     Verilator,
 }
 
-/// Runs `glint cosim`, which compares the golden model of a configuration with the simulated hardware, every register at every
-/// clock. Returns whether golden model and hardware agree and every error is within its bound.
-///
-/// # Errors
 /// Fails if a configuration has problems, if options contradict each other, if a tool is missing, or if a file cannot be
 /// written.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
@@ -162,11 +158,9 @@ fn built_in(output: OutputOptions, loaded: &[Loaded], arguments: &Arguments) -> 
     list.conclude(holds)
 }
 
-/// The outcome of a comparison of golden model and built-in simulator, for the report.
 struct CheckedRun<'a> {
     one: &'a Loaded,
     outcome: &'a Outcome,
-    /// The error bounds in the contract.
     bounds: Bounds,
     failures: Vec<String>,
 }
@@ -178,7 +172,7 @@ impl CommandReport for CheckedRun<'_> {
 
     fn print(&self) -> Result<()> {
         let Self { one, outcome, bounds, failures } = self;
-        // A difference from the golden model ends the run. Other failures do not end it.
+        // A difference from the golden model ends the run. Other failures do not.
         let compared = if outcome.mismatch.is_none() { "equal" } else { "compared with" };
         say!(
             "{}: {} points, {} clocks; {} registers and {} outputs {compared} the golden model on each \
@@ -227,8 +221,7 @@ fn outcome(
     mismatch::traced(one, &lockstep, destination, points, 0)
 }
 
-/// Returns the output with the largest error and its operands as real values. For example, `red_out for cos_gamma=0.99
-/// exponent=20`.
+/// Lists the operands in the form `red_out for cos_gamma=0.99 exponent=20`.
 pub fn worst_operands(one: &Loaded, worst: &Worst) -> String {
     let operands = one.core.contract.operands();
     let values: Vec<String> = worst
@@ -242,14 +235,13 @@ pub fn worst_operands(one: &Loaded, worst: &Worst) -> String {
     format!("{} for {}", worst.output, values.join(" "))
 }
 
-/// Returns the terms of a bound as JSON objects with the keys `key`, `what` and `units`.
 pub(super) fn terms(bound: &Bound) -> Vec<Value> {
     let one = |term: &Term| json!({ "key": term.key, "what": term.what, "units": term.units });
     bound.terms.iter().map(one).collect()
 }
 
-/// Returns the outcome of a co-simulation as JSON for scripts. If model and hardware differ, it also writes a waveform into the
-/// working directory. `failed` has the messages about requirements that the outcome does not meet.
+/// If model and hardware differ, the function also writes a waveform into the working directory. `failed` has the messages
+/// about requirements that the outcome does not meet.
 ///
 /// # Errors
 /// Fails if the waveform cannot be recorded or written.

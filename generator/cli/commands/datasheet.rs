@@ -1,4 +1,4 @@
-//! `glint datasheet`: writes the datasheet of a configuration, one HTML page that needs no other file and no network.
+//! `glint datasheet`: writes one HTML page for a configuration that needs no other file and no network.
 
 use std::path::PathBuf;
 
@@ -58,10 +58,6 @@ pub struct Arguments {
     time_limit: TimeLimit,
 }
 
-/// Runs `glint datasheet`, which writes the datasheet of a configuration, one HTML page that needs no other file and no
-/// network. Returns true, because the command checks nothing.
-///
-/// # Errors
 /// Fails if a configuration has problems, if a record cannot be read, or if a file was edited or cannot be written.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
@@ -122,8 +118,7 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     Ok(true)
 }
 
-/// Returns the path of a configuration's page, for example `datasheets/rough.html`. With `single`, the path is the file that
-/// the user named.
+/// The usual path has the form `datasheets/rough.html`. With `single`, the path is the file that the user named.
 fn path(arguments: &Arguments, one: &Loaded, single: bool) -> PathBuf {
     if single {
         arguments.out.clone()
@@ -132,7 +127,6 @@ fn path(arguments: &Arguments, one: &Loaded, single: bool) -> PathBuf {
     }
 }
 
-/// The files of the datasheets, for the report.
 struct DatasheetFiles<'a> {
     /// The configuration and the path of each file, and whether the file has changed.
     files: Vec<(&'a Loaded, String, Written)>,

@@ -36,10 +36,6 @@ pub struct Arguments {
     force: bool,
 }
 
-/// Runs `glint describe`, which prints or writes the documentation page of a configuration, in Markdown. Returns true, because
-/// the command checks nothing.
-///
-/// # Errors
 /// Fails if a configuration has problems, if a page cannot be made, or if a page on disk was edited or cannot be written.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
@@ -69,7 +65,6 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     Ok(true)
 }
 
-/// The page of a configuration, for the report.
 struct DescribedPage<'a> {
     one: &'a Loaded,
     page: String,

@@ -27,19 +27,14 @@ pub struct Arguments {
     configs: Configs,
 }
 
-/// The estimate for a core on one FPGA family.
 struct EstimateRow {
     target: Target,
     cost: Cost,
-    /// A phrase about the resources that the smallest chip of the family lacks; empty if the core fits. For example, `it does
-    /// not fit the LFE5U-25F: it takes 30 of 28 DSP blocks`.
+    /// The resources that the smallest chip of the family lacks, as a phrase such as `it does not fit the LFE5U-25F: it takes
+    /// 30 of 28 DSP blocks`; empty if the core fits.
     excess: String,
 }
 
-/// Runs `glint estimate`, which estimates area and clock frequency of each core on each FPGA family, without outside tools.
-/// Returns true, because the command checks nothing.
-///
-/// # Errors
 /// Fails if a configuration has problems, or if two configurations name the same module.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
@@ -51,7 +46,6 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     Ok(true)
 }
 
-/// The estimates of each configuration.
 struct EstimateTable<'a> {
     estimates: Vec<(&'a Loaded, Vec<EstimateRow>)>,
 }

@@ -50,10 +50,6 @@ pub struct Arguments {
 /// The number of clocks after which a computation counts as one that gives no result.
 const LIMIT: u64 = 1 << 16;
 
-/// Runs `glint eval`: computes one point, or all points of a CSV file, and compares the outputs with the formula. Returns true,
-/// because the command checks nothing.
-///
-/// # Errors
 /// Fails if the configuration has problems, if an operand is unknown or has no valid value, or if the CSV file cannot be read.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let one = load_one(registry, &arguments.config)?;
@@ -70,8 +66,8 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     }
 }
 
-/// Returns a phrase for each operand that is outside the domain for which the contract is stated. An operand that the device
-/// limits to its domain is never outside. For example, `exponent = 300 is not in 1 to 255`.
+/// Returns a phrase for each operand outside the domain of the contract, such as `exponent = 300 is not in 1 to 255`. An
+/// operand that the device limits to its domain is never outside.
 fn outside(operands: &[Operand], raw: &[i64]) -> Vec<String> {
     let mut outside = Vec::new();
     for (operand, &raw) in operands.iter().zip(raw) {
@@ -85,8 +81,8 @@ fn outside(operands: &[Operand], raw: &[i64]) -> Vec<String> {
     outside
 }
 
-/// Computes one point, and reports it with every signal of the golden model. `given` has the raw operands that the user gave,
-/// in the order of the contract. Returns true. Fails if the device never raises `valid`.
+/// Reports one point with every signal of the golden model. `given` has the raw operands that the user gave, in the order of
+/// the contract.
 fn point(
     output: OutputOptions,
     one: &Loaded,
@@ -117,13 +113,11 @@ fn point(
     Ok(true)
 }
 
-/// A point with the values of all signals in the clock of its first result, for the report.
 struct EvaluatedPoint<'a> {
     one: &'a Loaded,
     operands: Vec<SignalValue>,
-    /// The operands that were not given, with the values that the command chose, as text.
+    /// The operands that were not given, with the values that the command chose.
     missing: Vec<String>,
-    /// A phrase for each operand outside the domain.
     outside: Vec<String>,
     signals: Vec<SignalValue>,
     results: Vec<ResultComparison>,
@@ -165,9 +159,9 @@ impl CommandReport for EvaluatedPoint<'_> {
     }
 }
 
-/// Returns the signals of the golden model with their values in the clock of the first result. The golden model of a pipeline
-/// is the model of its sequential core; only its checkpoints, and the signals that the pipeline has too, are returned. The
-/// formats come from the nets of the sequential core. Fails if the device never raises `valid`.
+/// Returns the signals of the golden model in the clock of the first result. The golden model of a pipeline is the model of
+/// its sequential core; only its checkpoints, and the signals that the pipeline has too, are returned. The formats come from
+/// the nets of the sequential core.
 fn signal_values(one: &Loaded, operands: &[Operand], raw: &[i64]) -> Result<Vec<SignalValue>> {
     let core = &one.core;
     let mut signals = signals(core.opened.golden(), operands, raw)?;
@@ -197,17 +191,15 @@ fn signal_values(one: &Loaded, operands: &[Operand], raw: &[i64]) -> Result<Vec<
     Ok(values)
 }
 
-/// A result of a point together with the value of the formula: `f` of a highlight, or an output.
+/// A result of a point, `f` of a highlight or an output, with the value of the formula.
 struct ResultComparison {
     name: String,
     /// The number of fraction bits, which decides the unit of the error.
     fraction: i32,
     value: f64,
-    /// The value of the formula, or `None` if it has none.
     exact: Option<f64>,
-    /// The absolute error in units of the result's last bit, or `None` if the contract promises nothing for these operands. At a
-    /// jump of the formula, the error is measured from the nearer side. For example, an output of 200 for a formula of 200.3
-    /// has the error 0.3, in an output without fraction bits.
+    /// The absolute error in units of the result's last bit, or `None` if the contract promises nothing for these operands. At
+    /// a jump of the formula, the error is measured from the nearer side.
     error: Option<f64>,
 }
 
@@ -233,9 +225,8 @@ fn results(contract: &dyn Contract, raw: &[i64]) -> Vec<ResultComparison> {
 }
 
 impl ResultComparison {
-    /// Makes the comparison of a raw result with the formula's value. `exact` has the values on the two sides of a jump of the
-    /// formula, or [`ANY_VALUE`] if nothing is promised; without a jump, the two values are equal. `value` is the value of the
-    /// formula, or NaN.
+    /// `exact` has the formula's values on the two sides of a jump, or [`ANY_VALUE`] if nothing is promised; without a jump,
+    /// the two values are equal. `value` is the value of the formula, or NaN.
     fn new(name: &str, format: Format, raw: i64, exact: [f64; 2], value: f64) -> Self {
         let unit = format.to_f64(1);
         let error = golden::nearer(raw as f64, exact.map(|side| side / unit));
@@ -248,7 +239,7 @@ impl ResultComparison {
         }
     }
 
-    /// Returns the name for the table. The reflectance `f` is no output, so its name has the unit of its error.
+    /// The reflectance `f` is no output, so its name in the table has the unit of its error.
     fn label(&self) -> String {
         match self.name.as_str() {
             F => format!("f (last place 2^{})", -self.fraction),
@@ -276,13 +267,12 @@ fn as_json(results: &[ResultComparison]) -> Value {
     }
 }
 
-/// The value of a signal or an operand.
 #[derive(Serialize)]
 struct SignalValue {
     name: String,
     raw: i128,
     value: f64,
-    /// The format as text. Empty for a signal that is no net of the design.
+    /// The text is empty for a signal that is no net of the design.
     format: String,
 }
 
@@ -301,7 +291,7 @@ fn print_values(what: &str, values: &[SignalValue]) {
 }
 
 /// Returns the names and bit patterns of all signals of a model in the first clock in which `valid` is high. `raw` has the raw
-/// operands, in the order of `operands`. Fails if `valid` is not high within 65536 clocks.
+/// operands, in the order of `operands`.
 fn signals(model: Box<dyn Model>, operands: &[Operand], raw: &[i64]) -> Result<Vec<(String, u64)>> {
     let mut model = Driven::new(model, operands.iter().map(|operand| operand.name.as_str()))?;
     let pairs = operands.iter().zip(raw);

@@ -21,10 +21,6 @@ pub struct Arguments {
     code: Option<String>,
 }
 
-/// Runs `glint explain`, which explains the code of an error in a device's description, or lists all codes. Returns true,
-/// because the command checks nothing.
-///
-/// # Errors
 /// Fails if the code does not exist.
 pub fn run(_: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let wanted =
@@ -38,11 +34,9 @@ pub fn run(_: &Registry, output: OutputOptions, arguments: &Arguments) -> Result
     Ok(true)
 }
 
-/// The pages about error codes: one page, or all pages.
 struct Explanation {
     /// The code of each page, its title and its text.
     pages: Vec<(&'static str, &'static str, &'static str)>,
-    /// Whether the user named a code.
     single: bool,
 }
 

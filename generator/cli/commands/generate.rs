@@ -48,9 +48,7 @@ pub struct Arguments {
     force: bool,
 }
 
-/// Runs `glint generate`, which writes the files of each configuration: Verilog, ROM contents, manifest, FuseSoC core and,
-/// without `--no-bench`, test bench. With `--check` it writes nothing, and returns whether the files on disk equal the
-/// generated files. Otherwise it returns true.
+/// With `--check`, returns whether the files on disk equal the generated files, and writes nothing.
 ///
 /// # Errors
 /// Fails if a configuration has problems, or if a file was edited or cannot be written.
@@ -89,11 +87,9 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     Ok(true)
 }
 
-/// The files of a configuration after they were written, for the report.
 struct GeneratedFiles<'a> {
     one: &'a Loaded,
     files: &'a OutputFiles,
-    /// Whether a file on disk has changed.
     written: Written,
 }
 
@@ -114,7 +110,6 @@ impl CommandReport for GeneratedFiles<'_> {
     }
 }
 
-/// Prints how to simulate the generated files. `with_bench` says whether test benches were generated.
 fn print_next_step(out: &Path, loaded: &[Loaded], with_bench: bool) {
     let (config, name) = match loaded {
         [only] => (only.path.as_str(), only.core.config().name.as_str()),
@@ -138,8 +133,8 @@ fn print_next_step(out: &Path, loaded: &[Loaded], with_bench: bool) {
     );
 }
 
-/// Returns a phrase about the resources that the smallest chip of a pipeline's target lacks. Returns `None` if the core fits,
-/// or is no pipeline for a known target. For example, `it does not fit the iCE40 UP5K: it takes 9 of 8 DSP blocks`.
+/// Returns the resources that the smallest chip of a pipeline's target lacks, as a phrase such as `it does not fit the iCE40
+/// UP5K: it takes 9 of 8 DSP blocks`. Returns `None` if the core fits, or is no pipeline for a known target.
 fn misfit(one: &Loaded) -> Option<String> {
     let pipeline = one.core.design.pipeline.as_ref()?;
     let target = TARGETS.into_iter().find(|target| target.name() == pipeline.target)?;
@@ -147,17 +142,13 @@ fn misfit(one: &Loaded) -> Option<String> {
     (!excess.is_empty()).then_some(excess)
 }
 
-/// The generated files of a configuration.
 pub struct Made {
-    /// The files that `generate` writes or checks.
     pub files: OutputFiles,
-    /// The distance between two ROM words that the bench checks, in words. For example, 4 means that the bench checks every
-    /// fourth word, and 1 that it checks all words.
+    /// The distance between two ROM words that the bench checks. For example, 4 means that the bench checks every fourth word.
     word_stride: usize,
 }
 
-/// Makes every file of each configuration, in parallel, and with test benches if `with_bench` is true. Returns the files in the
-/// order of `loaded`.
+/// Makes every file of each configuration, in parallel, in the order of `loaded`.
 ///
 /// # Errors
 /// Fails if the files of a configuration cannot be made, or if two configurations have modules of the same name.
@@ -180,8 +171,7 @@ pub fn all_files(output: OutputOptions, loaded: &[Loaded], with_bench: bool) -> 
     Ok(made)
 }
 
-/// Makes every file of a configuration, with its test bench if `with_bench` is true. `known` is a cache of chosen computations.
-/// Fails if golden model and simulation differ, or if the files cannot be made.
+/// `known` is a cache of chosen computations.
 fn files(one: &Loaded, known: &ComputationCache, with_bench: bool) -> Result<Made> {
     let vectors = with_bench.then(|| one.core.shipped_vectors_of(known)).transpose();
     let vectors = vectors.with_context(|| format!("`{}`", one.path))?;
@@ -208,8 +198,7 @@ pub fn write(out: &Path, one: &Loaded, files: &OutputFiles, force: bool) -> Resu
     Ok(written)
 }
 
-/// Runs `--check`: reports the files on disk that differ from the generated files, and returns whether all are equal. Fails if
-/// a file on disk cannot be read.
+/// Reports the files on disk that differ from the generated files, and returns whether all are equal.
 fn compare(output: OutputOptions, out: &Path, loaded: &[Loaded], made: &[Made]) -> Result<bool> {
     let mut all = Vec::new();
     let driver = package::driver();
@@ -224,7 +213,6 @@ fn compare(output: OutputOptions, out: &Path, loaded: &[Loaded], made: &[Made]) 
     Ok(is_equal)
 }
 
-/// The paths of the files that differ from the generated files.
 struct Differences(Vec<String>);
 
 impl CommandReport for Differences {

@@ -22,11 +22,6 @@ Example:
   glint list --json")]
 pub struct Arguments;
 
-/// Runs `glint list`, which lists the devices, and the configurations in `configs/`, if there is such a directory. Returns
-/// true, because the command checks nothing.
-///
-/// # Errors
-/// Never fails.
 pub fn run(registry: &Registry, output: OutputOptions, _: &Arguments) -> Result<bool> {
     let configs: Vec<String> = if Path::new(CONFIGS).is_dir() {
         paths(&[]).unwrap_or_default().iter().map(|path| path.display().to_string()).collect()
@@ -37,15 +32,14 @@ pub fn run(registry: &Registry, output: OutputOptions, _: &Arguments) -> Result<
     Ok(true)
 }
 
-/// The devices, and the paths of the configurations in `configs/`.
 struct Inventory<'a> {
     devices: &'a [Device],
     configs: Vec<String>,
 }
 
 impl Inventory<'_> {
-    /// Prints the devices whose pipeline with the longest interval dominates their sequential core. A pipeline dominates if the
-    /// estimate for ECP5 gives it no more DSP blocks and no lower rate, and an advantage in at least one of both.
+    /// Prints the devices whose pipeline with the longest interval dominates their sequential core. A pipeline dominates if
+    /// the estimate for ECP5 gives it no more DSP blocks and no lower rate, and an advantage in at least one of both.
     fn print_longest_intervals(&self) {
         let rows: Vec<Option<Vec<String>>> =
             self.devices.par_iter().map(longest_interval).collect();
@@ -64,8 +58,8 @@ impl Inventory<'_> {
     }
 }
 
-/// Returns a row of the table: a device with the DSP blocks and rates, in million points per second, of its sequential core and
-/// of its pipeline with the longest interval. Returns `None` if the pipeline does not dominate.
+/// Compares the sequential core with the pipeline with the longest interval, if the pipeline dominates. The row has the DSP
+/// blocks of both, and their rates in million points per second.
 fn longest_interval(device: &Device) -> Option<Vec<String>> {
     let opened = device.open(device.defaults()).ok()?;
     let sequential = architectures::sequential(&opened, Target::Ecp5).ok()?;

@@ -18,7 +18,6 @@ use glint_core::package::HandshakeTiming;
 use glint_core::registry::Registry;
 use glint_golden::Bounds;
 
-/// The result of the main job for one configuration.
 struct MainJobResult {
     timing: HandshakeTiming,
     bounds: Bounds,
@@ -27,8 +26,8 @@ struct MainJobResult {
     failures: Vec<String>,
 }
 
-/// Runs the main job on the configurations in `configs/`, and returns whether every one has passed. With `details` it also
-/// prints where the largest error of each configuration is, and the remarks on its formula.
+/// Returns whether every configuration has passed. With `details` it also prints where the largest error of each configuration
+/// is, and the remarks on its formula.
 ///
 /// # Errors
 /// Fails if a configuration has problems, if files cannot be written, or if a simulation cannot be run.
@@ -49,7 +48,6 @@ pub fn run(registry: &Registry, output: OutputOptions, details: bool) -> Result<
     Ok(holds)
 }
 
-/// The results of all configurations.
 struct MainJobReport<'a> {
     loaded: &'a [Loaded],
     findings: &'a [MainJobResult],
@@ -80,7 +78,7 @@ fn finding(one: &Loaded, bar: &indicatif::ProgressBar) -> Result<MainJobResult> 
     Ok(MainJobResult { timing: one.core.timing()?, bounds, outcome, failures })
 }
 
-/// The columns of the table. On the screen, only the line with the counts follows the table.
+/// On the screen, only the line with the counts follows the table.
 const COLUMNS: &str = "configuration | device;6 | clocks/point:2 | points:4 | clocks:7 | registers, outputs:8 | ROM bits:3 | \
                        bound:1 | largest error: | verdict";
 
@@ -137,15 +135,15 @@ fn print(loaded: &[Loaded], findings: &[MainJobResult], details: bool) -> Result
     Ok(())
 }
 
-/// Returns the short name of a configuration in `configs/`, and the whole path of any other. For example, `configs/rough.toml`
-/// is `rough`.
+/// Returns the short name of a configuration in `configs/`, such as `rough` for `configs/rough.toml`, and the whole path of
+/// any other.
 fn short(path: &str) -> &str {
     let name = path.strip_prefix(CONFIGS).and_then(|name| name.strip_prefix('/'));
     name.and_then(|name| name.strip_suffix(".toml")).unwrap_or(path)
 }
 
-/// Returns a sentence with the numbers of configurations that hold, that are outside the contract and that fail. A
-/// configuration whose contract states no bound counts only in the total. For example, `19 of 21 hold; 2 FAIL.`
+/// Returns a sentence such as `19 of 21 hold; 2 FAIL.` A configuration whose contract states no bound counts only in the
+/// total.
 fn counts(findings: &[MainJobResult]) -> String {
     let (mut hold, mut outside, mut fail) = (0, 0, 0);
     for finding in findings {

@@ -1,4 +1,4 @@
-//! `glint merge`: joins the results of an exhaustive check that was divided among machines by `glint cosim --exhaustive --shard`.
+//! `glint merge`: joins the results of a check by `glint cosim --exhaustive --shard` that was divided among machines.
 
 use std::path::PathBuf;
 
@@ -29,8 +29,7 @@ pub struct Arguments {
     sweep: SweepValues,
 }
 
-/// Runs `glint merge`, which joins the results of an exhaustive check that was divided among machines by `glint cosim
-/// --exhaustive --shard`. Returns whether the joined check holds.
+/// Returns whether the joined check holds.
 ///
 /// # Errors
 /// Fails if a file cannot be read, or if the files are not the complete shards of this configuration and build.

@@ -1,6 +1,5 @@
-//! Reports the first difference between golden model and hardware, for people and for scripts.
-//!
-//! The report comes with a waveform file and a command that reproduces the difference.
+//! Reports the first difference between golden model and hardware, for people and for scripts, with a waveform file and a
+//! command that reproduce the difference.
 
 use std::fs::{self, File};
 use std::io::BufWriter;
@@ -20,19 +19,15 @@ use glint_rtl::sim::views;
 /// The number of clocks in the waveform that ends with a difference.
 const WINDOW: u64 = 64;
 
-/// A waveform file and a command that reproduces a difference.
 pub struct Reproducer {
-    /// The file with the waveform of the clocks before the difference.
+    /// The waveform of the clocks before the difference.
     vcd: PathBuf,
-    /// The first clock in the file.
     from: u64,
-    /// The command that records all clocks.
     command: String,
 }
 
 impl Reproducer {
-    /// Runs the stream with a difference again, and writes the waveform of its last clocks into the working directory, as
-    /// [`waveform_of`] names the file.
+    /// Runs the stream with a difference again, and writes the waveform of its last clocks into the file of [`waveform_of`].
     ///
     /// # Errors
     /// Fails if the run fails, or if the waveform cannot be written.
@@ -52,8 +47,8 @@ impl Reproducer {
         })
     }
 
-    /// Runs a combination of operands with a difference again, and writes the waveform of its last clocks into the working
-    /// directory, as [`waveform_of`] names the file.
+    /// Runs a combination of operands with a difference again, and writes the waveform of its last clocks into the file of
+    /// [`waveform_of`].
     ///
     /// # Errors
     /// Fails if the run fails, or if the waveform cannot be written.
@@ -67,7 +62,7 @@ impl Reproducer {
         Ok(Self { vcd, from, command: format!("{Program} cosim {} --exhaustive", one.path) })
     }
 
-    /// Returns a phrase that tells the user in which clocks the difference is recorded, and how to record all clocks.
+    /// Says in which clocks the difference is recorded, and how to record all clocks.
     pub fn text(&self, mismatch: &Mismatch) -> String {
         format!(
             "`{}` shows clocks {} to {}; to see all clocks: {}",
@@ -78,8 +73,7 @@ impl Reproducer {
         )
     }
 
-    /// Returns the difference as JSON, with the keys of [`as_json`], and with the waveform file as `vcd` and the command as
-    /// `reproduce`.
+    /// Adds the waveform file as `vcd` and the command as `reproduce` to [`as_json`].
     pub fn json(&self, mismatch: &Mismatch) -> Value {
         let mut value = as_json(mismatch);
         value["vcd"] = json!(self.vcd.display().to_string());
@@ -88,8 +82,8 @@ impl Reproducer {
     }
 }
 
-/// Returns a difference as JSON for scripts. Bit patterns are written as text, because they may have 64 bits, and many JSON
-/// readers lose digits of such numbers. For example, the key `golden` has the text `0x1f`.
+/// Bit patterns are written as text, such as `0x1f`, because they may have 64 bits, and many JSON readers lose digits of such
+/// numbers.
 pub fn as_json(mismatch: &Mismatch) -> Value {
     json!({
         "seed": mismatch.seed,
@@ -101,24 +95,23 @@ pub fn as_json(mismatch: &Mismatch) -> Value {
     })
 }
 
-/// Returns the path of the waveform file for a difference, and the clock at which the waveform begins.
+/// Returns the path of the waveform file, and the clock at which the waveform begins.
 fn window(one: &Loaded, mismatch: &Mismatch) -> (PathBuf, u64) {
     (waveform_of(one), first_clock(mismatch.clock))
 }
 
-/// Returns the path of the waveform file for a difference, in the working directory. For example, `rough_mismatch.vcd`.
+/// Returns a path in the working directory, for example `rough_mismatch.vcd`.
 pub fn waveform_of(one: &Loaded) -> PathBuf {
     PathBuf::from(format!("{}_mismatch.vcd", one.core.config().name))
 }
 
-/// Returns the first clock of a waveform that ends with clock `clock`: 64 clocks earlier, but at least 0. For example, the
-/// waveform of a difference at clock 100 begins with clock 36.
+/// Returns the first clock of a waveform that ends with clock `clock`: 64 clocks earlier, but at least 0.
 pub fn first_clock(clock: u64) -> u64 {
     clock.saturating_sub(WINDOW)
 }
 
 /// Runs the co-simulation again, for `points` results or up to a difference, and writes the waveform from clock `from` on. The
-/// file is written under a temporary name, and renamed when it is complete. Returns the outcome of the run.
+/// file is written under a temporary name, and renamed when it is complete.
 ///
 /// # Errors
 /// Fails if [`Lockstep::trace`] fails, or if the file cannot be written.
@@ -133,8 +126,7 @@ pub fn traced(
 }
 
 /// Lets `trace` write a waveform under a temporary name, and renames the file when it is complete. Also writes a view for each
-/// waveform viewer. The function leaves an existing view unchanged, because the view may be the user's. Fails if the waveform
-/// cannot be written. A view that cannot be written causes only a warning.
+/// waveform viewer, unless one exists, which may be the user's. A view that cannot be written causes only a warning.
 fn write<T>(
     one: &Loaded,
     destination: Destination,

@@ -1,5 +1,4 @@
-//! Defines the commands of `glint`, one in each module, and the code that they share, for example the loading of configuration
-//! files.
+//! Defines the commands of `glint`, one in each module, and the code that they share.
 //!
 //! The function `run` of a command returns whether everything that the command checks holds. A command that checks nothing
 //! returns true.
@@ -50,20 +49,17 @@ use glint_golden::Bounds;
 use glint_show::evidence::advice;
 use glint_tools::Tool;
 
-/// The directory of the configurations that are used if the user names none.
+/// The configurations here are used if the user names none.
 const CONFIGS: &str = "configs";
 
-/// A configuration file, and the core that it describes.
 pub struct Loaded {
     /// The path on the command line, with `/` as the separator. For example, `configs/rough.toml`.
     path: String,
     core: Core,
-    /// The text of the file, with the locations of its keys.
     source: ConfigSource,
 }
 
-/// Returns the configuration files in `named`. If `named` is empty, returns all TOML files in `configs/`, sorted. Fails if this
-/// directory cannot be read or has no TOML file.
+/// Returns the files in `named`, or all TOML files in `configs/`, sorted, if it is empty.
 fn paths(named: &[PathBuf]) -> Result<Vec<PathBuf>> {
     if !named.is_empty() {
         return Ok(named.to_vec());
@@ -89,10 +85,8 @@ fn paths(named: &[PathBuf]) -> Result<Vec<PathBuf>> {
     Ok(paths)
 }
 
-/// Reads the configurations `named`, or all in `configs/` if it is empty, and builds their designs.
-///
-/// The function fails if a file has problems or a design cannot be built, and reports the problems of all files. It also fails
-/// if two files name the same module, for example `rough`.
+/// Reads the configurations `named`, or all in `configs/` if it is empty, and builds their designs. The function reports the
+/// problems of all files before it fails. It also fails if two files name the same module, for example `rough`.
 fn load(registry: &Registry, named: &[PathBuf]) -> Result<Vec<Loaded>> {
     if named.iter().filter(|path| path.as_path() == Path::new(input::STDIN)).count() > 1 {
         wrong_usage!("standard input can be read only once: name `-` only once");
@@ -120,8 +114,8 @@ fn load(registry: &Registry, named: &[PathBuf]) -> Result<Vec<Loaded>> {
     if failed.is_empty() { Ok(loaded) } else { Err(Failure::Several(failed).into()) }
 }
 
-/// Does the same as [`load`], for a command that works only on cores with a microprogram. If `named` is empty, the pipelines in
-/// `configs/` are left out. If `named` has a pipeline, the function fails.
+/// Does the same as [`load`] for a command that works only on cores with a microprogram. If `named` is empty, the pipelines in
+/// `configs/` are left out; a pipeline in `named` is an error.
 fn load_sequential(registry: &Registry, named: &[PathBuf], command: &str) -> Result<Vec<Loaded>> {
     let (pipelines, loaded): (Vec<Loaded>, Vec<Loaded>) =
         load(registry, named)?.into_iter().partition(|one| one.core.design.pipeline.is_some());
@@ -157,8 +151,8 @@ fn load_one(registry: &Registry, path: &Path) -> Result<Loaded> {
     Ok(Loaded { path: name, core, source })
 }
 
-/// Returns an error with a location: for an error of a key, the location of the key in the file, and otherwise the name of the
-/// file. `source` has the locations of the keys.
+/// Adds the location of the key in the file to an error of a key, and otherwise the name of the file. `source` has the
+/// locations of the keys.
 fn located(error: anyhow::Error, file: &str, source: &ConfigSource) -> anyhow::Error {
     match source.located(error) {
         Ok(problems) => Failure::Problems(problems).into(),
@@ -166,34 +160,30 @@ fn located(error: anyhow::Error, file: &str, source: &ConfigSource) -> anyhow::E
     }
 }
 
-/// Returns a text for a message about a name that is not in `names`: the most similar name, if one is similar, and a list of
-/// all names. `what` is the plural noun for such names. For example, the text for `exponnt` begins with "; did you mean
-/// `exponent`?".
+/// Returns a text for a message about a name that is not in `names`: the most similar name, and a list of all names. `what` is
+/// the plural noun for such names. For example, the text for `exponnt` begins with "; did you mean `exponent`?".
 fn none_of(name: &str, what: &str, names: &[&str]) -> String {
     let near = config::nearest(name, names.iter().copied())
         .map_or_else(|| ".".to_owned(), |near| format!("; did you mean `{near}`?"));
     format!("{near} The {what} are: {}", names.join(", "))
 }
 
-/// Finds the tool Yosys. Returns `None` if it is missing, and adds a note with the text `without`, which must describe the
-/// command without Yosys.
+/// Returns `None` if Yosys is missing, and adds a note with the text `without`, which must describe the command without Yosys.
 fn yosys(without: &str, notes: &mut Vec<String>) -> Option<Tool> {
     Tool::find("yosys").map_err(|missing| notes.push(format!("{missing}: {without}"))).ok()
 }
 
-/// The verdict on a configuration whose outputs are right, within a bound that keeps the accuracy contract.
+/// The outputs are right, within a bound that keeps the accuracy contract.
 const HOLDS: &str = "holds";
 
-/// The verdict on a configuration whose outputs are right, within a bound that does not keep the accuracy contract.
+/// The outputs are right, within a bound that does not keep the accuracy contract.
 const OUTSIDE: &str = "outside the contract";
 
-/// The verdict on a configuration whose outputs are right, but were compared with no bound.
+/// The outputs are right, but were compared with no bound.
 const UNSTATED: &str = "no bound is stated";
 
-/// The verdict on a configuration with failures.
 const FAILS: &str = "FAILS";
 
-/// Returns the verdict on a configuration from its error bound and its failures.
 fn verdict(bounds: &Bounds, failures: &[String]) -> &'static str {
     match (failures.is_empty(), bounds.keep()) {
         (true, _) if !bounds.are_stated() => UNSTATED,
@@ -204,8 +194,7 @@ fn verdict(bounds: &Bounds, failures: &[String]) -> &'static str {
 }
 
 impl Loaded {
-    /// Returns every file of the configuration. If a key asks for something that the core cannot have, the error has the
-    /// location of the key in the file.
+    /// If a key asks for something that the core cannot have, the error has the location of the key in the file.
     fn files(&self, vectors: impl Into<Option<Vectors>>) -> Result<OutputFiles> {
         let files = self.core.files(&self.path, vectors);
         files.map_err(|error| located(error, &self.path, &self.source))
@@ -213,7 +202,7 @@ impl Loaded {
 
     /// Does the same as [`Loaded::bound`], and warns about a module name with `__`. If the device's own keys are not all at
     /// their defaults, it also prints the contract's remarks on the formula as warnings. For the defaults, the page of the
-    /// catalogue has the remarks. Fails as [`Loaded::bound`] does.
+    /// catalogue has them.
     fn contract(&self) -> Result<()> {
         self.bound()?;
         let config = self.core.config();
@@ -236,8 +225,8 @@ impl Loaded {
         Ok(())
     }
 
-    /// Warns if the configuration does not keep the accuracy contract, or if the contract states no bound. Fails instead if the
-    /// configuration sets `strict = true`.
+    /// Warns if the configuration does not keep the accuracy contract, or if the contract states no bound. With `strict =
+    /// true`, it fails instead.
     fn bound(&self) -> Result<()> {
         let bounds = self.core.contract.bounds();
         let bound = bounds.governing();

@@ -55,10 +55,9 @@ pub struct Arguments {
     time_limit: TimeLimit,
 }
 
-/// The score of one configuration.
 #[derive(Serialize)]
 struct Scored {
-    /// The version of Glint. A record begins with it.
+    /// The version of Glint, with which a record begins.
     glint: &'static str,
     config: String,
     device: &'static str,
@@ -69,7 +68,7 @@ struct Scored {
 }
 
 impl Scored {
-    /// Returns the share of undecided faults among all planted faults, of the netlist and of the Verilog, from 0 to 1.
+    /// Counts the faults of the netlist and of the Verilog.
     fn share_undecided(&self) -> f64 {
         let (mut planted, mut undecided) = (self.netlist.all.planted, self.netlist.all.undecided);
         if let Some(text) = &self.verilog {
@@ -84,10 +83,6 @@ impl Scored {
     }
 }
 
-/// Runs `glint mutate`, which plants faults in a configuration's hardware, one at a time, and shows which of them the tests
-/// notice. Returns whether at most 1 % of the faults of each configuration are undecided.
-///
-/// # Errors
 /// Fails if a configuration has problems, if the named fault does not exist, if a tool is missing, or if a record cannot be
 /// written.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
@@ -167,7 +162,6 @@ impl CommandReport for Scored {
     }
 }
 
-/// Prints the names of all faults of each configuration, or reports them as JSON. Returns true, because nothing is checked.
 fn list(output: OutputOptions, loaded: &[Loaded], faults: &[Faults]) -> Result<bool> {
     let mut list = output.list();
     for (one, faults) in loaded.iter().zip(faults) {
@@ -176,7 +170,6 @@ fn list(output: OutputOptions, loaded: &[Loaded], faults: &[Faults]) -> Result<b
     list.conclude(true)
 }
 
-/// The names of all faults of a configuration, for the report.
 struct FaultNames<'a> {
     one: &'a Loaded,
     faults: &'a Faults,
@@ -201,7 +194,7 @@ impl CommandReport for FaultNames<'_> {
 }
 
 /// Plants the fault `id`, and prints its verdict. If the fault is caught, also writes a waveform that ends with the first
-/// difference. Returns whether the fault is decided. Fails with wrong usage if the fault does not exist.
+/// difference. Returns whether the fault is decided.
 fn only(output: OutputOptions, one: &Loaded, id: &str) -> Result<bool> {
     let faults = Faults::of(&one.core.design);
     let Some(fault) = faults.find(id) else {
@@ -227,11 +220,10 @@ fn only(output: OutputOptions, one: &Loaded, id: &str) -> Result<bool> {
     Ok(*verdict != MutantVerdict::Undecided)
 }
 
-/// A fault with its verdict, for the report.
 struct PlantedFault<'a> {
     one: &'a Loaded,
     found: &'a FaultResult,
-    /// The file with the waveform of a fault that is caught, and its first and last clock. `None` if no waveform was written.
+    /// The file with the waveform of a fault that is caught, and its first and last clock.
     waveform: Option<(PathBuf, u64, u64)>,
 }
 
@@ -263,8 +255,7 @@ impl CommandReport for PlantedFault<'_> {
     }
 }
 
-/// Returns a phrase about where and how a mutant differs. For example, the phrase begins with `seed 3, with exponent=#5, after
-/// clock 120`.
+/// Returns a phrase that begins, for example, with `seed 3, with exponent=#5, after clock 120`.
 fn shown_by(SignalDifference { held, mismatch }: &SignalDifference) -> String {
     let mut holding = String::new();
     for (name, raw) in held {
@@ -339,7 +330,6 @@ fn print(scored: &Scored) {
     );
 }
 
-/// Returns the row of the table for one kind of faults, which has the name `name`.
 fn row(name: String, tally: &Tally) -> Vec<String> {
     let caught_by = |check| tally.caught.get(&check).copied().unwrap_or(0).to_string();
     vec![
@@ -359,8 +349,7 @@ fn print_undecided(ids: &[String]) {
     }
 }
 
-/// Prints how many of the faults that any test notices the shipped bench notices too, and whether this reaches the goal. For
-/// example, 96 of 100 upper bits of words in ROMs reach the goal of 95 %.
+/// Prints how many of the faults that any test notices the shipped bench notices too, and whether this reaches the goal.
 fn print_shipped(faults: &str, share: Share, goal: Option<f64>) {
     let verdict = match goal {
         Some(goal) => {

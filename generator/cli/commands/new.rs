@@ -58,14 +58,10 @@ pub struct Arguments {
     target: Option<String>,
 }
 
-/// The comment by which editors find the JSON Schema of the keys, and the command that makes the file with the schema.
+/// Editors find the JSON Schema of the keys by this comment.
 const SCHEMA: &str = "#:schema glint.schema.json\n# Editors check keys with this schema. To write the \
                       schema: glint schema > glint.schema.json\n\n";
 
-/// Runs `glint new`, which prints a configuration file for a device, or for a function that is given by its name, such as
-/// `rsqrt`. Returns true, because the command checks nothing.
-///
-/// # Errors
 /// Fails if no device or function has the name, or if an option has a value that a configuration cannot have.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let device = &arguments.device;
@@ -110,8 +106,8 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
 const MULTIPLIERS: &str = "pipeline.multipliers";
 const REGISTERED: &str = "registered";
 
-/// Returns whether a pipeline reaches its clock only with registers inside its multipliers. Returns `false` if the user has chosen
-/// the multipliers, and for a sequential core.
+/// Returns whether a pipeline reaches its clock only with registers inside its multipliers, and the user has not chosen the
+/// multipliers.
 ///
 /// # Errors
 /// Fails if the pipeline does not reach its clock with registers either, or if no netlist can be made.
@@ -128,9 +124,9 @@ fn needs_registered_multipliers(opened: &OpenedConfig, settings: &[KeyAssignment
     Err(Failure::WrongUsage(format!("{}; {}", error.message, error.remedy)).into())
 }
 
-/// Returns a comment about the pipeline with the longest interval, if it dominates the sequential core. The pipeline dominates
-/// if by the estimate it has no more DSP blocks and no lower rate, and an advantage in at least one of both. Returns `None` if
-/// it does not dominate, if the device cannot be a pipeline, or if the user has chosen an architecture.
+/// Returns a comment about the pipeline with the longest interval, if it dominates the sequential core. By the estimate, such
+/// a pipeline has no more DSP blocks and no lower rate, and an advantage in at least one of both. Returns `None` if the user
+/// has chosen an architecture.
 fn hint(opened: &OpenedConfig, given: &[String]) -> Option<String> {
     if given.iter().any(|key| key == "architecture") {
         return None;
@@ -148,7 +144,6 @@ fn hint(opened: &OpenedConfig, given: &[String]) -> Option<String> {
     ))
 }
 
-/// A new configuration, with its text in TOML.
 struct NewConfiguration<'a> {
     /// The name of the device or of the function, as the user gave it.
     device: &'a str,
@@ -169,9 +164,8 @@ impl CommandReport for NewConfiguration<'_> {
 }
 
 impl Arguments {
-    /// Returns the keys that the options set, with their values. For example, `--pipelined --clock 100` sets `architecture` and
-    /// `pipeline.clock_mhz`. `--clock 100` alone sets `package.constraints` and `package.clock_mhz`. Fails if a `--set` has no
-    /// `=` or no valid key.
+    /// Returns the keys that the options set. For example, `--pipelined --clock 100` sets `architecture` and
+    /// `pipeline.clock_mhz`. `--clock 100` alone sets `package.constraints` and `package.clock_mhz`.
     fn settings(&self) -> Result<Vec<KeyAssignment>> {
         let mut settings = Vec::new();
         if self.pipelined {
@@ -201,9 +195,6 @@ impl Arguments {
     }
 }
 
-/// Opens the configuration of the device of `schema` with these settings and the module name `name`.
-///
-/// # Errors
 /// Fails if a file with the name and the settings would be refused.
 fn opened(
     registry: &Registry,

@@ -34,7 +34,7 @@ pub struct Arguments {
     glint: String,
 }
 
-/// The files of the template, the crate of the device `parabola`: their paths in the crate, and their contents.
+/// The template, the crate of the device `parabola`: paths in the crate, and contents.
 const FILES: [(&str, &str); 6] = [
     ("Cargo.toml", include_str!("../new_device/manifest.toml")),
     ("src/lib.rs", include_str!("../new_device/lib.rs")),
@@ -44,10 +44,6 @@ const FILES: [(&str, &str); 6] = [
     ("tests/device.rs", include_str!("../new_device/test.rs")),
 ];
 
-/// Runs `glint new-device`, which writes a Rust crate with a device of the user's own, as a starting point. Returns true,
-/// because the command checks nothing.
-///
-/// # Errors
 /// Fails if the name cannot be the name of a new device, or if the crate cannot be written.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let name = &arguments.name;
@@ -59,9 +55,7 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     Ok(true)
 }
 
-/// A new crate with a device, for the report.
 struct NewCrate<'a> {
-    /// The name of the device.
     name: &'a str,
     directory: String,
 }
@@ -83,7 +77,7 @@ impl CommandReport for NewCrate<'_> {
     }
 }
 
-/// Writes all files below a new directory, or nothing. Fails if the directory exists.
+/// Writes all files below a new directory, or nothing.
 fn write(directory: &Path, files: &[(&str, String)]) -> Result<()> {
     if directory.symlink_metadata().is_ok() {
         bail!(
@@ -106,7 +100,7 @@ fn write(directory: &Path, files: &[(&str, String)]) -> Result<()> {
     fs::rename(&made, directory).with_context(cannot)
 }
 
-/// Checks the name of a new device. For example, `sine-wave` can be a name, and `Sine`, `2x` and `sine--wave` cannot.
+/// For example, `sine-wave` can be a name, and `Sine`, `2x` and `sine--wave` cannot.
 ///
 /// # Errors
 /// Fails if the name does not begin with a lower-case letter, or has other characters than lower-case letters, digits and
@@ -135,8 +129,8 @@ fn check_name(registry: &Registry, name: &str) -> Result<()> {
     Ok(())
 }
 
-/// Returns the text of a template file, changed to the device `name`. `glint` is the path of Glint's checkout. For example,
-/// `sine-wave` changes `parabola_device` to `sine_wave_device`.
+/// Changes the text of a template file to the device `name`. `glint` is the path of Glint's checkout. For example, `sine-wave`
+/// changes `parabola_device` to `sine_wave_device`.
 fn text_for(text: &str, name: &str, glint: &str) -> String {
     let module = name.replace('-', "_");
     let glint = toml::Value::from(glint.replace('\\', "/")).to_string();

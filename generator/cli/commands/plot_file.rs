@@ -1,12 +1,11 @@
-//! Makes a plot as an SVG file that needs no other file. The file has the style sheet, the title and the label of the axis
-//! inside.
+//! Makes a plot as an SVG file that needs no other file. The style sheet, the title and the label of the axis are inside.
 
 use anyhow::Result;
 
 use glint_show::evidence::chart::Chart;
 use glint_show::pages::plots;
 
-/// The style rules that are in the style sheet of a page elsewhere.
+/// In a page, its style sheet has these rules.
 const STYLE: &str = "<style>svg{background:#fcfcfb}text{fill:#1c1d1f;font-family:sans-serif}.ink{stroke:#5b5f66}text.ink{stroke:#fcfcfb;stroke-width:16;paint-order:stroke}\
                      .grid{stroke:#e6e8ea;stroke-width:4}.s1{stroke:#1b4fa8;stroke-width:8;stroke-linejoin:round}circle.s2{fill:#b3410b}\
                      @media(prefers-color-scheme:dark){svg{background:#16181b}text{fill:#e6e8ea}.ink{stroke:#9aa0a8}text.ink{stroke:#16181b}\
@@ -15,8 +14,7 @@ const STYLE: &str = "<style>svg{background:#fcfcfb}text{fill:#1c1d1f;font-family
 /// The height of the heading above the plot, in units of the drawing.
 const HEADING: u32 = 110;
 
-/// Returns a chart as the text of an SVG file that needs no other file. In the page of a report, title and axis label are next
-/// to the plot; in this file they are inside.
+/// In the page of a report, title and axis label are next to the plot; in this file they are inside.
 ///
 /// # Errors
 /// Fails if the plotting library fails.

@@ -24,7 +24,7 @@ use glint_show::render::{
 };
 use glint_tools::VerilogSimulator;
 
-/// The largest file that is read, in bytes. The OBJ file of the largest mesh is about as large.
+/// The limit is in bytes. The OBJ file of the largest mesh is about as large.
 const LARGEST_FILE: u64 = 4 << 30;
 
 /// Draw a picture whose highlights are bit-accurate results of the device
@@ -137,10 +137,6 @@ enum Through {
     Verilator,
 }
 
-/// Runs `glint render`, which draws a picture whose highlights are bit-exact results of a device. Returns true, because the
-/// command checks nothing.
-///
-/// # Errors
 /// Fails if the configuration has problems, if an option or an input file is not valid, if Verilator is missing, or if the
 /// picture cannot be written.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
@@ -179,7 +175,7 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
 }
 
 /// Returns the core of the configuration, and a name for messages. Without a configuration, uses the first device with its
-/// defaults. Fails if the configuration has problems.
+/// defaults.
 fn core(registry: &Registry, config: Option<&Path>) -> Result<(String, Core)> {
     if let Some(path) = config {
         let one = load_one(registry, path)?;
@@ -217,8 +213,7 @@ fn settings(core: &Core, arguments: &Arguments) -> Result<Settings> {
     })
 }
 
-/// Returns the scene that the options describe. If `coarse` is true, built-in shapes consist of large triangles, for a device
-/// that computes lines of points. Fails if a mesh or a height map cannot be used.
+/// If `coarse` is true, built-in shapes consist of large triangles, for a device that computes lines of points.
 fn scene(arguments: &Arguments, coarse: bool) -> Result<Scene> {
     let objects = match &arguments.mesh {
         Some(path) => {
@@ -263,7 +258,6 @@ fn scene(arguments: &Arguments, coarse: bool) -> Result<Scene> {
     Ok(scene)
 }
 
-/// Returns the contents of a file. Fails if the file cannot be read, or is larger than [`LARGEST_FILE`].
 fn read(path: &Path) -> Result<Vec<u8>> {
     let mut bytes = Vec::new();
     input::open(path)?.take(LARGEST_FILE + 1).read_to_end(&mut bytes)?;
@@ -273,17 +267,13 @@ fn read(path: &Path) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// The picture that was written, for the report.
 struct RenderedPicture<'a> {
     arguments: &'a Arguments,
-    /// The name of the configuration in messages.
     name: &'a str,
     core: &'a Core,
     settings: &'a Settings,
     rendered: &'a Rendered,
-    /// The number of triangles of all meshes.
     triangles: usize,
-    /// The number of triangles without area.
     degenerate: usize,
 }
 
@@ -310,7 +300,6 @@ impl<'a> RenderedPicture<'a> {
         self.arguments.out.display().to_string()
     }
 
-    /// Returns the name of the engine that computed the points, as on the command line. For example, `golden`.
     fn through(&self) -> String {
         let through = self.arguments.through.to_possible_value();
         through.map_or_else(String::new, |value| value.get_name().to_owned())
@@ -391,16 +380,14 @@ impl CommandReport for RenderedPicture<'_> {
     }
 }
 
-/// Parses a size in pixels. For example, `640x480` gives a width of 640 and a height of 480. Fails if the text has another
-/// form.
+/// Parses a width and a height, such as `640x480`.
 fn size(text: &str) -> Result<(u32, u32), String> {
     let sides = text.split_once(['x', 'X']);
     let sides = sides.and_then(|(width, height)| Some((width.parse().ok()?, height.parse().ok()?)));
     sides.ok_or_else(|| "expected WxH in pixels, for example 640x480".to_owned())
 }
 
-/// Parses finite numbers that are separated by commas. For example, `1, 2.5` gives 1 and 2.5. Fails if a part is no finite
-/// number, such as `inf`.
+/// Parses finite numbers that are separated by commas.
 fn numbers(text: &str) -> Result<Vec<f64>, String> {
     text.split(',')
         .map(|word| match word.trim().parse::<f64>() {
@@ -410,8 +397,7 @@ fn numbers(text: &str) -> Result<Vec<f64>, String> {
         .collect()
 }
 
-/// Parses `NAME=VALUE`, in which the value must be one finite number. For example, `alpha2=0.04`. Fails if the text has another
-/// form.
+/// Parses for example `alpha2=0.04`; the value must be one finite number.
 fn operand(text: &str) -> Result<(String, f64), String> {
     let (name, value) =
         text.split_once('=').ok_or("expected NAME=VALUE, for example alpha2=0.04")?;
@@ -432,7 +418,7 @@ fn colour(text: &str) -> Result<Vector, String> {
     of_light(vector(text)?)
 }
 
-/// Returns the colour if its three components are from 0 to 1, and fails otherwise.
+/// The three components must be from 0 to 1.
 fn of_light(colour: Vector) -> Result<Vector, String> {
     let is_colour = colour.0.iter().all(|part| (0.0..=1.0).contains(part));
     is_colour.then_some(colour).ok_or_else(|| "a colour is three numbers from 0 to 1".to_owned())
@@ -450,7 +436,7 @@ fn light(text: &str) -> Result<Light, String> {
     Ok(Light { direction: direction.ok_or("0,0,0 is not a direction")?, colour })
 }
 
-/// Parses a number from `low` to `high`, both included. Fails with the message `wanted` for anything else.
+/// Both limits are allowed. `wanted` is the message for anything else.
 fn between(text: &str, low: f64, high: f64, wanted: &str) -> Result<f64, String> {
     let number = text.parse().ok().filter(|number| (low..=high).contains(number));
     number.ok_or_else(|| wanted.to_owned())

@@ -8,8 +8,8 @@ use csv::{ReaderBuilder, StringRecord, Trim};
 
 use glint_base::input;
 
-/// Reads the rows of a CSV file, or of standard input if the path is `-`. `columns` interprets the headings, and `of_row`
-/// converts each row. Returns the converted rows in the order of the file.
+/// Reads a CSV file, or standard input if the path is `-`. `columns` interprets the headings, and `of_row` converts each row.
+/// Returns the converted rows in the order of the file.
 ///
 /// # Errors
 /// Fails if the file cannot be read, has a quote that is not closed, or has no row below the headings. Fails also if `columns`
@@ -52,7 +52,6 @@ pub fn read<C, T>(
 }
 
 /// Returns the line number of a record that begins at byte `start`, counted from 1. Empty lines before the record are skipped.
-/// For example, the first row below the headings is in line 2.
 fn line(text: &str, start: usize) -> usize {
     let record = text[start..].trim_start_matches(['\r', '\n']);
     1 + text[..text.len() - record.len()].matches('\n').count()

@@ -1,5 +1,5 @@
-//! `glint schedule`: shows the stages of a pipeline, and the operations in each. It also shows the passes that rewrite the
-//! computation, and the computation after a pass.
+//! `glint schedule`: shows the stages of a pipeline, the passes that rewrite the computation, and the computation after a
+//! pass.
 
 use std::path::PathBuf;
 
@@ -47,10 +47,6 @@ pub struct Arguments {
     after: Option<String>,
 }
 
-/// Runs `glint schedule`, which shows the stages of a pipeline, and the operations in each. Returns true, because the command
-/// checks nothing.
-///
-/// # Errors
 /// Fails if a configuration has problems, if a named configuration is sequential, or if no configuration is a pipeline. Fails
 /// also if no pass has the name in `--after`, or if a drawing was edited or cannot be written.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
@@ -133,7 +129,6 @@ impl CommandReport for PassList<'_> {
     }
 }
 
-/// The computation of a configuration after a pass.
 struct PassText<'a> {
     path: &'a str,
     pass: &'a str,
@@ -141,10 +136,7 @@ struct PassText<'a> {
 }
 
 impl<'a> PassText<'a> {
-    /// Returns the computation after the pass with the name `pass`.
-    ///
-    /// # Errors
-    /// Fails if no pass that rewrites this computation has the name.
+    /// Fails if no pass that rewrites this computation has the name `pass`.
     fn new(one: &'a Loaded, pass: &'a str) -> Result<Self> {
         let results = one.core.opened.pass_results()?;
         let Some(result) = results.iter().find(|result| result.name == pass) else {
@@ -167,7 +159,6 @@ impl CommandReport for PassText<'_> {
     }
 }
 
-/// A configuration with its pipeline, for the report.
 struct PipelineSchedule<'a> {
     one: &'a Loaded,
     pipeline: &'a Pipeline,
@@ -238,8 +229,7 @@ fn print(one: &Loaded, pipeline: &Pipeline) {
     tables::print(&headings, rows);
 }
 
-/// Returns the multipliers with their products by slot. The list is empty if every clock takes a point, because each product then
-/// has a multiplier of its own.
+/// The list is empty if every clock takes a point, because each product then has a multiplier of its own.
 fn multiplier_slots(one: &Loaded, pipeline: &Pipeline) -> Vec<(String, Vec<Option<String>>)> {
     match pipeline.interval {
         1 => Vec::new(),
@@ -247,7 +237,7 @@ fn multiplier_slots(one: &Loaded, pipeline: &Pipeline) -> Vec<(String, Vec<Optio
     }
 }
 
-/// Returns the names of the values that a stage computes. For example, a stage with only a multiplier may compute `product`.
+/// Returns the names of the values that a stage computes.
 fn computed<'a>(design: &'a Design, pipeline: &'a Pipeline, stage: usize) -> Vec<&'a str> {
     pipeline.computed(design, stage).map(|(value, _)| value).collect()
 }

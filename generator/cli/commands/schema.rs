@@ -18,11 +18,6 @@ Example:
   and in the first line of my_core.toml: #:schema ./glint.schema.json")]
 pub struct Arguments;
 
-/// Runs `glint schema`, which prints a JSON Schema of the configuration keys, for editors and validators. Returns true, because
-/// the command checks nothing.
-///
-/// # Errors
-/// Never fails.
 pub fn run(registry: &Registry, _: OutputOptions, _: &Arguments) -> Result<bool> {
     tables::print_json(&config::json_schema(&registry.schemas()));
     Ok(true)

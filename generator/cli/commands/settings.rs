@@ -4,16 +4,15 @@ use anyhow::Result;
 
 use crate::wrong_usage;
 
-/// A key with the value that the user gives it.
 pub struct KeyAssignment {
-    /// The dotted name of the key, for example `cosine.fraction`.
+    /// The dotted name, for example `cosine.fraction`.
     pub key: String,
-    /// The value of the key, in TOML syntax.
+    /// The value in TOML syntax.
     pub value: String,
 }
 
 impl KeyAssignment {
-    /// Parses `KEY=VALUE`. A text needs no quotes: for example, `architecture=pipelined` sets `architecture = "pipelined"`.
+    /// Parses `KEY=VALUE`. A text needs no quotes: `architecture=pipelined` sets `architecture = "pipelined"`.
     ///
     /// # Errors
     /// Fails if there is no `=`, if the key is empty, or if it has other characters than ASCII letters, digits, `_`, `-` and
@@ -36,12 +35,12 @@ impl KeyAssignment {
         Ok(KeyAssignment { key: key.to_owned(), value })
     }
 
-    /// Returns the assignment of the text `word` to a key. The word is given without quotes.
+    /// `word` is a text without quotes.
     pub fn word(key: &str, word: &str) -> KeyAssignment {
         KeyAssignment { key: key.to_owned(), value: quoted(word) }
     }
 
-    /// Returns the line of TOML that sets the key, with a newline. For example, `cosine.fraction = 16`.
+    /// Returns TOML with a newline, for example `cosine.fraction = 16`.
     pub fn line(&self) -> String {
         format!("{} = {}\n", self.key, self.value)
     }

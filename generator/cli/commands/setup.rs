@@ -16,7 +16,7 @@ use glint_core::registry::Registry;
 use glint_show::render::setup::{Arc, direction, half};
 use glint_show::render::{self, Feed, Point, Vector};
 
-/// The prefix of the columns in which `setup` writes real values. `eval` ignores columns with this prefix.
+/// `setup` writes real values into columns with this prefix, which `eval` ignores.
 pub const REAL: &str = "real_";
 
 /// Compute a device's operands from vectors or angles, as a host does before it starts
@@ -79,15 +79,13 @@ pub struct Arguments {
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// An input of the command: a vector, or a number.
 #[derive(Clone, Copy)]
 struct Input {
     name: &'static str,
     vector: bool,
 }
 
-/// The names of the inputs of a device that computes lines: first the vectors, then the numbers, separated by blanks.
-/// `OF_POINT` has the names for a device that computes single points.
+/// The inputs of a device that computes lines: first the vectors, then the numbers, separated by blanks.
 const OF_LINE: [&str; 2] = [
     "normal_1 half_1 light_1 view_1 normal_2 half_2 light_2 view_2",
     "theta_1 theta_2 gamma points exponent intensity",
@@ -105,19 +103,17 @@ struct HostInputs<'a> {
     inputs: Vec<Input>,
 }
 
-/// For each input, its components; a number has only the first. `None` if the user did not give it.
+/// The components of each input that the user gave; a number has only the first.
 type Given = Vec<[Option<f64>; 3]>;
 
-/// The operands that the command has computed.
 struct SetUp {
-    /// Intermediate quantities of the formulas: the name, the origin, the value and its unit.
+    /// The name of an intermediate quantity, its origin, its value and its unit.
     quantities: Vec<(&'static str, &'static str, f64, &'static str)>,
     raw: Vec<i64>,
     real: Vec<f64>,
 }
 
-/// Runs `glint setup`: computes the operands of one line or point, or of all rows of a CSV file. Returns true, because the
-/// command checks nothing.
+/// Computes the operands of one line or point, or of all rows of a CSV file.
 ///
 /// # Errors
 /// Fails if the configuration has problems, if an input is unknown, missing or not valid, if an operand would exceed its
@@ -155,7 +151,6 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     Ok(true)
 }
 
-/// The operands of one line or point, for the report.
 struct SingleSetUp<'a> {
     host: &'a HostInputs<'a>,
     set_up: SetUp,
@@ -172,7 +167,6 @@ impl CommandReport for SingleSetUp<'_> {
     }
 }
 
-/// The operands of a line or point for each row of a CSV file, for the report.
 struct BatchSetUp<'a> {
     host: &'a HostInputs<'a>,
     set_ups: Vec<SetUp>,
@@ -222,8 +216,7 @@ impl<'a> HostInputs<'a> {
         }
     }
 
-    /// Returns the index of an input. If `name` names a component of a vector, also returns the index of the component. For
-    /// example, `normal_1_y` gives the index of `normal_1`, and 1. Fails if the device has no such input.
+    /// Returns the index of an input, and the index of the component if `name` names one, as `normal_1_y` does.
     fn place(&self, name: &str) -> Result<(usize, Option<usize>), String> {
         if let Some(index) = self.index(name)
             && self.concerns(name)
@@ -248,19 +241,17 @@ impl<'a> HostInputs<'a> {
         Err(format!("there is no input `{name}` of `{device}`{}", none_of(name, "inputs", &names)))
     }
 
-    /// Returns the input that each column of a CSV file gives, in the form of [`Self::place`]. Fails if the device has no such
-    /// input.
+    /// Finds the input of each column of a CSV file, in the form of [`Self::place`].
     fn places(&self, headings: &StringRecord) -> Result<Vec<(usize, Option<usize>)>, String> {
         headings.iter().map(|heading| self.place(heading)).collect()
     }
 
-    /// Returns the index of an input, even if the device ignores it. Returns `None` if no input has this name.
+    /// Returns the index of an input, even if the device ignores it.
     fn index(&self, name: &str) -> Option<usize> {
         self.inputs.iter().position(|input| input.name == name)
     }
 
-    /// Parses the numbers for an input, and stores them in `given`. For example, a vector may be `0,0,1` or `0 0 1`. Fails if a
-    /// text is no finite number, if a vector has not three numbers, or if the input already has a value.
+    /// Parses the numbers for an input into `given`. Fails if the input has a value already.
     fn put(
         &self,
         given: &mut Given,
@@ -292,7 +283,6 @@ impl<'a> HostInputs<'a> {
         given[self.index(name)?][0]
     }
 
-    /// Returns the number of an input. Fails if the user did not give the input. For example, a line needs `points`.
     fn needed(&self, given: &Given, name: &str) -> Result<f64, String> {
         match self.number(given, name) {
             Some(number) => Ok(number),
@@ -300,8 +290,6 @@ impl<'a> HostInputs<'a> {
         }
     }
 
-    /// Returns the number of an input, which must be a whole number of at least `least`. Fails if it is missing, or not such a
-    /// number.
     fn whole(&self, given: &Given, name: &str, least: u32) -> Result<u32, String> {
         let value = self.needed(given, name)?;
         if value.fract() != 0.0 || !(f64::from(least)..=f64::from(u32::MAX)).contains(&value) {
@@ -312,8 +300,7 @@ impl<'a> HostInputs<'a> {
         Ok(value as u32)
     }
 
-    /// Returns a share of the light from 0 to 1. An input that is not given has the share 1. Fails if the share is outside 0 to
-    /// 1.
+    /// An input that is not given has the share 1.
     fn share(&self, given: &Given, name: &str) -> Result<f64, String> {
         let value = self.number(given, name).unwrap_or(1.0);
         if !(0.0..=1.0).contains(&value) {
@@ -324,8 +311,7 @@ impl<'a> HostInputs<'a> {
         Ok(value)
     }
 
-    /// Returns the angle of an input in radians. The user gives it in degrees: for example, 180 gives π. Fails if the angle is
-    /// missing, or not between the two limits in degrees.
+    /// The user gives the angle in degrees, between the two limits. The result is in radians.
     fn angle(&self, given: &Given, name: &str, (low, high): (f64, f64)) -> Result<f64, String> {
         let degrees = self.needed(given, name)?;
         if !(low..=high).contains(&degrees) {
@@ -349,9 +335,8 @@ impl<'a> HostInputs<'a> {
         }
     }
 
-    /// Returns the normal and the half vector, which may have any length. The array has the names of four inputs: the normal,
-    /// the half vector, and the directions toward light and viewer. Fails if a vector is missing, or if both the half vector
-    /// and the light are given.
+    /// The array has the names of four inputs: the normal, the half vector, and the directions toward light and viewer. The
+    /// vectors may have any length. Fails if a vector is missing, or if both the half vector and the light are given.
     fn pair(
         &self,
         given: &Given,
@@ -376,13 +361,12 @@ impl<'a> HostInputs<'a> {
         Ok((self.needed_vector(given, normal)?, half_vector))
     }
 
-    /// Returns the vector of an input. Fails if the user did not give the input, or not all of its components.
     fn needed_vector(&self, given: &Given, name: &str) -> Result<Vector, String> {
         let vector = self.vector(given, name)?;
         vector.ok_or_else(|| missing_vector(name, ""))
     }
 
-    /// Returns whether any of the inputs `angles` is given. Fails if a vector is given too.
+    /// Fails if both angles and vectors are given.
     fn by_angles(&self, given: &Given, angles: &[&str]) -> Result<bool, String> {
         let angle = angles.iter().find(|name| self.number(given, name).is_some());
         let mut vectors = self.inputs.iter().zip(given).filter(|(input, _)| input.vector);
@@ -396,8 +380,7 @@ impl<'a> HostInputs<'a> {
         }
     }
 
-    /// Computes the operands for one row of a CSV file. The cells of the row are added to the inputs `given` on the command
-    /// line; an empty cell gives no value. Fails if a cell is not valid, or if the operands cannot be computed.
+    /// Adds the cells of one row of a CSV file to the inputs `given` on the command line. An empty cell gives no value.
     fn set_up_row(
         &self,
         given: &Given,
@@ -584,24 +567,21 @@ impl<'a> HostInputs<'a> {
     }
 }
 
-/// Splits the text of a vector into its components, at commas, semicolons and blanks. For example, `0,0,1` and `0 0 1` both
-/// give `0`, `0` and `1`.
 fn components(text: &str) -> Vec<&str> {
     let separated = text.split(|c: char| c == ',' || c == ';' || c.is_whitespace());
     separated.filter(|part| !part.is_empty()).collect()
 }
 
-/// Returns a message about a missing vector. `or` names other inputs that may replace it.
+/// `or` names other inputs that may replace the vector.
 fn missing_vector(name: &str, or: &str) -> String {
     format!("input `{name}` is missing; give it{or}, or angles in place of vectors")
 }
 
-/// Returns the unit vector in the direction of an input. Fails if the vector has the length 0.
 fn unit_vector(name: &'static str, vector: Vector) -> Result<Vector, String> {
     direction(name, vector).map_err(|error| error.to_string())
 }
 
-/// Returns the unit vector at an angle, in radians, from the z axis toward the x axis.
+/// The angle is in radians, from the z axis toward the x axis.
 fn from_z(angle: f64) -> Vector {
     Vector::new(libm::sin(angle), 0.0, libm::cos(angle))
 }

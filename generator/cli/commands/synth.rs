@@ -101,10 +101,6 @@ struct FigureRecord<'a> {
     estimated_mhz: f64,
 }
 
-/// Runs `glint synth`, which measures area and frequency of a core by synthesis, placement and routing. Returns true, because
-/// the command checks nothing.
-///
-/// # Errors
 /// Fails if a configuration has problems, if the tools are missing or fail, or if a record cannot be written.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
@@ -143,8 +139,8 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     Ok(true)
 }
 
-/// Returns the targets for which the pipelines are scheduled, if every configuration is a pipeline with a known target. Returns
-/// an empty list otherwise. For example, one pipeline for ECP5 gives ECP5; a pipeline and a sequential core give an empty list.
+/// Returns the targets for which the pipelines are scheduled. The list is empty if any configuration is no pipeline with a
+/// known target.
 fn targets_of_pipelines(loaded: &[Loaded]) -> Vec<Target> {
     let mut targets = Vec::new();
     for one in loaded {
@@ -157,8 +153,8 @@ fn targets_of_pipelines(loaded: &[Loaded]) -> Vec<Target> {
     targets
 }
 
-/// Returns the tools for each target that is measured, and a note about each target whose tools are missing. Fails if the
-/// tools of a target that the user names are missing, if no target can be measured, or if a record would lack a target.
+/// Returns the tools for each target that is measured, and a note about each target whose tools are missing. Fails if the user
+/// names such a target, if no target can be measured, or if a record would lack a target.
 fn flows(arguments: &Arguments, loaded: &[Loaded]) -> Result<(Vec<Flow>, Vec<String>)> {
     let search = std::env::var_os("PATH").unwrap_or_default();
     let find = |target: Target| {
@@ -190,8 +186,7 @@ fn flows(arguments: &Arguments, loaded: &[Loaded]) -> Result<(Vec<Flow>, Vec<Str
     Ok((flows, notes))
 }
 
-/// Measures a configuration on all targets. Calls `done` with the number of finished steps, and `tell` with the figures of each
-/// target. Fails if a tool fails.
+/// Calls `done` with the number of finished steps, and `tell` with the figures of each target.
 fn measure<'a>(
     one: &'a Loaded,
     flows: &[Flow],
@@ -211,8 +206,8 @@ fn measure<'a>(
     Ok(Measurement { one, clocks_per_point, figures: figures.collect::<Result<_>>()? })
 }
 
-/// Measures a core on the target of `flow`. If the cache next to the configuration `path` has the figures under `name` and for
-/// the same Verilog and tools, returns them instead. Fails if a tool fails.
+/// Takes the figures from the cache next to the configuration `path`, if it has them under `name` for the same Verilog and
+/// tools. Otherwise measures the core.
 fn figures(
     core: &Core,
     name: &str,
@@ -246,8 +241,7 @@ fn figures(
 }
 
 impl Arguments {
-    /// Returns a pool with as many threads as `--jobs` states, or as many as Glint uses. Fails if the threads cannot be
-    /// started.
+    /// Returns a pool with as many threads as `--jobs` states, or as many as Glint uses.
     fn threads(&self) -> Result<ThreadPool> {
         let threads = match self.jobs {
             Some(jobs) => usize::from(jobs),

@@ -86,8 +86,7 @@ pub struct Arguments {
     csv: bool,
 }
 
-/// Runs `glint tune`, which searches for a small configuration of a device whose error bound is at most a given limit. The
-/// search does not try every configuration, so a smaller one may exist. Returns true, because the command checks nothing.
+/// The search does not try every configuration, so a smaller one may exist.
 ///
 /// # Errors
 /// Fails if an option is not valid, if no configuration reaches the goal, or if a file cannot be written.
@@ -152,7 +151,6 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     Ok(true)
 }
 
-/// The result of a search, for the report.
 struct TunedConfiguration<'a> {
     device: &'a Device,
     answer: &'a Answer,
@@ -175,8 +173,7 @@ impl CommandReport for TunedConfiguration<'_> {
     }
 }
 
-/// Opens the new file that an option names. Returns `None` without the option. Fails if the file exists and `--force` is not
-/// given.
+/// Returns `None` without the option. Fails if the file exists and `--force` is not given.
 fn fresh_file(path: Option<&Path>, force: Force) -> Result<Option<Destination>> {
     match path {
         Some(path) => Ok(Some(Destination::fresh(path, force.force)?)),
@@ -184,8 +181,8 @@ fn fresh_file(path: Option<&Path>, force: Force) -> Result<Option<Destination>> 
     }
 }
 
-/// Returns the device, the configuration from which the search starts, and the keys that the user has set and the search must
-/// not change. Fails if there is no such device, or if a setting is not valid.
+/// Returns the device, the configuration from which the search starts, and the keys of `--set`, which the search must not
+/// change.
 fn base(registry: &Registry, arguments: &Arguments) -> Result<(Device, Config, Vec<String>)> {
     let Some(device) = registry.device(&arguments.device) else {
         let names: Vec<&str> = registry.devices().iter().map(|device| device.name).collect();
@@ -208,13 +205,11 @@ fn base(registry: &Registry, arguments: &Arguments) -> Result<(Device, Config, V
     Ok((*device, opened.config, fixed))
 }
 
-/// Returns a phrase about the origin of the error bounds, for example `proved`.
 fn origin(device: &Device) -> &'static str {
     if device.proved { "proved" } else { "stated by its author" }
 }
 
-/// Returns the text of a configuration file with the best configuration. Comments at the beginning state the result of the
-/// search.
+/// Comments at the beginning of the file state the result of the search.
 fn toml(device: &Device, best: &Candidate, arguments: &Arguments) -> String {
     let cost = &best.cost;
     let clocks = match best.clocks {
@@ -245,8 +240,7 @@ fn toml(device: &Device, best: &Candidate, arguments: &Arguments) -> String {
     head + &best.config.to_toml(&(device.schema)())
 }
 
-/// Returns the keys that the search varied, with their values in a candidate, as text. For example, `cosine.fraction = 16,
-/// exponent.bits = 8`.
+/// Shows the keys that the search varied, in the form `cosine.fraction = 16, exponent.bits = 8`.
 fn widths(answer: &Answer, candidate: &Candidate) -> String {
     let mut shown = Vec::new();
     for key in &answer.free {

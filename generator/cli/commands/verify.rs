@@ -61,7 +61,7 @@ pub struct Arguments {
     time_limit: TimeLimit<3600>,
 }
 
-/// The files about one configuration. For example, `rough.html`, `rough.json` and `rough.timings.json`.
+/// The files about one configuration, such as `rough.html`, `rough.json` and `rough.timings.json`.
 struct Files {
     page: OwnFile,
     record: OwnFile,
@@ -88,13 +88,11 @@ impl Files {
     }
 }
 
-/// Runs `glint verify`, which runs tests and proofs on configurations, all that apply and that no option leaves out, and writes
-/// a record and a page about each. Returns whether every configuration is verified, with or without the checks that
-/// `--without-tools` leaves out.
+/// Returns whether every configuration is verified, with or without the checks that `--without-tools` leaves out.
 ///
 /// # Errors
-/// Fails if a configuration has problems, or if a file was not written by Glint or cannot be written. A tool that is missing is
-/// part of the result.
+/// Fails if a configuration has problems, or if a file was not written by Glint or cannot be written. A missing tool is no
+/// error, but a part of the result.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
     let mut files = Vec::new();
@@ -112,7 +110,6 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     list.conclude(verified)
 }
 
-/// The record of a configuration, and the paths of the files about it, for the report.
 struct Verification<'a> {
     one: &'a Loaded,
     record: VerificationRecord,
@@ -161,7 +158,7 @@ fn one_configuration(
     Ok((VerificationRecord::new(&subject, answers), timings))
 }
 
-/// Prints the conclusion, the titles of all checks that neither hold nor fail, and the commands that complete the verification.
+/// Also prints the titles of all checks that neither hold nor fail, and the commands that complete the verification.
 fn print_conclusion(one: &Loaded, record: &VerificationRecord) {
     let mut counts: Vec<String> = Vec::new();
     for (verdict, count) in &record.counts {
@@ -193,7 +190,7 @@ fn print_conclusion(one: &Loaded, record: &VerificationRecord) {
     }
 }
 
-/// Prints the answer of a check in a few lines, as soon as the check has ended.
+/// Prints the answer as soon as the check has ended.
 fn print(one: &Loaded, answer: &CheckAnswer) {
     let finding = &answer.finding;
     let domain =

@@ -44,7 +44,7 @@ pub struct Arguments {
     out: Option<PathBuf>,
 }
 
-/// The largest error of a configuration that a search has found: the contents of a record.
+/// The largest error that a search has found, as a record states it.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct LargestError {
     /// The version of Glint. A record begins with it.
@@ -65,7 +65,6 @@ struct LargestError {
     exact: f64,
 }
 
-/// The report on one configuration.
 #[derive(Serialize)]
 struct WorstReport<'a> {
     #[serde(skip)]
@@ -79,8 +78,8 @@ struct WorstReport<'a> {
     recorded: Option<LargestError>,
 }
 
-/// Runs `glint worst`, which searches for the operands with the largest error of an output. Returns whether the errors of all
-/// configurations are within their bounds. If a contract states no bound, a finite error is within it.
+/// Returns whether the errors of all configurations are within their bounds. If a contract states no bound, a finite error is
+/// within it.
 ///
 /// # Errors
 /// Fails if a configuration has problems or no output, or if a record cannot be read or written.
@@ -173,9 +172,9 @@ fn climbs(starts: u64) -> String {
     format!("{} climb{}", text::grouped(starts), if starts == 1 { "" } else { "s" })
 }
 
-/// Returns the file of the record, and the record in this file if it belongs to the same contract. Returns `None` without
-/// `--out`. For example, the record of `configs/rough.toml` is `rough.json` in the directory. Fails if Glint did not write the
-/// file, or if the file was edited, cannot be written or is no such record.
+/// Returns the file of the record, such as `rough.json` for `configs/rough.toml`, and the record in it if it belongs to the
+/// same contract. Returns `None` without `--out`. Fails if Glint did not write the file, or if the file was edited, cannot be
+/// written or is no such record.
 fn record(one: &Loaded, arguments: &Arguments) -> Result<Option<(OwnFile, Option<LargestError>)>> {
     let Some(directory) = &arguments.out else { return Ok(None) };
     let name = format!("{}.json", one.core.config().name);

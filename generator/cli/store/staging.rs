@@ -12,17 +12,13 @@ use crate::directories::{create_directory, create_parent};
 use glint_core::package::OutputFile;
 use glint_tools::transient::{self, Directory};
 
-/// A temporary directory with complete new files, next to the directories to which they will be moved.
+/// A temporary directory with complete new files. It is next to the directories to which they will be moved.
 pub struct Staging {
     directory: Directory,
-    /// The paths of the files, as in [`OutputFile::path`].
     made: Vec<String>,
 }
 
 impl Staging {
-    /// Writes the files of a configuration into a temporary directory below `out`.
-    ///
-    /// # Errors
     /// Fails if `out` cannot be written. The temporary directory is then removed.
     pub fn new(out: &Path, files: &[OutputFile]) -> Result<Self> {
         let cannot =
@@ -73,8 +69,7 @@ impl Staging {
     }
 }
 
-/// Moves the files in `staging` to their places below `out`, in the order of `made`. The manifest, which has the digests of the
-/// other files, must be the last one. Fails if a file or a directory cannot be deleted, made or moved.
+/// Moves the files in the order of `made`. The manifest, which has the digests of the other files, must be the last one.
 fn place(out: &Path, staging: &Path, made: &[String]) -> Result<()> {
     for path in made {
         let (new, place) = (staging.join(path), out.join(path));
@@ -86,9 +81,8 @@ fn place(out: &Path, staging: &Path, made: &[String]) -> Result<()> {
     Ok(())
 }
 
-/// Deletes everything that is in the way of a file: a directory in its place, or a file in the place of one of its directories.
-/// For example, a file `rtl_out/rough` must be deleted before `rtl_out/rough/rough.v` can be written. Fails if a file or a
-/// directory cannot be deleted.
+/// Deletes everything that is in the way of a file: a directory in its place, or a file in the place of one of its
+/// directories. A file `rtl_out/rough`, for instance, is in the way of `rtl_out/rough/rough.v`.
 fn make_room(out: &Path, path: &str) -> Result<()> {
     let cannot = |path: &Path| format!("cannot delete `{}`, which is in the way", path.display());
     let ends = path.match_indices('/').map(|(at, _)| at).skip(1);

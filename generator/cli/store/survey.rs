@@ -1,5 +1,5 @@
-//! Finds the files that are in the directories of a configuration. The module decides for each file whether Glint wrote the
-//! file, whether the user edited a file of Glint, or whether the file is foreign, which means that Glint never wrote it.
+//! Finds the files in the directories of a configuration. The module decides for each file whether Glint wrote it, or whether
+//! the user edited a file of Glint. A file that Glint never wrote is foreign.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -13,20 +13,20 @@ use super::{differs, directories};
 use glint_core::package::{OutputFile, digest};
 use glint_tools::transient::{files_below, relative_name};
 
-/// The differences between the files in the directories of a configuration and the files that should be there. All lists are
-/// sorted.
+/// The differences between the files that are in the directories of a configuration and the files that should be there. All
+/// lists are sorted.
 pub struct Survey {
     /// The paths below `out` of the files that must be written or replaced, and of the files that must be deleted because Glint
     /// wrote them earlier.
     pub different: Vec<String>,
-    /// The paths of files that Glint wrote and somebody edited, and of foreign files in the place of a file to be written.
+    /// The files that Glint wrote and somebody edited, and foreign files in the place of a file to be written.
     pub edited: Vec<PathBuf>,
-    /// The paths of files that Glint wrote and that are no longer needed.
+    /// The files that Glint wrote and no longer needs.
     pub stale: Vec<PathBuf>,
 }
 
 impl Survey {
-    /// Compares the files of the configuration `name` below `out` with `files`, which should be there.
+    /// `files` are the files that should be there.
     ///
     /// # Errors
     /// Fails if a file or a directory cannot be read.
@@ -74,31 +74,27 @@ impl Survey {
     }
 }
 
-/// The owner of a file.
 enum Owner {
     /// Glint wrote the file, and nobody edited it.
     Glint,
     /// Glint wrote the file, and somebody edited it.
     Editor,
-    /// Glint never wrote the file. A symbolic link counts as such a file.
+    /// A symbolic link counts as such a file.
     Other,
 }
 
-/// The digests in a manifest; `None` if the file is missing or no manifest of Glint. For example, the manifest
-/// `rtl_out/rough/rough.json` has the digest of `rtl_out/rough/rough.v`.
+/// The digests in a manifest such as `rtl_out/rough/rough.json`; `None` if the file is missing or no manifest of Glint.
 struct Digests {
     manifest: String,
     digests: Option<BTreeMap<String, String>>,
 }
 
 impl Digests {
-    /// Reads a manifest below `out`. A file that is missing, or that is no manifest of Glint, gives no digests.
     fn read(manifest: &Path, out: &Path) -> Self {
         Self { manifest: relative_name(out, manifest), digests: parsed(manifest) }
     }
 
-    /// Returns the owner of a file. `relative` is its path below `out`, and `path` its path on disk. Without a manifest of
-    /// Glint, every file is foreign.
+    /// `relative` is the path below `out`, and `path` the path on disk. Without a manifest of Glint, every file is foreign.
     fn owner(&self, relative: &str, path: &Path) -> Owner {
         let Some(digests) = &self.digests else {
             return Owner::Other;
@@ -125,8 +121,7 @@ fn parsed(manifest: &Path) -> Option<BTreeMap<String, String>> {
     digests.iter().map(|(path, digest)| Some((path.clone(), digest.as_str()?.to_owned()))).collect()
 }
 
-/// Returns the files in the directories of a configuration, at any depth, sorted. A file in the place of such a directory is
-/// included. Fails if a directory cannot be read.
+/// Returns the files at any depth, sorted. A file in the place of one of the directories is included.
 fn present(out: &Path, name: &str) -> Result<Vec<PathBuf>> {
     let mut found = Vec::new();
     for directory in directories(out, name) {

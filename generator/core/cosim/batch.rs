@@ -1,8 +1,8 @@
 //! Defines the interface of the engines that compute many points (sets of operands) at once.
 //!
-//! An [`Engine`] takes the operands of many computations as [`Points`], and returns their results. There are three engines: the
-//! golden model ([`Golden`]), the built-in simulator ([`RustHdl`]), and the emitted Verilog under an outside simulator. For a
-//! core without mistakes all three return the same results, so a caller such as `glint render` may take any of them.
+//! There are three engines: the golden model ([`Golden`]), the built-in simulator ([`RustHdl`]), and the emitted Verilog under
+//! an outside simulator. For a core without mistakes all three return the same results, so a caller such as `glint render` may
+//! take any of them.
 
 mod lanes;
 
@@ -19,8 +19,8 @@ const LANES: usize = 32;
 /// The number of points that a thread computes as one piece of work.
 const PIECE: usize = 4096;
 
-/// The raw operands of many computations, and the number of results that each computation gives. A device that computes a line
-/// gives several results for one `start`; all other devices give one result.
+/// The raw operands of many computations, and the number of results of each. Only a device that computes lines gives several
+/// results for one `start`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Points {
     operands: usize,
@@ -30,7 +30,7 @@ pub struct Points {
 }
 
 impl Points {
-    /// Makes an empty list of points. Each point must have `operands` operands, in the order of the [`Contract`].
+    /// Each point must have `operands` operands, in the order of the [`Contract`].
     pub fn new(operands: usize) -> Self {
         Self { operands, values: Vec::new(), results: vec![0] }
     }
@@ -45,30 +45,26 @@ impl Points {
         assert_eq!(self.values.len(), self.operands * self.len(), "operands");
     }
 
-    /// Adds the computations of another list after the computations of this list. Both lists must have the same number of
-    /// operands per computation.
+    /// Adds the computations of another list, which must have the same number of operands per computation.
     pub fn append(&mut self, other: &Self) {
         let before = self.result_count();
         self.values.extend(&other.values);
         self.results.extend(other.results[1..].iter().map(|count| before + count));
     }
 
-    /// Returns the number of computations in the list.
     pub fn len(&self) -> usize {
         self.results.len() - 1
     }
 
-    /// Returns whether the list has no computations.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Returns the total number of results of all computations.
     pub fn result_count(&self) -> usize {
         self.results.last().copied().unwrap_or(0)
     }
 
-    /// Returns the raw operands of computation `at`, counted from 0, in the order of the [`Contract`].
+    /// Returns the raw operands of computation `at`, in the order of the [`Contract`].
     pub fn operands(&self, at: usize) -> &[i64] {
         &self.values[at * self.operands..(at + 1) * self.operands]
     }
@@ -79,14 +75,12 @@ impl Points {
         self.results[at]
     }
 
-    /// Returns the number of results of computation `at`, counted from 0.
     pub fn results(&self, at: usize) -> usize {
         self.results[at + 1] - self.results[at]
     }
 }
 
-/// An engine that computes the results of many points (sets of operands). There are three engines: the golden model, the
-/// built-in simulator and the emitted Verilog.
+/// Computes the results of many points (sets of operands).
 pub trait Engine {
     /// Returns the raw outputs of all computations, one after another. Each result has one value for each output, in the order
     /// of the [`Contract`]. A computation with several results has them in the order of their index.
@@ -94,7 +88,7 @@ pub trait Engine {
     /// # Errors
     /// Fails if a device does not finish a computation, if it gives more or fewer results than `points` expects, if a pipeline
     /// shows results in another clock than its latency states, or if a simulator or an outside tool fails. [`Golden`] also
-    /// fails if the number of operands per computation is not that of the contract.
+    /// fails if a computation has more or fewer operands than the contract.
     ///
     /// # Panics
     /// The other engines panic if a computation lacks an operand of the design.

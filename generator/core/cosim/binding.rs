@@ -1,8 +1,8 @@
 //! Finds, for each signal of a golden model, the port or the register of the design with the same name.
 //!
-//! A golden model predicts the values of a device's outputs and registers. Co-simulation compares the predictions with the
-//! simulated design by this binding. If there is none, the binding fails. A pipeline has checkpoints in place of registers. For
-//! example, the model's signal `busy` is bound to the port `busy` of the design.
+//! Co-simulation compares the predictions of the model with the simulated design by this binding, which fails if a signal has
+//! no partner. A pipeline has checkpoints in place of registers. For example, the model's signal `busy` is bound to the port
+//! `busy` of the design.
 
 use std::sync::Arc;
 
@@ -24,8 +24,7 @@ pub(super) enum Host {
     Pipe(Pipe),
 }
 
-/// A design and its golden model. Each signal of the model is matched with the port or register of the design that has its
-/// name.
+/// A design and its golden model, whose signals are matched by name.
 pub(super) struct Binding<'a> {
     pub(super) design: &'a Design,
     pub(super) measure: Measure<'a>,
@@ -44,9 +43,6 @@ pub(super) struct Binding<'a> {
 }
 
 impl<'a> Binding<'a> {
-    /// Matches the signals of a golden model with the ports and registers of a design.
-    ///
-    /// # Errors
     /// Fails if the model predicts a signal that the design does not have, or if the design has an architectural register or an
     /// output that the model does not predict. Fails also if design and contract do not have the same operands and outputs.
     pub(super) fn new(
@@ -82,13 +78,12 @@ impl<'a> Binding<'a> {
         })
     }
 
-    /// Returns whether the design is a pipeline.
     pub(super) fn is_pipeline(&self) -> bool {
         self.address.is_none()
     }
 
-    /// Fixes operands at the given raw values. Combinations then cover only the other operands. Random inputs seldom have other
-    /// values for a fixed operand.
+    /// Fixes operands at the given raw values. Combinations then cover only the other operands. Random inputs seldom have
+    /// other values for a fixed operand.
     pub(super) fn holding(mut self, held: &[(String, i64)]) -> Self {
         for (name, raw) in held {
             self.points.hold(name, *raw);

@@ -18,26 +18,24 @@ const SCATTER: u64 = 0x9e37_79b9_7f4a_7c15;
 #[derive(Clone)]
 pub(super) struct Space {
     ports: Arc<Ports>,
-    /// For each operand port, the bit pattern at which the caller fixed the operand; `None` if the operand varies.
+    /// For each operand port, the bit pattern at which the caller fixed the operand.
     held: Vec<Option<u64>>,
     /// The raw operands at the first places. For every later place, the operands are computed from the place. May be empty.
     listed: Vec<Vec<i64>>,
 }
 
 impl Space {
-    /// Makes the space of all combinations, in which every operand varies.
     pub(super) fn new(ports: &Arc<Ports>) -> Self {
         Self { held: vec![None; ports.operands.len()], listed: Vec::new(), ports: ports.clone() }
     }
 
-    /// Makes the space of all combinations, but place i has the raw operands `list[i]` as long as the list reaches. Each entry
-    /// has one value for each operand, in the order of the contract.
+    /// Makes the space of all combinations, but gives place i the raw operands `list[i]` as long as the list reaches.
     pub(super) fn listed(ports: &Arc<Ports>, list: &[Vec<i64>]) -> Self {
         Self { listed: list.to_vec(), ..Self::new(ports) }
     }
 
-    /// Fixes operands at raw values, given by name, so that the combinations cover only the other operands. The function ignores
-    /// a name that no operand has.
+    /// Fixes operands at raw values, so that the combinations cover only the other operands. A name that no operand has is
+    /// ignored.
     pub(super) fn hold(&mut self, held: &[(String, i64)]) {
         for (name, raw) in held {
             let operands = self.ports.operands.iter().zip(&mut self.held);
@@ -47,16 +45,14 @@ impl Space {
         }
     }
 
-    /// Returns the total number of bits of the operands that vary. For example, three operands of 8 bits give 16 if one of them
-    /// is fixed.
+    /// Returns the total number of bits of the operands that vary.
     pub(super) fn bits(&self) -> u32 {
         let operands = self.ports.operands.iter().zip(&self.held);
         let free = operands.filter(|(_, held)| held.is_none());
         free.map(|(port, _)| port.format.width()).sum()
     }
 
-    /// Returns the operand ports in their order, each with its bit pattern at a place. The pattern comes from the list for the
-    /// first places. Otherwise the pattern is the value at which the operand is fixed, or the operand's bits of the
+    /// Returns the operand ports, each with its bit pattern at a place: from the list, the fixed value, or the bits of the
     /// combination.
     fn at(&self, place: u64) -> impl Iterator<Item = (&OperandPort, u64)> {
         let mut bits = place.wrapping_mul(SCATTER);
@@ -75,7 +71,6 @@ impl Space {
         })
     }
 
-    /// Returns the name and the bit pattern of each operand at a place.
     pub(super) fn named(&self, place: u64) -> Vec<(String, u64)> {
         let operands = self.at(place);
         operands.map(|(port, pattern)| (port.name.clone(), pattern)).collect()
@@ -83,8 +78,8 @@ impl Space {
 }
 
 /// The inputs of a device that computes one combination after another, clock by clock. After one clock of reset, all operands
-/// are written in the clock of `start`. The next computation starts in the first clock in which the device can take it. Until
-/// then, the data ports have the complement of the written values.
+/// are written in the clock of `start`. Until the next `start`, the data ports have the complement of the written values. A
+/// core that reads them too late therefore gives wrong results.
 pub(super) struct Combinations {
     space: Arc<Space>,
     first: u64,
@@ -96,30 +91,28 @@ pub(super) struct Combinations {
 }
 
 impl Combinations {
-    /// Makes the inputs for the combinations at `count` places. `first` is the first of these places.
     pub(super) fn new(space: Arc<Space>, first: u64, count: u64) -> Self {
         let mut inputs = vec![0; space.ports.inputs];
         space.ports.out_ready.into_iter().for_each(|at| inputs[at] = 1);
         Self { space, first, count, started: 0, since_start: 0, reset: false, inputs }
     }
 
-    /// Returns whether all computations have started. The last of them may still run.
     pub(super) fn all_started(&self) -> bool {
         self.started == self.count
     }
 
-    /// Returns the place of the computation that runs, or that ran last.
+    /// The place of the computation that runs, or that ran last.
     pub(super) fn place(&self) -> u64 {
         self.first + self.started.saturating_sub(1)
     }
 
-    /// Returns the number of clocks since the latest `start`. Returns 0 in the clock that takes `start`.
+    /// Counts clocks; the clock that takes `start` is number 0.
     pub(super) fn since_start(&self) -> u64 {
         self.since_start
     }
 
-    /// Returns the bit patterns of all inputs in the next clock, in the order of the design's input ports. If `ready` is true,
-    /// the device takes the next computation in this clock.
+    /// Returns the bit patterns of all inputs in the next clock, in the order of the design's input ports. `ready` says that
+    /// the device can take a computation in this clock.
     pub(super) fn next(&mut self, ready: bool) -> &[u64] {
         let ports = &*self.space.ports;
         let starting = ready && self.reset && self.started < self.count;
@@ -149,7 +142,6 @@ impl Combinations {
         &self.inputs
     }
 
-    /// Returns the bit patterns of all inputs in the latest clock.
     pub(super) fn inputs(&self) -> &[u64] {
         &self.inputs
     }

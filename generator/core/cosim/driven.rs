@@ -45,8 +45,8 @@ impl Driven {
         })
     }
 
-    /// Starts a computation: for one clock, drives `start`, the strobes and the bit patterns of the operands, in the order of
-    /// the operands in [`Driven::new`]. In later clocks, all inputs but `rst_n` are 0.
+    /// For one clock, drives `start`, the strobes and the bit patterns of the operands, in the order of the operands in
+    /// [`Driven::new`]. In later clocks, all inputs but `rst_n` are 0.
     pub fn start(&mut self, patterns: impl Iterator<Item = u64>) {
         for (bits, &(data, strobe)) in patterns.zip(&self.operands) {
             self.inputs[data] = bits;
@@ -59,29 +59,24 @@ impl Driven {
         self.inputs[self.reset] = 1;
     }
 
-    /// Advances the model by one clock.
     pub fn clock(&mut self) {
         self.model.clock(&self.inputs);
     }
 
-    /// Returns whether the output `valid` is high, so that the model shows a result in this clock.
     pub fn is_valid(&self) -> bool {
         self.values()[self.valid] == 1
     }
 
-    /// Returns the bit patterns of all signals of the model, in the order of [`Driven::names`].
+    /// Returns bit patterns in the order of [`Driven::names`].
     pub fn values(&self) -> &[u64] {
         self.model.values()
     }
 
-    /// Returns the names of all signals of the model.
     pub fn names(&self) -> &[String] {
         self.model.signals()
     }
 }
 
-/// Returns the index of the signal `name` among the signals of a model. Fails if the model does not predict a signal with this
-/// name.
 pub(super) fn signal(model: &dyn Model, name: &str) -> Result<usize> {
     let at = model.signals().iter().position(|other| other == name);
     at.with_context(|| format!("the golden model does not predict `{name}`"))

@@ -14,15 +14,13 @@ pub const CLASSES: [&str; 9] =
 /// The upper ends of the classes `<0.001` to `<0.9`.
 const ENDS: [f64; 5] = [0.001, 0.01, 0.1, 0.5, 0.9];
 
-/// The number of results in each of [`CLASSES`].
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Histogram {
     counts: [u64; CLASSES.len()],
 }
 
 impl Histogram {
-    /// Counts a result whose reflectance has the raw value `f` in the format `format`, in the class of this reflectance. A
-    /// negative value counts as 0.
+    /// Counts a result with the reflectance `f`, a raw value in the format `format`. A negative value counts as 0.
     pub(super) fn add(&mut self, format: Format, f: i64) {
         // The largest word below 1.0 is as much as a fraction without integer bits can be.
         let class = if f <= 0 {
@@ -36,23 +34,20 @@ impl Histogram {
         self.counts[class] += 1;
     }
 
-    /// Counts a result whose operands are outside the domain, in the class `outside`.
     pub(super) fn add_outside(&mut self) {
         self.counts[CLASSES.len() - 1] += 1;
     }
 
-    /// Adds the counts of another histogram.
     pub(super) fn merge(&mut self, other: &Self) {
         self.counts.iter_mut().zip(&other.counts).for_each(|(sum, count)| *sum += count);
     }
 
-    /// Returns the number of results in each of [`CLASSES`].
     pub fn counts(&self) -> [u64; CLASSES.len()] {
         self.counts
     }
 
-    /// Returns the share of results whose `f` is neither 0 nor in the class `1`, as a number from 0 to 1. Results outside the
-    /// domain count in the total. Returns 0 if there are no results.
+    /// Returns the share of results whose `f` is neither 0 nor in the class `1`, from 0 to 1. Results outside the domain count
+    /// in the total.
     pub fn share_inside(&self) -> f64 {
         let inside: u64 = self.counts[1..CLASSES.len() - 2].iter().sum();
         inside as f64 / self.counts.iter().sum::<u64>().max(1) as f64

@@ -17,10 +17,6 @@ pub(super) struct Instances<const LANES: usize> {
 }
 
 impl<const LANES: usize> Instances<LANES> {
-    /// Makes a simulator of a design after its reset.
-    ///
-    /// # Errors
-    /// Fails if [`Ports::new`] or [`Simulator::new`] fails.
     pub(super) fn new(design: &Design, contract: &dyn Contract) -> Result<Self> {
         let ports = Ports::new(design, contract)?;
         let mut simulator = Simulator::<LANES>::new(design)?;
@@ -31,8 +27,8 @@ impl<const LANES: usize> Instances<LANES> {
         Ok(Self { simulator, ports })
     }
 
-    /// Starts a computation in some lanes in the next clock. Entry i of `computations` has the raw operands for lane i, in the
-    /// order of `Contract::operands`, or is `None` if lane i takes no computation.
+    /// Starts computations in the next clock. Entry i of `computations` has the raw operands for lane i, in the order of
+    /// `Contract::operands`; a lane without an entry starts nothing.
     pub(super) fn offer(&mut self, computations: [Option<&[i64]>; LANES]) {
         let taking = computations.map(|raw| u64::from(raw.is_some()));
         for port in &self.ports.operands {
@@ -44,14 +40,14 @@ impl<const LANES: usize> Instances<LANES> {
         self.simulator.set_lanes(self.ports.start, taking);
     }
 
-    /// Lowers `start` and all write strobes, so that no instance takes a computation. The operand values stay on the ports.
+    /// Lowers `start` and all write strobes. The operand values stay on the ports.
     pub(super) fn release(&mut self) {
         for at in self.ports.operands.iter().map(|port| port.strobe).chain([self.ports.start]) {
             self.simulator.set_lanes(at, [0; LANES]);
         }
     }
 
-    /// Returns the raw results that the instance in `lane` shows in this clock, in the order of `Contract::outputs`.
+    /// Returns the raw results that `lane` shows in this clock, in the order of `Contract::outputs`.
     pub(super) fn results(&self, lane: usize) -> impl Iterator<Item = i64> {
         let results = self.ports.results.iter();
         results.map(move |&(net, format)| format.raw(self.simulator.lane(net, lane)) as i64)

@@ -4,8 +4,8 @@
 //! and has its own seed for random inputs and its share of the results. The number of streams, their seeds and their shares
 //! depend only on the design, the seed of the run and the number of results.
 //!
-//! Up to [`LANES`] streams share a simulator, and each thread works on other simulators. The number of threads does not change
-//! the outcome. The outcome joins the streams in order, up to the first stream in which model and hardware differ.
+//! Up to [`LANES`] streams share a simulator, and each thread works on other simulators. The outcome joins the streams in
+//! order, up to the first stream in which model and hardware differ. The number of threads therefore does not change it.
 
 use std::io::Write;
 use std::sync::Arc;
@@ -42,8 +42,7 @@ const MANY_POINTS: u64 = 1024;
 /// The smallest number of streams of a divided run. A run with too few results for this number has only one stream.
 const FEWEST_STREAMS: u64 = 8;
 
-/// The largest number of results in a stream of a pipeline. The next constant is the smallest number of streams into which a
-/// run of a pipeline is divided.
+/// The largest number of results in a stream of a pipeline, and the smallest number of streams of a divided run.
 const PIPELINE_POINTS: u64 = 2048;
 const FEWEST_PIPELINES: u64 = 4;
 
@@ -72,14 +71,13 @@ impl<'a> Lockstep<'a> {
         Ok(Self { binding: Binding::new(design, model, contract)?, seed })
     }
 
-    /// Fixes operands at raw values, given as pairs of a name and a value. Random inputs still have other values for these
-    /// operands now and then.
+    /// Fixes operands at raw values. Random inputs still have other values for these operands now and then.
     #[must_use]
     pub fn holding(self, held: &[(String, i64)]) -> Self {
         Self { binding: self.binding.holding(held), ..self }
     }
 
-    /// Limits the randomly drawn lines to at most `results` results for one `start`. A device without lines does not change.
+    /// Limits the randomly drawn lines to at most `results` results for one `start`.
     #[must_use]
     pub fn with_lines_of(mut self, results: i64) -> Self {
         self.binding.shorten(results);
@@ -88,9 +86,7 @@ impl<'a> Lockstep<'a> {
 
     /// Compares random computations until `points` results were compared, or until model and hardware differ. A run of few
     /// results is one stream on one thread; a longer run has several streams, on all threads of rayon's pool. The function
-    /// returns the outcome of all streams.
-    ///
-    /// The function calls `progress` now and then with the number of results since the last call.
+    /// calls `progress` now and then with the number of results since the last call.
     ///
     /// # Errors
     /// Fails if the design cannot be simulated, or if its signals do not settle in a clock. A difference between model and
@@ -115,11 +111,7 @@ impl<'a> Lockstep<'a> {
     }
 
     /// Runs streams in one simulator; the first of them has number `first` in the run. The function stops early if an earlier
-    /// stream differs, and then returns the streams as far as they ran.
-    ///
-    /// # Errors
-    /// Fails if the design cannot be simulated, or if its signals do not settle in a clock. A difference between model and
-    /// hardware is no error.
+    /// stream differs, because the outcome then does not need these streams.
     fn group<const L: usize>(
         &self,
         courses: impl IntoIterator<Item = Course>,
@@ -145,7 +137,7 @@ impl<'a> Lockstep<'a> {
         group.into_seen()
     }
 
-    /// Makes the same comparison as [`Lockstep::run`], but in one stream with all results, from a single power-up.
+    /// Does the same as [`Lockstep::run`] in one stream, from a single power-up.
     ///
     /// # Errors
     /// Fails as [`Lockstep::run`] does.
@@ -155,9 +147,9 @@ impl<'a> Lockstep<'a> {
         Ok(self.outcome(alone.into_seen()?))
     }
 
-    /// Runs the streams of a run of `points` results in simulators of their own, and lets the caller observe each simulator.
-    /// `begin` makes an observer from the seed of a stream. After each clock, `note` gets the observer, the number of
-    /// results of the stream so far, and the simulator. Returns the observers in the order of the streams.
+    /// Runs the streams of a run of `points` results in simulators of their own, which the caller observes. `begin` makes an
+    /// observer from the seed of a stream. After each clock, `note` gets the observer, the number of results of the stream so
+    /// far, and the simulator. Returns the observers in the order of the streams.
     ///
     /// # Errors
     /// Fails as [`Lockstep::run`] does. A difference between model and hardware is not reported.
@@ -184,13 +176,12 @@ impl<'a> Lockstep<'a> {
             .collect()
     }
 
-    /// Records the vectors of a test bench: the inputs of every clock, and the outputs just before the clock's edge. The record
-    /// begins with random computations that have `points` results in all. The given `computations` follow; each is a list of
-    /// raw operands, in the order of `Contract::operands`.
+    /// Records the inputs of every clock of a test bench, and the outputs just before the clock's edge. The record begins with
+    /// random computations that have `points` results in all. The given `computations` follow: raw operands, in the order of
+    /// `Contract::operands`.
     ///
     /// # Errors
-    /// Fails if golden model and simulation differ, if the design cannot be simulated, or if its signals do not settle in a
-    /// clock.
+    /// Fails if golden model and simulation differ, or as [`Lockstep::run`] does.
     pub fn record(&self, points: u64, computations: &[Vec<i64>]) -> Result<Vectors> {
         let mut alone = self.alone(points)?;
         let mut vectors = Vectors::default();
@@ -203,10 +194,6 @@ impl<'a> Lockstep<'a> {
         Ok(vectors)
     }
 
-    /// Runs a stream to its end, and adds its clocks to the vectors.
-    ///
-    /// # Errors
-    /// Fails if golden model and simulation differ, or if the simulation fails.
     fn add(&self, vectors: &mut Vectors, alone: &mut Runner<'_, 1>) -> Result<()> {
         let valid = self.binding.ports.valid;
         while !alone.ended() {
@@ -235,10 +222,9 @@ impl<'a> Lockstep<'a> {
         Ok(())
     }
 
-    /// Runs golden model and simulation from power-up on with recorded inputs, for example the inputs from [`Lockstep::record`].
-    /// `streams` has the inputs by stream, then by clock, then by input port. Each stream runs for `clocks` clocks, and begins
-    /// again with its first clock after its last clock. The run compares the hardware with the golden model, and does not compare
-    /// results with the formula.
+    /// Runs golden model and simulation from power-up on with recorded inputs, for example from [`Lockstep::record`].
+    /// `streams` has the inputs by stream, clock and input port. Each stream runs for `clocks` clocks, and repeats its
+    /// recording. Results are not compared with the formula.
     ///
     /// # Errors
     /// Fails as [`Lockstep::run`] does. Fails also if a stream has no clock, or if a clock has more or fewer inputs than the
@@ -265,8 +251,7 @@ impl<'a> Lockstep<'a> {
         Ok(self.outcome(records.into_iter().flatten()))
     }
 
-    /// Makes the same comparison as [`Lockstep::run`] in one stream, and writes its waveform to `file`, in the VCD format, from
-    /// clock `from` on.
+    /// Does the same as [`Lockstep::run`] in one stream, and writes its waveform (VCD) to `file`, from clock `from` on.
     ///
     /// # Errors
     /// Fails as [`Lockstep::run`] does, or if the file cannot be written.
@@ -281,15 +266,11 @@ impl<'a> Lockstep<'a> {
         Ok(self.outcome(alone.into_seen()?))
     }
 
-    /// Makes a runner for one stream with `points` results, under the seed of the run.
-    ///
-    /// # Errors
-    /// Fails if the design cannot be simulated.
     fn alone(&self, points: u64) -> Result<Runner<'_, 1>> {
         Runner::new(&self.binding, [self.course(points, 1, 0)])
     }
 
-    /// Returns the course of stream `number` in a run of `streams` streams: the stream's seed, and its share of the results.
+    /// The course has the stream's seed and its share of the results.
     fn course(&self, points: u64, streams: u64, number: u64) -> Course {
         Course::Random {
             seed: stream_seed(self.seed, number),
@@ -301,8 +282,8 @@ impl<'a> Lockstep<'a> {
         Outcome::of(self.binding.registers, self.binding.outputs.len(), streams)
     }
 
-    /// Returns the number of streams into which a run of `points` results is divided. For example, the default test of 100 000
-    /// results has 64 streams for `rough`, and 49 for `rough_pipelined`.
+    /// Returns the number of streams of a run. For example, the default test of 100 000 results has 64 streams for `rough`,
+    /// and 49 for `rough_pipelined`.
     fn streams(&self, points: u64) -> u64 {
         if self.binding.is_pipeline() {
             let streams = points.div_ceil(PIPELINE_POINTS);

@@ -7,15 +7,13 @@ use glint_base::fixed::{Format, MAX_WIDTH, exp2};
 use glint_golden::{Contract, Output, nearer};
 use glint_rtl::netlist::{Design, NetId};
 
-/// Measures the errors of a contract's outputs against the formula in f64. The outputs come from the values of the signals that a
-/// run of the co-simulation compares, one result at a time. The struct keeps the largest error.
+/// Measures the errors of a contract's outputs against the formula in f64, one result at a time, and keeps the largest error.
+/// The outputs come from the signals that a run of the co-simulation compares.
 pub(super) struct Measure<'a> {
     pub(super) contract: &'a dyn Contract,
-    /// The outputs, in the order of the contract.
     outputs: Vec<OutputQuantity>,
 }
 
-/// An output of the contract among the compared signals.
 struct OutputQuantity {
     /// The index of the output among the compared signals.
     at: usize,
@@ -23,8 +21,8 @@ struct OutputQuantity {
     /// The weight of the last bit of the output, and the inverse of this weight.
     unit: f64,
     per_unit: f64,
-    /// The largest bound of any output, divided by the bound of this output. The errors of outputs with different bounds are
-    /// multiplied by this factor before they are compared.
+    /// The largest bound of any output, divided by the bound of this output. This factor makes the errors of outputs with
+    /// different bounds comparable.
     weight: f64,
 }
 
@@ -40,9 +38,6 @@ impl OutputQuantity {
 }
 
 impl<'a> Measure<'a> {
-    /// Finds the outputs of the contract among the compared `nets`.
-    ///
-    /// # Errors
     /// Fails if an output is not among `nets`, or has another format in the design.
     pub(super) fn new(design: &Design, contract: &'a dyn Contract, nets: &[NetId]) -> Result<Self> {
         let weights = contract.bounds().weights(ROUNDING_OF_F64);
@@ -68,15 +63,15 @@ impl<'a> Measure<'a> {
         Ok(Self { contract, outputs })
     }
 
-    /// Returns whether all raw operands, in the order of `Contract::operands`, are inside the domain of the contract.
+    /// `operands` are raw, in the order of `Contract::operands`.
     pub(super) fn inside(&self, operands: &[i64]) -> bool {
         let mut pairs = self.contract.operands().iter().zip(operands);
         pairs.all(|(operand, raw)| (operand.domain.0..=operand.domain.1).contains(raw))
     }
 
-    /// Measures one result: counts its word `f` if the device is a highlight, and updates the largest error in `seen`. `values`
-    /// has the compared signals with the result, and `index` is the number of the result in its computation, from 0. The raw
-    /// `operands` must be inside the domain.
+    /// Counts the word `f` of one result if the device is a highlight, and updates the largest error in `seen`. `values` has
+    /// the compared signals, and `index` is the number of the result in its computation, from 0. The raw `operands` must be
+    /// inside the domain.
     #[inline]
     pub(super) fn note(
         &self,

@@ -1,8 +1,8 @@
 //! Co-simulates a design with its golden model.
 //!
-//! A *point* is one set of operands, for which a device computes one set of results; a device such as `quad-cosine` computes a
+//! A *point* is one set of operands, for which a device computes one set of results. A device such as `quad-cosine` computes a
 //! line of many points after one `start`. The modules draw random inputs, compare model and simulated hardware at every clock,
-//! measure the error of the results, and check all operand combinations of small devices.
+//! measure errors, and check all operand combinations of small devices.
 
 pub mod batch;
 mod binding;

@@ -1,10 +1,9 @@
 //! Drives the inputs of a pipeline with random points (sets of operands) and a random valid/ready handshake, clock by clock.
 //!
 //! [`Offers`] raises `in_valid` with the operands of a point, keeps both until the pipeline takes the point, and pauses at
-//! random between points. Now and then it withdraws a point that the pipeline has not taken, lowers `out_ready`, if the
-//! pipeline has this input, so that results must wait, or applies a reset. A reset drops every point in the pipeline. Every 24
-//! clocks it draws new probabilities: for example, `out_ready` is high in every clock for a while, and later in one clock of
-//! five.
+//! random between points. Now and then it withdraws a point, lowers `out_ready`, so that results must wait, or applies a
+//! reset, which drops every point in the pipeline. Every 24 clocks it draws new probabilities: for example, `out_ready` is
+//! high in every clock for a while, and later in one clock of five.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -13,8 +12,7 @@ use super::points::PointSource;
 use super::ports::Ports;
 use super::random::Random;
 
-/// The values from which two paces are drawn: the average number of clocks until a new point is offered, and until `out_ready`
-/// is high.
+/// The average numbers of clocks until a new point is offered, and until `out_ready` is high, are drawn from these values.
 const PACES: [u64; 4] = [1, 1, 2, 5];
 
 /// The number of clocks after which new paces are drawn.
@@ -23,25 +21,23 @@ const PACE_CLOCKS: u64 = 24;
 /// The average number of clocks between resets.
 const RESET_CLOCKS: u64 = 1024;
 
-/// The random inputs of a pipeline, clock by clock.
 pub(super) struct Offers {
     ports: Arc<Ports>,
     random: Random,
-    /// The point that is offered and not yet taken, or `None`. The point has the bit patterns of its operands in the order of
-    /// the ports, and its side value.
+    /// The point that is offered and not yet taken: the bit patterns of its operands in the order of the ports, and its side
+    /// value.
     offered: Option<(Vec<u64>, u64)>,
-    /// The points of a list that must still be offered, as raw operands in the order of the contract. While there is a list, no
-    /// point is drawn or withdrawn, and no reset begins. `None` if points are drawn at random.
+    /// The points of a list that must still be offered, as raw operands in the order of the contract. While there is a list,
+    /// no point is drawn or withdrawn, and no reset begins.
     listed: Option<VecDeque<Vec<i64>>>,
     reset_left: u64,
     pace: (u64, u64),
     pace_left: u64,
-    /// The inputs of the latest clock.
     inputs: Vec<u64>,
 }
 
 impl Offers {
-    /// Makes the inputs for a seed. The first two clocks are the reset after power-up.
+    /// The first two clocks are the reset after power-up.
     pub(super) fn new(ports: &Arc<Ports>, seed: u64) -> Self {
         Self {
             random: Random::new(seed),
@@ -55,25 +51,23 @@ impl Offers {
         }
     }
 
-    /// Offers the given points from now on, as raw operands in the order of `Contract::operands`, and no point after them. A
-    /// point that is already offered stays first.
+    /// Offers only the given points from now on, as raw operands in the order of `Contract::operands`. A point that is already
+    /// offered stays first.
     pub(super) fn follow(&mut self, points: &[Vec<i64>]) {
         self.listed = Some(points.iter().cloned().collect());
     }
 
-    /// Returns whether the pipeline has taken all points of [`Offers::follow`]. Returns false as long as [`Offers::follow`] was
-    /// not called.
+    /// Returns whether the pipeline has taken all points of [`Offers::follow`].
     pub(super) fn is_over(&self) -> bool {
         self.offered.is_none() && self.listed.as_ref().is_some_and(VecDeque::is_empty)
     }
 
-    /// Returns the bit patterns of all inputs in the latest clock, in the order of the design's input ports.
     pub(super) fn inputs(&self) -> &[u64] {
         &self.inputs
     }
 
     /// Returns the bit patterns of all inputs in the next clock, in the order of the design's input ports. `taken` must say
-    /// whether the pipeline took the point that was offered in the latest clock. `points` gives the operands.
+    /// whether the pipeline took the point that was offered in the latest clock.
     pub(super) fn next(&mut self, taken: bool, points: &PointSource<'_>) -> &[u64] {
         let Self { ports, random, offered, listed, inputs, .. } = self;
         if taken {

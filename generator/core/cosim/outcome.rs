@@ -13,30 +13,24 @@ use glint_golden::{Bound, Bounds};
 /// bound by this amount.
 pub(super) const ROUNDING_OF_F64: f64 = 1e-6;
 
-/// The outcome of a co-simulation run.
 #[derive(Clone, Debug, Default)]
 pub struct Outcome {
-    /// The number of results that were compared.
     pub points: u64,
-    /// The number of clocks. All predicted signals are compared in each clock.
     pub clocks: u64,
-    /// The number of registers that are compared in every clock. For a pipeline, the number of its checkpoints.
+    /// The number of compared registers, or of a pipeline's checkpoints.
     pub registers: usize,
-    /// The number of outputs that are compared in every clock.
     pub outputs: usize,
-    /// The largest error of an output against the formula in f64. `None` if no error was measured, for example because inputs
-    /// were recorded.
+    /// The largest error of an output against the formula in f64. `None` if no error was measured, for example for recorded
+    /// inputs.
     pub worst: Option<Worst>,
-    /// The number of results by the value of `f`. For a device that is no highlight, only the results outside the domain are
-    /// counted.
+    /// The number of results by the value of `f`. A device that is no highlight has only results outside the domain here.
     pub histogram: Histogram,
-    /// The first difference between model and hardware, at which the run ended. `None` if they agree.
+    /// The first difference between model and hardware, at which the run ended.
     pub mismatch: Option<Mismatch>,
 }
 
 impl Outcome {
-    /// Joins the records of streams, up to and including the first stream that differs. `registers` and `outputs` are the numbers
-    /// of compared signals.
+    /// Joins the records of streams, up to and including the first stream that differs.
     pub(super) fn of(
         registers: usize,
         outputs: usize,
@@ -61,8 +55,7 @@ impl Outcome {
     }
 
     /// Returns a sentence for each failure of the run: a difference between model and hardware, a formula without a finite
-    /// value, or an error above the bound of its output by more than 10^−6 units, the rounding of the measurement. Returns an
-    /// empty list if the run passed.
+    /// value, or an error above the bound of its output by more than 10^−6 units, the rounding of the measurement.
     pub fn failures(&self, bounds: &Bounds) -> Vec<String> {
         let mut failures = Vec::new();
         if let Some(mismatch) = &self.mismatch {
@@ -96,10 +89,9 @@ impl Outcome {
 pub struct Worst {
     /// The error in output units; infinite if the formula has no value at the operands.
     pub units: f64,
-    /// The error in units, multiplied by the largest bound of any output and divided by the bound of this output. Errors of
-    /// different outputs are compared by this number.
+    /// The error in units, multiplied by the weight of the output (`Bounds::weights`), by which errors of different outputs
+    /// are compared.
     pub weighted: f64,
-    /// The name of the output.
     pub output: String,
     /// The raw operands, each with its name.
     pub operands: Vec<(String, i64)>,
@@ -108,13 +100,11 @@ pub struct Worst {
 /// A signal on which golden model and hardware differ.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mismatch {
-    /// The seed of the stream. An undivided run with this seed, such as [`Lockstep::trace`](super::Lockstep::trace), has the same
-    /// inputs from the first clock on. In a run of all combinations, the number of the combination instead. In a run of recorded
-    /// inputs, 0.
+    /// The seed of the stream. An undivided run with this seed, such as [`Lockstep::trace`](super::Lockstep::trace), has the
+    /// same inputs. In a run of all combinations, the number of the combination; in a run of recorded inputs, 0.
     pub seed: u64,
     /// The number of rising clock edges of the stream, from power-up to the difference.
     pub clock: u64,
-    /// The name of the signal.
     pub signal: String,
     /// The golden model's value, a bit pattern.
     pub golden: u64,
@@ -135,7 +125,6 @@ impl fmt::Display for Mismatch {
     }
 }
 
-/// The outcome of one stream.
 #[derive(Clone, Debug, Default)]
 pub(super) struct StreamRecord {
     pub(super) points: u64,
@@ -143,12 +132,12 @@ pub(super) struct StreamRecord {
     pub(super) worst: Option<Worst>,
     pub(super) histogram: Histogram,
     pub(super) mismatch: Option<Mismatch>,
-    /// The control operands of the latest result, and the formula's values for it. Both are stored here to avoid new allocations.
+    /// The control operands of the latest result, and the formula's values for it, kept to avoid new allocations.
     pub(super) point: Vec<i64>,
     pub(super) exact: Vec<[f64; 2]>,
 }
 
-/// Returns the seed of stream `number` in a run with the seed `seed`. Stream 0 has the seed of the run.
+/// Stream 0 has the seed of the run.
 pub(super) fn stream_seed(seed: u64, number: u64) -> u64 {
     if number == 0 {
         seed
@@ -158,16 +147,14 @@ pub(super) fn stream_seed(seed: u64, number: u64) -> u64 {
     }
 }
 
-/// Returns the number of points of stream `number`, if `points` points are divided among `streams` streams. For example, 10
-/// points in 4 streams are 3, 3, 2 and 2.
+/// Returns the number of points of stream `number`. For example, 10 points in 4 streams are 3, 3, 2 and 2.
 pub(super) fn share(points: u64, streams: u64, number: u64) -> u64 {
     points / streams + u64::from(number < points % streams)
 }
 
-/// The inputs of a stream, and its end.
 #[derive(Clone, Debug)]
 pub(super) enum Course {
-    /// Random inputs with the given seed, until `points` results were compared.
+    /// Random inputs, until `points` results were compared.
     Random { seed: u64, points: u64 },
     /// The combinations of operands at `count` places, from place `first` on.
     Combinations { first: u64, count: u64 },

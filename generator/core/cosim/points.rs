@@ -23,8 +23,8 @@ use glint_golden::{Contract, Highlight, Operand};
 
 use super::random::Random;
 
-/// The number of kinds of points. Kind 0 has many arbitrary bit patterns, kinds 1 and 2 are often at or near the ends of the
-/// domain, and kind 3 is drawn evenly. For a highlight, the other kinds are drawn by the value of the formula.
+/// Kind 0 has many arbitrary bit patterns, kinds 1 and 2 are often at or near the ends of the domain, and kind 3 is drawn
+/// evenly. For a highlight, the other kinds are drawn by the value of the formula.
 const KINDS: i64 = 16;
 
 /// If the device is no highlight, kinds above this take the operands that [`Contract::hint`] suggests.
@@ -35,12 +35,11 @@ const HINTED: i64 = 7;
 const SHORT: i64 = 12;
 const LONG: u64 = 64;
 
-/// The number of halvings of the way from the peak in the search for a value of the formula. This number of halvings gives the
-/// value within some hundredths.
+/// This number of halvings of the way from the peak finds a value of the formula within some hundredths.
 const HALVINGS: u32 = 10;
 const _: () = assert!(HALVINGS.is_multiple_of(2), "they come in pairs");
 
-/// The number of parts of an octave that this number of halvings can distinguish, and two to the power of minus each part.
+/// The parts of an octave that the halvings can distinguish, and two to the power of minus each part.
 const PARTS: usize = 1 << HALVINGS;
 static POWERS: LazyLock<[f64; PARTS]> =
     LazyLock::new(|| std::array::from_fn(|part| libm::exp2(-(part as f64) / PARTS as f64)));
@@ -48,35 +47,32 @@ static POWERS: LazyLock<[f64; PARTS]> =
 /// A value of the formula between its ends 0 and 1, at which errors show.
 const MIDDLE: f64 = 0.6;
 
-/// The largest number of times that the search halves the distance of operands from the peak, to find operands at which the
-/// formula is below its peak.
+/// The largest number of times that the search halves the distance of operands from the peak, until the formula is below its
+/// peak.
 const OCTAVES: u32 = 32;
 
 /// The number of random values of the other operands with which the peak is searched, and the largest number of operands that
-/// are moved in the search.
+/// are moved.
 const SETTINGS: u32 = 8;
 const MOVED: usize = 6;
 
-/// Draws the operands of random points for a contract. Raw values are always in the order of `Contract::operands`.
+/// Draws the operands of random points for a contract, as raw values in the order of `Contract::operands`.
 pub struct PointSource<'a> {
     contract: &'a dyn Contract,
-    /// The highlight, if the device multiplies colours by a reflectance `f`. `None` for other devices, whose points are not
-    /// drawn by a value.
     highlight: Option<&'a Highlight>,
-    /// The operands with the domains from which they are drawn: the contract's domains, except for operands that the caller
-    /// fixed.
+    /// The operands with the domains from which they are drawn, which are smaller than the contract's for fixed operands.
     operands: Vec<Operand>,
-    /// The number of control operands, which determine `f`. The control operands come before the other operands.
+    /// The number of control operands, which determine `f` and come first.
     control: usize,
-    /// The index of the operand that gives the number of results of a computation, or `None` if a computation has one result.
+    /// The index of the operand that gives the number of results of a computation, if a computation can have several.
     length: Option<usize>,
-    /// For each control operand, its value at the largest `f`, or `None` if the operand need not move. These values are used if
-    /// the contract does not state the peak. All values are `None` if the device is no highlight.
+    /// For each control operand, its value at the largest `f`, or `None` if the operand need not move. Used if the contract
+    /// does not state the peak.
     peak: Vec<Option<i64>>,
 }
 
 impl<'a> PointSource<'a> {
-    /// Prepares to draw points for a contract. For a highlight, the function searches for the operands with the largest `f`.
+    /// Searches for the operands with the largest `f`, if the device is a highlight.
     pub fn new(contract: &'a dyn Contract) -> Self {
         let highlight = contract.highlight();
         let operands = contract.operands().to_vec();
@@ -90,15 +86,13 @@ impl<'a> PointSource<'a> {
         points
     }
 
-    /// Restricts the operand `name` to one raw value. Nearly all points then have this value; a point of arbitrary bit patterns
-    /// may have another. The function does nothing if no operand has this name.
+    /// Restricts the operand `name` to one raw value. A point of arbitrary bit patterns may still have another.
     pub fn hold(&mut self, name: &str, raw: i64) {
         let held = self.operands.iter_mut().filter(|operand| operand.name == name);
         held.for_each(|operand| operand.domain = (raw, raw));
     }
 
-    /// Limits the length operand of randomly drawn lines to `most`, or to the smallest length if `most` is less. A line is a row
-    /// of points that the device computes after one `start`. The function does nothing if the device computes no lines.
+    /// Limits the length operand of randomly drawn lines to `most`, or to the smallest length if `most` is less.
     pub fn shorten(&mut self, most: i64) {
         if let Some(at) = self.length {
             let (low, high) = self.operands[at].domain;
@@ -106,7 +100,6 @@ impl<'a> PointSource<'a> {
         }
     }
 
-    /// Clamps raw values, in the order of the operands, to the domains from which the operands are drawn.
     pub fn clamped(&self, mut values: Vec<i64>) -> Vec<i64> {
         values.truncate(self.operands.len());
         for (raw, operand) in values.iter_mut().zip(&self.operands) {
@@ -115,7 +108,6 @@ impl<'a> PointSource<'a> {
         values
     }
 
-    /// Returns the operands of the contract, with the domains from which they are drawn.
     pub fn operands(&self) -> &[Operand] {
         &self.operands
     }
@@ -127,8 +119,7 @@ impl<'a> PointSource<'a> {
         self.draw_kind(random, values, free, kind);
     }
 
-    /// Draws new raw values for all operands, within the domain. The values are drawn in the same ways as by
-    /// [`PointSource::draw`], except for arbitrary bit patterns.
+    /// Draws raw values for all operands as [`PointSource::draw`] does, but always within the domain.
     pub fn of_domain(&self, random: &mut Random) -> Vec<i64> {
         let mut values = vec![0; self.operands.len()];
         let kind = random.within(1, KINDS - 1);
@@ -136,19 +127,16 @@ impl<'a> PointSource<'a> {
         values
     }
 
-    /// Draws raw values for all operands, each evenly from its domain.
     pub fn evenly(&self, random: &mut Random) -> Vec<i64> {
         self.operands.iter().map(|it| random.within(it.domain.0, it.domain.1)).collect()
     }
 
-    /// Returns operands that [`Contract::hint`] suggests, clamped to their domains. Returns `None` if the contract has no
-    /// hints.
+    /// Returns operands that [`Contract::hint`] suggests, clamped to their domains.
     pub fn hint(&self, random: &mut Random) -> Option<Vec<i64>> {
         self.contract.hint(&mut || random.unit()).map(|hint| self.clamped(hint))
     }
 
-    /// Returns the index of the operand that gives the number of results of a computation, or `None` if a computation always has
-    /// one result.
+    /// Returns the index of the operand that gives the number of results of a computation, if a computation can have several.
     pub fn length(&self) -> Option<usize> {
         self.length
     }
@@ -182,9 +170,9 @@ impl<'a> PointSource<'a> {
         }
     }
 
-    /// Returns a random raw value for operand number `at`, counted from 0, within the domain from which the operand is drawn.
-    /// The value is often an end of the domain, or near an end. In a domain with both signs it is also often near 0. A length
-    /// is usually short, so that long computations do not take most of the time.
+    /// Returns a random raw value for operand number `at`, within its domain. The value is often an end of the domain, near an
+    /// end, or near 0 in a domain with both signs. A length is usually short, so that long computations do not take most of
+    /// the time.
     pub fn one(&self, random: &mut Random, at: usize) -> i64 {
         let (low, high) = self.operands[at].domain;
         if self.length != Some(at) || random.once_in(16) {
@@ -195,10 +183,9 @@ impl<'a> PointSource<'a> {
         low.wrapping_add(lengths[0].min(lengths[1]) as i64)
     }
 
-    /// Returns a random raw value for operand number `at`. Half of the values are arbitrary bit patterns of the operand's format,
-    /// and the other half is drawn by [`PointSource::one`]. For a device that is no highlight, a quarter of the values are drawn
-    /// outside the domain instead, mostly just outside, where a core may saturate. If the domain is the whole format, no value is
-    /// drawn outside.
+    /// Returns a random raw value for operand number `at`: half of the values are arbitrary bit patterns, the others come from
+    /// [`PointSource::one`]. For a device that is no highlight, a quarter of the values are drawn outside the domain instead,
+    /// mostly just outside, where a core may saturate.
     pub fn any(&self, random: &mut Random, at: usize) -> i64 {
         let Operand { format, domain: (low, high), .. } = self.operands[at];
         let (least, most) = (format.min_raw() as i64, format.max_raw() as i64);
@@ -214,7 +201,7 @@ impl<'a> PointSource<'a> {
         }
     }
 
-    /// Moves control operands to where the formula has a random value. For a line, the function moves both ends of the line.
+    /// Moves control operands to where the formula has a random value. A line is moved at both ends.
     fn spread(&self, random: &mut Random, control: &mut [i64]) {
         let Some((length, highlight)) = self.length.zip(self.highlight) else {
             self.aim(random, control);
@@ -234,8 +221,7 @@ impl<'a> PointSource<'a> {
         }
     }
 
-    /// Moves control operands toward the peak, to where the formula has a random value. The function does nothing if the formula
-    /// is nowhere below its peak on the way.
+    /// Moves control operands toward the peak, to where the formula has a random value, if the formula falls on the way.
     fn aim(&self, random: &mut Random, far: &mut [i64]) {
         let Some((way, highlight)) = self.way(far).zip(self.highlight) else { return };
         let (top, bottom) = (way.top, way.bottom);
@@ -253,9 +239,9 @@ impl<'a> PointSource<'a> {
         way.go(scale, far);
     }
 
-    /// Finds the edge of the highlight on the straight line from the control operands with the largest `f` to `control`.
-    /// Returns the last operands at which the formula is above its value at the far end, for example 0, and the first operands
-    /// at which it is not. Returns `None` if the device is no highlight, or if the formula does not fall on the line.
+    /// Finds the edge of the highlight on the straight line from the control operands with the largest `f` to `control`. At
+    /// the edge, the formula falls to its value at the far end, for example 0. Returns the last operands before the edge, and
+    /// the first operands beyond it.
     pub fn edge(&self, control: &[i64]) -> Option<[Vec<i64>; 2]> {
         let (way, highlight) = self.way(control).zip(self.highlight)?;
         let target = way.bottom + f64::MIN_POSITIVE;
@@ -266,8 +252,8 @@ impl<'a> PointSource<'a> {
         }))
     }
 
-    /// Moves control operands on a straight line toward the operands with the largest `f`, until the formula has about the given
-    /// `value`. The function does nothing if the device is no highlight, or if the formula does not fall on the line.
+    /// Moves control operands on a straight line toward the largest `f`, until the formula has about the given `value`. The
+    /// operands stay if the formula does not fall on the line.
     pub fn to_value(&self, control: &mut [i64], value: f64) {
         if let Some((way, highlight)) = self.way(control).zip(self.highlight) {
             let [inner, _] = way.crossing(highlight, value, false, control);
@@ -275,9 +261,8 @@ impl<'a> PointSource<'a> {
         }
     }
 
-    /// Moves control operands so that errors show. Each control operand goes to an end of its domain if the formula is then
-    /// nearer to the middle of its range. The operands that lead to the largest `f`, such as `cos_gamma`, and the length of a
-    /// line stay. The function does nothing if the device is no highlight.
+    /// Moves control operands so that errors show. Each goes to an end of its domain if the formula is then nearer to the
+    /// middle of its range. The operands that lead to the largest `f`, such as `cos_gamma`, and the length of a line stay.
     pub fn show(&self, control: &mut [i64]) {
         let Some(highlight) = self.highlight else { return };
         for at in 0..self.control {
@@ -297,9 +282,8 @@ impl<'a> PointSource<'a> {
         }
     }
 
-    /// Returns the straight line from the peak (the operands with the largest `f`) to the control operands `far`. If the
-    /// formula is as large at `far` as at the peak, the line ends earlier, at a point where the formula is smaller. Returns
-    /// `None` if the formula is not smaller at any of the points that are tried, or if the device is no highlight.
+    /// Returns the straight line from the peak to the control operands `far`. If the formula is as large at `far` as at the
+    /// peak, the line ends nearer, where the formula is smaller. Returns `None` if no such end is found.
     fn way(&self, far: &[i64]) -> Option<Way> {
         let highlight = self.highlight?;
         let peak = self.peak(highlight, far);
@@ -318,8 +302,8 @@ impl<'a> PointSource<'a> {
         None
     }
 
-    /// Returns the peak toward which control operands are moved: as the contract states it, or as the search found it. An
-    /// operand that the caller fixed keeps its value.
+    /// Returns the peak as the contract states it, or as the search found it. An operand that the caller fixed keeps its
+    /// value.
     fn peak(&self, highlight: &Highlight, control: &[i64]) -> Vec<i64> {
         let said = highlight.peak(control).unwrap_or_else(|| {
             let found = self.peak.iter().zip(control);
@@ -330,7 +314,7 @@ impl<'a> PointSource<'a> {
 
     /// Searches for the control operands with the largest `f`, and returns the value of each operand that leads there. The
     /// function tries the ends of the domain and 0. Only the first operands with fraction bits vary (a cosine, an angle, the
-    /// components of a vector), or the first operands if no operand has fraction bits.
+    /// components of a vector), or the first operands if none has fraction bits.
     fn search(&self, highlight: &Highlight) -> Vec<Option<i64>> {
         let control = &self.operands[..self.control];
         let mut moved: Vec<usize> =
@@ -373,15 +357,12 @@ impl<'a> PointSource<'a> {
     }
 }
 
-/// Returns the index of the operand that gives the number of results of a computation, or `None` if a computation has one
-/// result.
 pub(super) fn length(contract: &dyn Contract) -> Option<usize> {
     let length = contract.length();
     contract.operands().iter().position(|operand| Some(operand.name.as_str()) == length)
 }
 
-/// A straight line in the space of control operands, from the peak (the operands with the largest `f`) to a point where the
-/// formula is smaller.
+/// A straight line in the space of control operands, from the peak to a point where the formula is smaller.
 struct Way {
     peak: Vec<i64>,
     far: Vec<i64>,
@@ -391,7 +372,7 @@ struct Way {
 }
 
 impl Way {
-    /// Sets `operands` to the point on the straight line at `scale`: 0 is the peak, and 1 is the far end.
+    /// Scale 0 is the peak, and 1 is the far end.
     #[inline]
     fn go(&self, scale: f64, operands: &mut [i64]) {
         let ends = self.peak.iter().zip(&self.far);
@@ -400,9 +381,8 @@ impl Way {
         }
     }
 
-    /// Returns the two scales between which the formula crosses the value `target`: one scale at which the formula is not below
-    /// `target`, and one scale at which the formula is below. If `exact` is true, both scales lie at neighbouring operands. `at`
-    /// is overwritten with the operands that are tried.
+    /// Returns the two scales between which the formula crosses `target`: it is not below `target` at the first scale, and
+    /// below at the second. If `exact` is true, both lie at neighbouring operands. `at` is overwritten.
     fn crossing(
         &self,
         highlight: &Highlight,
@@ -419,7 +399,7 @@ impl Way {
         let span = spans.max().unwrap_or(1);
         let octaves = (64 - span.leading_zeros()) as usize + 1;
         let (mut inner, mut outer) = (PARTS, 0);
-        // This loop makes two halvings at once. Its three points are independent, so none waits for the result of another.
+        // Two halvings at once: the three points are independent, so none waits for the result of another.
         while inner - outer > 1 {
             let middle = usize::midpoint(inner, outer);
             let [near, far] = [inner, outer].map(|end| usize::midpoint(end, middle));
@@ -447,13 +427,13 @@ fn power(parts: usize) -> f64 {
     POWERS[parts % PARTS] * exp2(-((parts / PARTS) as i32))
 }
 
-/// Returns the value of the formula at control operands, for the first result of a computation.
+/// Takes the first result of a computation.
 #[inline]
 fn value(highlight: &Highlight, control: &[i64]) -> f64 {
     highlight.reference(&highlight.point(control, 0))
 }
 
-/// Returns the value at the fraction `scale` of the way from `peak` to `far`. For example, 0.5 gives the middle.
+/// Returns the value at the fraction `scale` of the way from `peak` to `far`.
 fn between(peak: i64, far: i64, scale: f64) -> i64 {
     peak.saturating_add(((far as f64 - peak as f64) * scale) as i64)
 }

@@ -1,5 +1,4 @@
-//! Finds the ports of a simulated design: the handshake by role, and the operands and results by the names in the contract. The
-//! modules of the co-simulation use this list of ports.
+//! Finds the ports of a simulated design: the handshake by role, and the operands and results by the names in the contract.
 
 use anyhow::{Context, Result, ensure};
 
@@ -7,22 +6,20 @@ use glint_base::fixed::{Format, mask};
 use glint_golden::Contract;
 use glint_rtl::netlist::{Design, NetId, Role};
 
-/// The ports of a design by their roles. An input port is given by its index among the design's inputs, an output port by its
-/// net.
+/// An input port is given by its index among the design's inputs, an output port by its net.
 #[derive(Clone, Debug)]
 pub(super) struct Ports {
-    /// The number of inputs.
     pub(super) inputs: usize,
     pub(super) reset: usize,
     /// The port `start`, or `in_valid` if the design is a pipeline.
     pub(super) start: usize,
     pub(super) out_ready: Option<usize>,
-    /// The input `side_in` of a pipeline, with a mask of its bits; `None` if the design has no such port.
+    /// The input `side_in` of a pipeline, with a mask of its bits.
     pub(super) side_in: Option<(usize, u64)>,
     /// The operands of the contract, in the order of the design.
     pub(super) operands: Vec<OperandPort>,
     pub(super) valid: NetId,
-    /// The output `busy`. The outputs `busy` and `done` are `None` if the core is a pipeline.
+    /// A pipeline has neither `busy` nor `done`.
     pub(super) busy: Option<NetId>,
     pub(super) done: Option<NetId>,
     /// Whether the core takes a `start` in the clock in which `done` is high.
@@ -32,13 +29,11 @@ pub(super) struct Ports {
     pub(super) results: Vec<(NetId, Format)>,
 }
 
-/// The input port of one operand.
 #[derive(Clone, Debug)]
 pub(super) struct OperandPort {
     pub(super) name: String,
     pub(super) data: usize,
-    /// The index of the operand's strobe among the inputs. A pipeline takes all operands at once, so the index is of `in_valid`
-    /// there.
+    /// The index of the operand's strobe among the inputs. A pipeline takes all operands at once, by `in_valid`.
     pub(super) strobe: usize,
     pub(super) format: Format,
     /// The index of the operand in the contract.
@@ -46,13 +41,13 @@ pub(super) struct OperandPort {
 }
 
 impl OperandPort {
-    /// Returns the bit pattern for this port. `raw` has the raw values of all operands, in the order of `Contract::operands`.
+    /// `raw` has the raw values of all operands, in the order of `Contract::operands`.
     #[inline]
     pub(super) fn pattern(&self, raw: &[i64]) -> u64 {
         raw[self.at] as u64 & mask(self.format.width())
     }
 
-    /// Returns the raw value of this operand. `inputs` has the bit patterns of all inputs of the design.
+    /// `inputs` has the bit patterns of all inputs of the design.
     #[inline]
     pub(super) fn raw(&self, inputs: &[u64]) -> i64 {
         self.format.raw(inputs[self.data]) as i64
@@ -60,9 +55,6 @@ impl OperandPort {
 }
 
 impl Ports {
-    /// Finds the ports of a design by their roles.
-    ///
-    /// # Errors
     /// Fails if the design lacks a port of the handshake or an output of the contract, or if the strobe of an operand is not an
     /// input. Fails also if design and contract do not have the same operands.
     pub(super) fn new(design: &Design, contract: &dyn Contract) -> Result<Self> {

@@ -3,8 +3,7 @@
 use glint_base::fixed::{exp2, mask};
 use glint_golden::Operand;
 
-/// A small deterministic random number generator (SplitMix64). The generator gives the same numbers on every machine, and is fast
-/// compared with the simulation.
+/// A small deterministic random number generator (SplitMix64), fast compared with the simulation.
 #[derive(Clone, Debug)]
 pub struct Random(u64);
 
@@ -37,19 +36,17 @@ fn magnitude([first, second]: [u64; 2], most: u64) -> u64 {
 }
 
 impl Random {
-    /// Makes a generator whose numbers depend only on `seed`.
     pub fn new(seed: u64) -> Self {
         Self(seed)
     }
 
-    /// Returns 64 random bits.
     pub fn bits(&mut self) -> u64 {
         let bits = self.ahead(1);
         self.skip(1);
         bits
     }
 
-    /// Returns the bits of the number that comes `draws` draws from here. For 1, these are the bits of the next number.
+    /// Returns the bits of the number that comes `draws` draws from here.
     #[inline]
     fn ahead(&self, draws: u64) -> u64 {
         let mut z = self.0.wrapping_add(STEP.wrapping_mul(draws));
@@ -78,11 +75,11 @@ impl Random {
         within(self.bits(), low, high)
     }
 
-    /// Returns a random raw value from `low` to `high`, both included. The value is often one of these ends, or close to an end
-    /// or to 0, because errors often show there.
+    /// Returns a random raw value from `low` to `high`, both included. The value is often one of these ends, or close to an
+    /// end or to 0, because errors often show there.
     ///
-    /// The function computes all seven candidates and takes one without a branch, because the processor could not predict the
-    /// branch. The generator advances only by the draws that the taken value needs.
+    /// The function computes all seven candidates and takes one without a branch, which the processor could not predict. The
+    /// generator advances only by the draws that the taken value needs.
     #[inline]
     pub fn of_domain(&mut self, (low, high): (i64, i64)) -> i64 {
         let [choice, first, second] = [1, 2, 3].map(|draws| self.ahead(draws));
@@ -104,16 +101,15 @@ impl Random {
         values[place]
     }
 
-    /// Returns a random bit pattern for an operand. In 15 of 16 cases the pattern is a value from the operand's domain, drawn by
-    /// [`Random::of_domain`], and in one of 16 cases arbitrary bits.
+    /// Returns a random bit pattern for an operand: in one of 16 cases arbitrary bits, otherwise a value of
+    /// [`Random::of_domain`].
     pub fn pattern(&mut self, operand: &Operand) -> u64 {
         let raw =
             if self.once_in(16) { self.bits() as i64 } else { self.of_domain(operand.domain) };
         raw as u64 & mask(operand.format.width())
     }
 
-    /// Returns a random integer from 0 to `most`, both included. The number of binary digits is drawn first, so that small and
-    /// large magnitudes are equally likely.
+    /// Returns a random integer from 0 to `most`, both included. Small and large magnitudes are equally likely.
     pub fn magnitude(&mut self, most: u64) -> u64 {
         magnitude([self.bits(), self.bits()], most)
     }

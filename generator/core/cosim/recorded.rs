@@ -1,25 +1,20 @@
-//! Replays recorded inputs of a design clock by clock. After the last recorded clock, the replay starts again with the first
-//! recorded clock.
+//! Replays recorded inputs of a design clock by clock, again and again.
 
 use std::sync::Arc;
 
-/// The recorded inputs of a design, clock by clock.
 #[derive(Debug)]
 pub(super) struct Recording {
     words: Vec<u64>,
-    /// The number of inputs in a clock.
     inputs: usize,
 }
 
 impl Recording {
-    /// Makes the recording from the bit patterns of the inputs in each clock. There must be at least one clock, and all clocks
-    /// must have the same number of inputs.
+    /// Takes the bit patterns of the inputs in each clock: at least one clock, and the same number of inputs in all.
     pub(super) fn new(clocks: &[Vec<u64>]) -> Self {
         Self { words: clocks.concat(), inputs: clocks[0].len() }
     }
 }
 
-/// Replays a recording from its first clock on.
 pub(super) struct RecordedInputs {
     recording: Arc<Recording>,
     /// The index in `words` at which the inputs of the next clock begin.
@@ -31,7 +26,6 @@ impl RecordedInputs {
         Self { recording: Arc::clone(recording), next: 0 }
     }
 
-    /// Returns the inputs of the next clock. After the last recorded clock, the recording begins again.
     #[inline]
     pub(super) fn next(&mut self) -> &[u64] {
         let Recording { words, inputs } = &*self.recording;
@@ -40,7 +34,7 @@ impl RecordedInputs {
         &words[first..self.next]
     }
 
-    /// Returns the inputs of the latest clock. [`RecordedInputs::next`] must have been called.
+    /// [`RecordedInputs::next`] must have been called.
     #[inline]
     pub(super) fn inputs(&self) -> &[u64] {
         &self.recording.words[self.next - self.recording.inputs..self.next]

@@ -12,37 +12,33 @@ use super::stream::Stream;
 use glint_rtl::sim::Simulator;
 
 /// The number of clocks that are computed for each stream of a core before the simulator runs them. The model and the random
-/// inputs of one stream then stay in the processor's cache, and their branches are predicted. The inputs and predictions of
-/// these clocks still fit in the cache.
+/// inputs of one stream then stay in the processor's cache, together with the inputs and predictions of these clocks.
 const AHEAD: usize = 4;
 
-/// Runs as many streams as there are lanes, or fewer.
+/// Runs at most as many streams as there are lanes.
 ///
-/// The random inputs of a stream react to the `busy` that its model predicts. The simulated `busy` is the same, unless model and
-/// hardware differ. If a stream whose clocks were computed ahead differs, this stream runs once more, alone, to find the first
+/// The random inputs of a stream react to the `busy` that its model predicts. The simulated `busy` is the same, unless model
+/// and hardware differ. If a stream whose clocks were computed ahead differs, it runs once more, alone, to find the first
 /// difference.
 pub(super) struct Runner<'a, const LANES: usize> {
     binding: &'a Binding<'a>,
     pub(super) simulator: Simulator<LANES>,
-    /// The streams, in the order of the lanes.
     streams: Vec<Stream>,
     /// For each lane, whether something differed in a stream whose clocks were computed ahead.
     differ: [bool; LANES],
-    /// The clocks whose inputs and predictions are computed together: one or [`AHEAD`].
+    /// The clocks that are computed together: one or [`AHEAD`].
     ahead: Vec<PredictedClock<LANES>>,
 }
 
 /// The inputs of a clock and the values predicted after it, for each signal and lane.
 #[derive(Clone)]
 struct PredictedClock<const LANES: usize> {
-    /// The inputs. The list is empty if only a single clock is prepared, because its inputs are written to the simulator
-    /// directly.
+    /// Empty if only a single clock is prepared, because its inputs are written to the simulator directly.
     inputs: Vec<[u64; LANES]>,
     /// The lanes whose inputs are all 0 in this clock, except for `rst_n`.
     idle: [bool; LANES],
     predicted: Vec<[u64; LANES]>,
-    /// A mask for each signal and lane: all ones if the value is predicted, otherwise 0. The list is empty for a core, where
-    /// every value is predicted.
+    /// A mask for each signal and lane: all ones if the value is predicted. Empty for a core, where every value is predicted.
     known: Vec<[u64; LANES]>,
     /// A mask for each lane: all ones if its stream is compared in this clock, 0 if it has ended.
     compared: [u64; LANES],
@@ -50,9 +46,6 @@ struct PredictedClock<const LANES: usize> {
 
 impl<'a, const LANES: usize> Runner<'a, LANES> {
     /// Makes a stream for each course, beginning at power-up. Courses after the first `LANES` are ignored.
-    ///
-    /// # Errors
-    /// Fails if the design cannot be simulated.
     pub(super) fn new(
         binding: &'a Binding<'a>,
         courses: impl IntoIterator<Item = Course>,
@@ -80,7 +73,7 @@ impl<'a, const LANES: usize> Runner<'a, LANES> {
         })
     }
 
-    /// Returns whether the run is over: all streams have ended, or all streams up to the first that differs.
+    /// Returns whether all streams have ended, or all up to the first that differs.
     pub(super) fn ended(&self) -> bool {
         for (stream, differs) in self.streams.iter().zip(self.differ) {
             if differs || !stream.ended() || stream.seen.mismatch.is_some() {
@@ -90,22 +83,17 @@ impl<'a, const LANES: usize> Runner<'a, LANES> {
         true
     }
 
-    /// Returns the index of the first stream in which model and hardware differ, or `None`.
     pub(super) fn first_that_differs(&self) -> Option<usize> {
         let mut streams = self.streams.iter().zip(self.differ);
         streams.position(|(stream, differs)| differs || stream.seen.mismatch.is_some())
     }
 
-    /// Returns the first stream.
     pub(super) fn first(&mut self) -> &mut Stream {
         &mut self.streams[0]
     }
 
-    /// Runs the next clock, or the next few, of all streams that have not ended. Returns the number of results in these clocks.
-    ///
-    /// # Errors
-    /// Fails if the simulated signals do not settle in a clock, if the waveform cannot be written, or if a golden model does
-    /// not finish a computation.
+    /// Runs the next clock, or the next few, of all streams that have not ended. Returns the number of results in these
+    /// clocks.
     pub(super) fn run(&mut self) -> Result<u64> {
         let before = self.points();
         self.prepare()?;
@@ -113,15 +101,10 @@ impl<'a, const LANES: usize> Runner<'a, LANES> {
         Ok(self.points() - before)
     }
 
-    /// Returns the number of results of all streams so far.
     fn points(&self) -> u64 {
         self.streams.iter().map(|stream| stream.seen.points).sum()
     }
 
-    /// Computes the inputs and the predictions of the next clocks, for all streams that have not ended.
-    ///
-    /// # Errors
-    /// Fails if a golden model does not finish a computation.
     pub(super) fn prepare(&mut self) -> Result<()> {
         let single = self.ahead.len() == 1;
         for (lane, stream) in (0..LANES).zip(&mut self.streams) {
@@ -150,10 +133,6 @@ impl<'a, const LANES: usize> Runner<'a, LANES> {
         Ok(())
     }
 
-    /// Simulates the prepared clocks, and compares every predicted signal after each clock.
-    ///
-    /// # Errors
-    /// Fails if the simulated signals do not settle in a clock, or if the waveform cannot be written.
     pub(super) fn simulate(&mut self) -> Result<()> {
         let single = self.ahead.len() == 1;
         let address = match self.binding.address {
@@ -185,9 +164,6 @@ impl<'a, const LANES: usize> Runner<'a, LANES> {
     }
 
     /// Returns the records of the streams, up to and including the first that differs.
-    ///
-    /// # Errors
-    /// Fails as [`Runner::run`] does.
     pub(super) fn into_seen(self) -> Result<Vec<StreamRecord>> {
         let mut all = Vec::new();
         for (stream, differs) in self.streams.into_iter().zip(self.differ) {
@@ -205,9 +181,6 @@ impl<'a, const LANES: usize> Runner<'a, LANES> {
 
 impl Runner<'_, 1> {
     /// Runs until the stream has ended, or until it has run `clocks` clocks since power-up.
-    ///
-    /// # Errors
-    /// Fails as [`Runner::run`] does.
     pub(super) fn go_on(&mut self, clocks: u64) -> Result<()> {
         while !self.ended() && self.first().seen.clocks < clocks {
             self.run()?;
@@ -216,9 +189,6 @@ impl Runner<'_, 1> {
     }
 
     /// Runs to the end, and writes the waveform from clock `from` on into `file`, in the VCD format.
-    ///
-    /// # Errors
-    /// Fails as [`Runner::run`] does.
     pub(super) fn trace(&mut self, from: u64, file: impl Write + Send + 'static) -> Result<()> {
         self.go_on(from)?;
         self.simulator.trace(file)?;

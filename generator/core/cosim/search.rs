@@ -25,12 +25,11 @@ const MOST_BITS: u32 = 24;
 const HIGHEST: usize = 16;
 const AROUND: u64 = 1 << 18;
 
-/// The number of combinations that are tried around a point of a device without a highlight, for all pairs of operands together.
-/// For each combination, the model runs clock by clock.
+/// The number of combinations that are tried around a point of a device without a highlight, for all pairs of operands
+/// together. Each of them takes a run of the model, clock by clock.
 const MOST_AROUND: u64 = 1 << 16;
 
-/// The number of starts after which only the points with the largest errors are kept, so that memory does not grow with the
-/// number of starts.
+/// After this number of starts only the points with the largest errors are kept, so that memory does not grow.
 const BATCH: u64 = 1 << 10;
 
 /// An error that the search has found, with its operands and its output.
@@ -38,8 +37,8 @@ const BATCH: u64 = 1 << 10;
 pub struct Reached {
     /// The absolute error in output units; infinite if the formula has no value at the operands.
     pub units: f64,
-    /// The error in units, multiplied by the weight of the output (`Bounds::weights`). Errors of different outputs are compared
-    /// by this number.
+    /// The error in units, multiplied by the weight of the output (`Bounds::weights`), by which errors of different outputs
+    /// are compared.
     pub weighted: f64,
     /// The raw operands, in the order of `Contract::operands`.
     pub operands: Vec<i64>,
@@ -51,8 +50,8 @@ pub struct Reached {
 }
 
 impl Reached {
-    /// Returns the largest error of an output in the first result of a computation with raw operands, in the order of
-    /// `Contract::operands`. `weights` are the weights of the outputs. Returns `None` if the contract has no output.
+    /// Returns the largest error of an output in the first result of a computation with raw operands. Returns `None` if the
+    /// contract has no output.
     fn at(contract: &dyn Contract, weights: &[f64], operands: Vec<i64>) -> Option<Self> {
         let (mut raw, mut exact) = (Vec::new(), Vec::new());
         contract.results(&operands, 0, &mut raw);
@@ -76,20 +75,18 @@ impl Reached {
     }
 }
 
-/// Returns `a` or `b`, whichever has the larger error; `a` if the errors are equal.
 fn larger(a: Reached, b: Reached) -> Reached {
     if b.weighted > a.weighted { b } else { a }
 }
 
-/// Returns the number of times that [`worst`] calls `progress` if it searches from `starts` points.
+/// Returns the number of calls of `progress` by [`worst`] with the same `starts`.
 pub fn steps(starts: u64) -> u64 {
     starts.saturating_add(starts.min(HIGHEST as u64))
 }
 
-/// Searches from `starts` random points and returns the largest error that it finds. Returns `None` if `starts` is 0, or if the
-/// contract has no output. The result depends on `seed` but not on the number of threads. After the starts, the function tries
-/// the neighbours of the operands with the largest errors. The function calls `progress` after each start and after each of these
-/// searches.
+/// Searches from `starts` random points, and then around the largest errors that these reach. Returns `None` if `starts` is 0,
+/// or if the contract has no output. The result depends on `seed` but not on the number of threads. The function calls
+/// `progress` after each start and after each of the later searches.
 pub fn worst(
     contract: &dyn Contract,
     starts: u64,
@@ -128,26 +125,23 @@ pub fn worst(
     Some(found.fold(climbed?, larger))
 }
 
-/// The end of a climb from one start.
 struct ClimbResult {
     /// The largest error that the climb reached: of `f` for a highlight, in absolute terms, and otherwise of an output, in
     /// units. `highest` has the control operands with this error.
     height: f64,
     highest: Vec<i64>,
-    /// The operands, with colours, at the end of the climb. For a highlight they have the largest error of an output that the
-    /// climb reached.
+    /// The operands, with colours, at the end of the climb.
     operands: Vec<i64>,
 }
 
 struct Climber<'a> {
     contract: &'a dyn Contract,
-    /// The domains of the control operands, which are moved.
     domains: Vec<(i64, i64)>,
-    /// The moves: each has the indices of the operands that move together, and the sign of their steps.
+    /// The moves: each has the indices of the operands that move together, and the signs of their steps.
     moves: Vec<Vec<(usize, i64)>>,
     /// The colours that are tried for a highlight. For other devices, the single value 1.
     colours: std::ops::RangeInclusive<i64>,
-    /// The factors by which the errors of the outputs are multiplied before they are compared (`Bounds::weights`).
+    /// The weights of the outputs (`Bounds::weights`).
     weights: Vec<f64>,
 }
 
@@ -175,13 +169,12 @@ impl<'a> Climber<'a> {
         }
     }
 
-    /// Returns the largest error of an output for the given operands, multiplied by the weight of the output.
+    /// Multiplies the errors by the weights of the outputs.
     fn largest_error(&self, operands: &[i64]) -> f64 {
         let errors = self.contract.errors(operands);
         errors.iter().zip(&self.weights).map(|(error, weight)| error * weight).fold(0.0, f64::max)
     }
 
-    /// Climbs from the given operands, and returns the end of the climb.
     fn from(&self, operands: Vec<i64>) -> ClimbResult {
         // Control operands come first.
         let mut highest = operands;
@@ -196,7 +189,7 @@ impl<'a> Climber<'a> {
         ClimbResult { height, highest, operands: self.with_colours(highlight, control) }
     }
 
-    /// Returns the given control operands, followed by the colour with the largest error in the place of every colour operand.
+    /// Returns the given control operands, followed by the worst colour for every colour operand.
     fn with_colours(&self, highlight: &Highlight, mut control: Vec<i64>) -> Vec<i64> {
         let (_, colour) = self.of_output(highlight, &control);
         control.resize(highlight.operands().len(), colour);
@@ -204,9 +197,8 @@ impl<'a> Climber<'a> {
     }
 
     /// Tries all nearby values of each pair of operands around the given control operands, moves to the largest error, and
-    /// repeats this search there until the error no longer grows. The function tries nothing if there is only one operand. For
-    /// a device that is no highlight, the function stops after about 65536 combinations. Returns all operands of the largest
-    /// error.
+    /// repeats this search there until the error no longer grows. For a device that is no highlight, the function stops after
+    /// about 65536 combinations. Returns all operands of the largest error.
     fn look_around(&self, mut operands: Vec<i64>) -> Vec<i64> {
         let highlight = self.contract.highlight();
         let terms = self.contract.bounds().governing().terms.clone();
@@ -280,7 +272,7 @@ impl<'a> Climber<'a> {
         }
     }
 
-    /// Returns the largest error of an output for the given control operands, in units, and the colour with this error.
+    /// Returns the largest error in units, and the colour with this error.
     fn of_output(&self, highlight: &Highlight, control: &[i64]) -> (f64, i64) {
         let point = highlight.point(control, 0);
         let (f, right) = (highlight.f(&point), highlight.references(&point));
@@ -292,7 +284,6 @@ impl<'a> Climber<'a> {
     }
 }
 
-/// Returns the absolute error of `f` for the given control operands.
 fn of_f(highlight: &Highlight, control: &[i64]) -> f64 {
     let point = highlight.point(control, 0);
     let f = highlight.f_format().to_f64(i128::from(highlight.f(&point)));

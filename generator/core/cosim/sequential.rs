@@ -18,8 +18,7 @@ pub(super) struct SequentialModel {
     order: Option<Vec<usize>>,
     /// The model's inputs in the model's order, if that is different from the design's.
     reordered: Vec<u64>,
-    /// The indices of `busy` and `valid` among the model's signals. `overlaps` has the index of `done` if the core accepts
-    /// `start` while `done` is high.
+    /// Indices among the model's signals. `overlaps` is the index of `done` if the core accepts `start` while `done` is high.
     busy: usize,
     valid: usize,
     overlaps: Option<usize>,
@@ -33,7 +32,7 @@ pub(super) struct SequentialModel {
 }
 
 impl SequentialModel {
-    /// Returns the model of a core, and the nets that it predicts, in the order of the predictions.
+    /// Also returns the nets that the model predicts, in the order of the predictions.
     ///
     /// # Errors
     /// Fails if the model has an input or a signal that the design does not have, or if it does not predict an output or an
@@ -82,7 +81,7 @@ impl SequentialModel {
         Ok((core, compared))
     }
 
-    /// Advances the model by one clock. `inputs` has the bit patterns of the design's inputs, in the design's order.
+    /// `inputs` has the bit patterns of the design's inputs, in the design's order.
     #[inline]
     pub(super) fn clock(&mut self, inputs: &[u64]) {
         match &self.order {
@@ -95,15 +94,13 @@ impl SequentialModel {
         }
     }
 
-    /// Returns the predicted bit patterns after the latest clock, in the order of the predictions.
     #[inline]
     pub(super) fn predicted(&self) -> &[u64] {
         self.model.values()
     }
 
     /// Counts a result in `seen`, if the model predicts a result in this clock, and measures its error. `accepted` has the raw
-    /// operands of the computation that started last. If `accepted` is `None`, the operands are not known, and no error is
-    /// measured.
+    /// operands of the computation that started last; without them no error is measured.
     #[inline]
     pub(super) fn note(
         &mut self,

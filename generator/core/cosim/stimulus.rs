@@ -15,8 +15,8 @@ use super::ports::Ports;
 use super::random::Random;
 use glint_base::fixed::mask;
 
-/// The number of magnitudes of the delay from `start` to a reset. The delay is drawn below 2^m clocks, with m equally likely
-/// from 0 to 12. The largest delay, 4095 clocks, reaches the end of the longest line.
+/// The delay from `start` to a reset is drawn below 2^m clocks, with m equally likely from 0 to 12. The largest delay, 4095
+/// clocks, reaches the end of the longest line.
 const RESET_MAGNITUDES: u64 = 13;
 
 #[derive(Clone, Copy, PartialEq)]
@@ -27,7 +27,7 @@ enum Phase {
     Writing(u64),
     /// The idle clocks until `start` is due.
     Starting(u32),
-    /// A computation runs. The number is the clocks until a reset interrupts it; `None` if it may finish.
+    /// A computation runs. The number is the clocks until a reset interrupts it, if one does.
     Running(Option<u64>),
 }
 
@@ -41,16 +41,15 @@ pub(super) struct Stimulus {
     idle: bool,
     /// The raw operands of the next point, in the order of `Contract::operands`.
     next: Vec<i64>,
-    /// The raw values in the device's operand registers or buffers. A value is written only in a clock in which the device
-    /// accepts writes.
+    /// The raw values in the device's operand registers or buffers.
     written: Vec<i64>,
-    /// The raw operands that the latest `start` copied from the buffers. `None` if the core has no operand buffers.
+    /// The raw operands that the latest `start` copied from the buffers, if the core has operand buffers.
     taken: Option<Vec<i64>>,
     first: bool,
 }
 
 impl Stimulus {
-    /// Makes the stimulus for a seed. Its first three clocks are the reset after power-up.
+    /// The first three clocks are the reset after power-up.
     pub(super) fn new(ports: &Arc<Ports>, seed: u64) -> Self {
         let nothing = vec![0; ports.operands.len()];
         Self {
@@ -66,13 +65,13 @@ impl Stimulus {
         }
     }
 
-    /// Returns the raw operands of the latest computation that the core took, in the order of `Contract::operands`.
+    /// Returns raw operands in the order of `Contract::operands`.
     pub(super) fn accepted(&self) -> &[i64] {
         self.taken.as_ref().unwrap_or(&self.written)
     }
 
     /// Returns the bit patterns of all inputs in the next clock, in the order of the design's input ports. `busy` must say
-    /// whether the device ignores a `start` at the next edge. `points` gives the operands.
+    /// whether the device ignores a `start` at the next edge.
     pub(super) fn next(&mut self, busy: bool, points: &PointSource) -> &[u64] {
         if !self.idle {
             self.inputs.fill(0);
@@ -103,14 +102,12 @@ impl Stimulus {
         &self.inputs
     }
 
-    /// Returns whether the latest inputs hold `rst_n` high and everything else at 0, so that they neither start, write nor
-    /// reset anything.
+    /// Returns whether the latest inputs neither start, write nor reset anything.
     #[inline]
     pub(super) fn is_idle(&self) -> bool {
         self.idle
     }
 
-    /// Returns the bit patterns of all inputs in the latest clock, in the order of the design's input ports.
     #[inline]
     pub(super) fn inputs(&self) -> &[u64] {
         &self.inputs
@@ -127,9 +124,9 @@ impl Stimulus {
         self.phase = Phase::Running(reset);
     }
 
-    /// Drives one clock after `start`. While the device is busy, this clock may have random writes and starts, or the reset.
-    /// The device must ignore these writes and starts, except that operand buffers take the writes. Once the device is free,
-    /// the next point begins in the same clock.
+    /// Drives one clock after `start`. While the device is busy, this clock may have the reset, or random writes and starts.
+    /// The device must ignore them, except that operand buffers take the writes. Once the device is free, the next point
+    /// begins in the same clock.
     fn run(&mut self, busy: bool, reset: Option<u64>, points: &PointSource) {
         if busy {
             if self.random.once_in(6) {
@@ -217,8 +214,8 @@ impl Stimulus {
         }
     }
 
-    /// Drives random strobes and data. A busy device must ignore them, unless it has operand buffers. A device in reset must
-    /// ignore them too. If `busy` is true, `start` is random too.
+    /// Drives random strobes and data. A busy device must ignore them, unless it has operand buffers, and so must a device in
+    /// reset.
     fn noise(&mut self, busy: bool, points: &PointSource) {
         self.idle = false;
         let random = &mut self.random;
@@ -233,7 +230,6 @@ impl Stimulus {
         }
     }
 
-    /// Records the operand values that registers or buffers take at this clock edge.
     fn accept(&mut self, busy: bool) {
         if self.idle || busy && self.taken.is_none() {
             return;
@@ -272,7 +268,6 @@ mod tests {
         d.finish().unwrap()
     }
 
-    /// The number of events of each kind in a run of computations.
     #[derive(Debug, Default)]
     struct Events {
         complete: u32,

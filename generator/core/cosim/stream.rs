@@ -14,7 +14,6 @@ use super::recorded::RecordedInputs;
 use super::stimulus::Stimulus;
 use glint_rtl::netlist::NetId;
 
-/// The source of a stream's inputs.
 enum Source {
     /// Random inputs for a core.
     Stimulus(Stimulus),
@@ -25,7 +24,6 @@ enum Source {
 }
 
 impl Source {
-    /// Returns the inputs of the latest clock, in the order of the design's input ports.
     #[inline]
     fn inputs(&self) -> &[u64] {
         match self {
@@ -36,7 +34,7 @@ impl Source {
         }
     }
 
-    /// Returns whether the source will start no further computation. Random and recorded inputs never end.
+    /// Returns whether the source will start no further computation.
     fn is_over(&self) -> bool {
         match self {
             Self::Combinations(combinations) => combinations.all_started(),
@@ -45,7 +43,7 @@ impl Source {
         }
     }
 
-    /// Returns the place of the combination that started last, or `None` if the source does not go through combinations.
+    /// Returns the place of the combination that started last.
     fn place(&self) -> Option<u64> {
         match self {
             Self::Combinations(combinations) => Some(combinations.place()),
@@ -61,13 +59,12 @@ pub(super) struct Stream {
     pub(super) course: Course,
     source: Source,
     host: Host,
-    /// In a stream of combinations with a difference: the number of clocks from the `start` of the computation that differs to
-    /// the difference.
+    /// In a stream of combinations, the number of clocks from the `start` of the computation that differs to the difference.
     pub(super) since_start: u64,
 }
 
 impl Stream {
-    /// Begins a stream at power-up. `busy` is the value of the device's output `busy` at power-up.
+    /// `busy` is the value of the device's output `busy` at power-up.
     pub(super) fn new(binding: &Binding, course: Course, busy: bool) -> Self {
         let mut host = binding.host.clone();
         if let Host::Core(core) = &mut host {
@@ -86,9 +83,8 @@ impl Stream {
         Self { seen: StreamRecord::default(), course, source, host, since_start: 0 }
     }
 
-    /// Returns whether the stream has ended: because its course is complete, or because a signal differs. A pipeline goes on
-    /// after a difference until the combinations that it took earlier are finished, because an earlier combination may differ
-    /// too.
+    /// Returns whether the course is complete or a signal differs. A pipeline goes on after a difference until the
+    /// combinations that it took earlier are finished, because an earlier combination may differ too.
     pub(super) fn ended(&self) -> bool {
         match (&self.course, &self.seen.mismatch) {
             (Course::Combinations { .. }, Some(found)) => {
@@ -107,8 +103,8 @@ impl Stream {
         }
     }
 
-    /// Continues the stream, from the present state of the device, with the given computations. Each computation is a list of raw
-    /// operands in the order of the contract.
+    /// Continues the stream, from the present state of the device, with the given computations: raw operands in the order of
+    /// the contract.
     pub(super) fn follow(&mut self, binding: &Binding, computations: &[Vec<i64>]) {
         let count = computations.len() as u64;
         self.course = Course::Combinations { first: 0, count };
@@ -120,8 +116,6 @@ impl Stream {
         }
     }
 
-    /// Computes the inputs of the next clock, and advances the model by this clock. Fails if the golden model of a pipeline does
-    /// not finish a computation.
     #[inline]
     pub(super) fn clock(&mut self, binding: &Binding) -> Result<()> {
         let (deaf, taken) = match &self.host {
@@ -151,22 +145,19 @@ impl Stream {
         Ok(())
     }
 
-    /// Returns the inputs of the latest clock, in the order of the design's input ports.
     #[inline]
     pub(super) fn inputs(&self) -> &[u64] {
         self.source.inputs()
     }
 
-    /// Returns whether the latest inputs neither start, write nor reset anything. Returns false for inputs other than the random
-    /// inputs of a core with a microprogram.
+    /// Returns whether the latest inputs are known to neither start, write nor reset anything.
     #[inline]
     pub(super) fn is_idle(&self) -> bool {
         matches!(&self.source, Source::Stimulus(stimulus) if stimulus.is_idle())
     }
 
-    /// Writes the predictions after the latest clock into lane `lane` of `expected`, in the order of the compared signals. For a
-    /// pipeline, the function also writes into `known`: all ones for a signal that is predicted, and otherwise 0. Every signal of
-    /// a core is predicted.
+    /// Writes the predictions after the latest clock into lane `lane` of `expected`, in the order of the compared signals. For
+    /// a pipeline, the function also writes into `known`: all ones for a signal that is predicted, and otherwise 0.
     #[inline]
     pub(super) fn predict<const L: usize>(
         &self,
@@ -190,9 +181,8 @@ impl Stream {
         }
     }
 
-    /// Records the first signal on which simulation and model differ after the latest clock, if there is a difference.
-    /// `simulated` returns the simulated bit pattern of a net. The microinstruction at `address` was executed at the clock
-    /// edge.
+    /// Records the first signal on which simulation and model differ after the latest clock. `simulated` returns the bit
+    /// pattern of a net. The microinstruction at `address` was executed at the clock edge.
     pub(super) fn compare(
         &mut self,
         binding: &Binding,
@@ -251,8 +241,8 @@ impl Stream {
         });
     }
 
-    /// Counts the result that the model of a core predicts after the latest clock, if there is one, and measures its error. The
-    /// function does nothing for a pipeline.
+    /// Counts the result that the model of a core predicts after the latest clock, and measures its error. A pipeline counts
+    /// its results in `Pipe::clock`.
     #[inline]
     pub(super) fn note(&mut self, binding: &Binding) {
         if let Host::Core(core) = &mut self.host {

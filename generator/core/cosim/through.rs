@@ -7,10 +7,10 @@ use super::instances::Instances;
 use glint_golden::Contract;
 use glint_rtl::netlist::{Design, NetId, Role};
 
-/// Simulates the given points in a pipeline, and returns the bit patterns of `nets` in each clock, just before its rising edge.
-/// Points are raw operands in the order of `Contract::operands`. A point is offered in every clock until the pipeline takes it,
-/// then the next point. Before the last point, one clock has no point. The first result waits for `pause` clocks, if the pipeline
-/// has an `out_ready`. The recording ends with the clock of the last result.
+/// Simulates the given points in a pipeline, and returns the bit patterns of `nets` in each clock, just before its rising
+/// edge. Points are raw operands in the order of `Contract::operands`, offered one after another until the pipeline takes
+/// them. Before the last point, one clock has no point. The first result waits for `pause` clocks, if the pipeline has an
+/// `out_ready`. The recording ends with the clock of the last result.
 ///
 /// # Errors
 /// Fails if the design cannot be simulated, or if not all results appear within `limit` clocks.

@@ -1,7 +1,7 @@
 //! Runs single computations of a design in the built-in simulator, and records facts for manifests and pages.
 //!
-//! The runs measure the clocks between `start`, `valid` and `done`. The runs also give a worked example, a recording of chosen
-//! nets, and a list of computations by which users can check the device without a model.
+//! The runs give the clocks between `start`, `valid` and `done`, a worked example, and a recording of chosen nets. They also
+//! give a list of computations by which users can check the device without a model.
 
 use anyhow::{Context, Result, ensure};
 
@@ -24,7 +24,7 @@ const COMPUTATIONS: usize = 40;
 /// The largest length operand of a line among the sample computations.
 const SHORT: i64 = 9;
 
-/// The number by which the largest length operand with a measured line exceeds the smallest length operand.
+/// The longest measured line has a length operand that is larger by this number than the smallest length operand.
 const LONG: i64 = 1000;
 
 /// The number of points in a recording of a pipeline.
@@ -36,18 +36,17 @@ const PAUSE: usize = 2;
 /// The number of operands from [`Contract::hint`] that are tried for a worked example.
 const TRIES: u32 = 256;
 
-/// The record of one simulated computation.
 struct ComputationTrial {
     timing: HandshakeTiming,
     /// The raw results of every clock in which `valid` is high, with the number of the clock.
     results: Vec<(u32, Vec<i64>)>,
-    /// The first clock of a microinstruction whose successor depends on an operand; `None` if the computation has none.
+    /// The first clock of a microinstruction whose successor depends on an operand.
     decision: Option<u32>,
 }
 
 impl ComputationTrial {
-    /// Returns the numbers of clocks from each result to the next, without a number that equals the one before it. For example,
-    /// results in the clocks 5, 6, 7 and 9 give 1 and 2. A single result gives an empty list.
+    /// Returns the numbers of clocks from each result to the next, without a number that equals the one before it. For
+    /// example, results in the clocks 5, 6, 7 and 9 give 1 and 2.
     fn distances(&self) -> Vec<u32> {
         let pairs = self.results.windows(2);
         let mut distances: Vec<u32> = pairs.map(|pair| pair[1].0 - pair[0].0).collect();
@@ -57,10 +56,9 @@ impl ComputationTrial {
 }
 
 /// Measures the numbers of clocks between the events of the handshake, such as `start` and `done`. A number is stated only if
-/// the microprogram makes it the same for all bit patterns of the operand ports, and is otherwise `None`.
-/// `start_to_done_at_most` is an upper limit, which is stated only if `start_to_done` depends on the operands and a limit is
-/// known. The clocks from result to result are the exception: they are stated if they are the same for the smallest, the middle
-/// and the largest operands.
+/// the microprogram makes it the same for all bit patterns of the operand ports. `start_to_done_at_most` is an upper limit,
+/// stated if `start_to_done` depends on the operands and a limit is known. The clocks from result to result are stated if they
+/// are the same for the smallest, the middle and the largest operands.
 ///
 /// # Errors
 /// Fails if the design cannot be simulated or does not belong to the contract, if a computation does not end within 65536
@@ -92,8 +90,7 @@ pub fn timing(design: &Design, contract: &dyn Contract) -> Result<HandshakeTimin
     })
 }
 
-/// Returns three sets of raw operands: all operands at the lowest value within `ends`, all at the highest value, and all in the
-/// middle.
+/// Returns all operands at the lowest value within `ends`, all at the highest value, and all in the middle.
 fn corners(contract: &dyn Contract, ends: fn(&Operand) -> (i128, i128)) -> [Vec<i64>; 3] {
     let mut corners = [Vec::new(), Vec::new(), Vec::new()];
     for operand in contract.operands() {
@@ -105,9 +102,9 @@ fn corners(contract: &dyn Contract, ends: fn(&Operand) -> (i128, i128)) -> [Vec<
     corners
 }
 
-/// Returns 40 sample computations with their results and clocks. In the first three computations, all operands are at the lowest,
-/// the highest or the middle value of their domains; the others are random points of the domain. A line has a length operand of
-/// at most 9. Users check the device with these computations, without a golden model. The contract computes the same results.
+/// Returns 40 computations with their results and clocks, by which users check the device without a golden model. In the first
+/// three, all operands are at the lowest, the highest or the middle value of their domains; the others are random points of
+/// the domain. A line has a length operand of at most 9.
 ///
 /// # Errors
 /// Fails as [`timing`] does, or if the contract's results and the simulated results differ.
@@ -149,14 +146,14 @@ fn computation(
     })
 }
 
-/// Returns raw values with their names as text. For example, `red=#255 green=#0`.
+/// Returns raw values with their names, in the form `red=#255 green=#0`.
 fn listed<'a>(names: impl Iterator<Item = &'a str>, raw: &[i64]) -> String {
     let each: Vec<String> = names.zip(raw).map(|(name, raw)| format!("{name}=#{raw}")).collect();
     each.join(" ")
 }
 
-/// Runs one computation with the given raw operands. Returns the number of clocks from `start` to the earliest next `start`,
-/// and the number of results.
+/// Returns the number of clocks from `start` to the earliest next `start`, and the number of results, for one computation with
+/// the given raw operands.
 ///
 /// # Errors
 /// Fails as [`timing`] does.
@@ -170,9 +167,9 @@ pub fn throughput(
     Ok((clocks, trial.results.len() as u32))
 }
 
-/// Measures the clock numbers of a line (the points that a device computes after one `start`) as linear functions of the line's
-/// length. The function simulates the four shortest lines and a long one. Returns `None` for a device that computes single
-/// points, or if the numbers are no linear functions of the length.
+/// Measures the clock numbers of a line as linear functions of its length, from the four shortest lines and a long one. A line
+/// is the points that a device computes after one `start`. Returns `None` for a device of single points, or if the functions
+/// are not linear.
 ///
 /// # Errors
 /// Fails as [`timing`] does.
@@ -201,13 +198,11 @@ pub fn line(design: &Design, contract: &dyn Contract) -> Result<Option<LineClock
     Ok(Some(LineClocks { length: name, last_valid, done, next_start }))
 }
 
-/// Simulates one computation, and returns it as a worked example: the values of all operands and outputs. [`typical`] chooses the
-/// operands; for a highlight, `f` is mostly between 0.4 and 0.8. If the computation has several results, `outputs` has the
-/// outputs of the first result, and `results` has the outputs of all results.
+/// Simulates the computation with the operands that [`typical`] chooses; for a highlight, `f` is mostly between 0.4 and 0.8.
+/// If it has several results, `outputs` has the outputs of the first result, and `results` the outputs of all.
 ///
 /// # Errors
-/// Fails if the design cannot be simulated or does not belong to the contract. Fails if the computation does not end within
-/// 65 536 clocks, or never raises `valid`.
+/// Fails as [`timing`] does.
 pub fn example(design: &Design, contract: &dyn Contract) -> Result<WorkedExample> {
     let operands = typical(contract, &[]);
     let trial = run(design, contract, &operands, &mut |_| Ok(()))?;
@@ -227,17 +222,15 @@ pub fn example(design: &Design, contract: &dyn Contract) -> Result<WorkedExample
     Ok(WorkedExample { operands: given, outputs, results })
 }
 
-/// Returns a quantity with this name, raw value and format.
 fn quantity(name: &str, format: Format, raw: i64) -> Quantity {
     let raw = i128::from(raw);
     Quantity { name: name.to_owned(), raw, value: format.to_f64(raw) }
 }
 
-/// Returns typical raw operands of a contract, for a worked example. An operand with a value in `given` keeps this value;
-/// `given` may be shorter than the operands. For a highlight, the function lowers a control operand with fraction bits, such as
-/// a cosine or an angle, until `f` is between 0.4 and 0.8. The function takes the first operand with which `f` reaches this
-/// range, and lowers no operand if there is none. If the device computes lines, the function then also lowers operands such as
-/// a step (`slow_down`). For other devices, the function prefers operands from [`Contract::hint`].
+/// Returns raw operands for a worked example. An operand with a value in `given` keeps it; `given` may be shorter than the
+/// operands. For a highlight, the function lowers a control operand with fraction bits, such as a cosine or an angle. It takes
+/// the first with which `f` gets between 0.4 and 0.8. For lines, it then also lowers operands such as a step (`slow_down`).
+/// For other devices, it prefers operands from [`Contract::hint`].
 pub fn typical(contract: &dyn Contract, given: &[Option<i64>]) -> Vec<i64> {
     let given = |at: usize| given.get(at).copied().flatten();
     let mut colour = 0;
@@ -283,9 +276,8 @@ pub fn typical(contract: &dyn Contract, given: &[Option<i64>]) -> Vec<i64> {
     values
 }
 
-/// Lowers the operands of a line that change `f` only after the first point, such as a step, until `f` in the middle of the
-/// line is at least a quarter of `f` at the first point, or until the operand is at the lower end of its domain, or 0. The
-/// function does nothing if the device computes no lines.
+/// Lowers the operands of a line that change `f` only after the first point, such as a step. An operand stops at the lower end
+/// of its domain, at 0, or as soon as `f` in the middle of the line is at least a quarter of `f` at the first point.
 fn slow_down(
     contract: &dyn Contract,
     highlight: &Highlight,
@@ -309,8 +301,7 @@ fn slow_down(
     }
 }
 
-/// Returns the first operands from [`Contract::hint`] for which no output is 0 or at an end of its format. Returns `None`
-/// without hints, or after 256 attempts.
+/// Returns the first operands from [`Contract::hint`] for which no output is 0 or at an end of its format.
 fn hinted(contract: &dyn Contract) -> Option<Vec<i64>> {
     let (mut random, points) = (Random::new(1), PointSource::new(contract));
     for _ in 0..TRIES {
@@ -328,9 +319,9 @@ fn hinted(contract: &dyn Contract) -> Option<Vec<i64>> {
     None
 }
 
-/// Simulates the computation of [`example`], and returns the bit patterns of `nets` in each clock, just before the clock's
-/// rising edge. Clock 0 is the clock in which `start` is high, and the last clock is the first in which the device is idle
-/// again. For a pipeline, the last clock is the clock of the result. All of these nets must have names.
+/// Simulates the computation of [`example`], and returns the bit patterns of `nets` in each clock, just before its rising
+/// edge. Clock 0 is the clock in which `start` is high. The last clock is the first in which the device is idle again, or the
+/// clock of a pipeline's result. All of these nets must have names.
 ///
 /// # Errors
 /// Fails as [`timing`] does.
@@ -344,9 +335,8 @@ pub fn record(design: &Design, contract: &dyn Contract, nets: &[NetId]) -> Resul
     Ok(clocks)
 }
 
-/// Simulates three points in a pipeline, and returns the bit patterns of `nets` in each clock, just before the clock's rising
-/// edge. The first point has the operands of [`example`]. One clock has no point, and the first result waits for two clocks if
-/// the pipeline has an `out_ready`.
+/// Does the same as [`record`] for three points in a pipeline; the first has the operands of [`example`]. One clock has no
+/// point, and the first result waits for two clocks if the pipeline has an `out_ready`.
 ///
 /// # Errors
 /// Fails as [`timing`] does.
@@ -361,15 +351,10 @@ pub fn record_points(
     through::record(design, contract, (&list, PAUSE), nets, LIMIT)
 }
 
-/// A function that observes the simulator in each clock, before the clock's rising edge.
 type Watch<'a> = &'a mut dyn FnMut(&mut Simulator) -> Result<()>;
 
-/// Runs one computation with the given raw operands from reset to its end. For a pipeline, the end is the clock of the result.
-/// `watch` sees the simulator before each rising edge.
-///
-/// # Errors
-/// Fails if the design cannot be simulated, if the computation takes [`LIMIT`] clocks or more, if it ends without `valid`, or if
-/// `watch` fails.
+/// Runs one computation from reset to its end, or to the clock of a pipeline's result. `watch` sees the simulator before each
+/// rising edge.
 fn run(
     design: &Design,
     contract: &dyn Contract,

@@ -1,7 +1,7 @@
-//! Applies the vectors of a test bench to a design. The built-in simulator runs the design. Only outputs are compared, as the
-//! emitted bench does.
+//! Applies the vectors of a test bench to a design in the built-in simulator, and compares only outputs, as the emitted bench
+//! does.
 //!
-//! Mutation testing does this once for each planted fault. The code stands in this crate because the release profile optimises
+//! Mutation testing does this once for each planted fault. The code is in this crate because the release profile optimises
 //! this crate for inner loops, and the crate of mutation testing not.
 
 use anyhow::Result;
@@ -11,8 +11,8 @@ use glint_rtl::sim::Simulator;
 use crate::observation::Vectors;
 
 impl Vectors {
-    /// Returns whether the bench notices that a design has a fault: in some clock, an output that the bench compares has another
-    /// value than the vectors expect. Mutation testing asks this for each design with a planted fault.
+    /// Returns whether the bench notices a fault in the design: in some clock, a compared output has another value than the
+    /// vectors expect.
     ///
     /// # Errors
     /// Fails if the design cannot be simulated.

@@ -1,7 +1,6 @@
 //! Generates the self-checking test bench of a core in Verilog, with its stimulus and the expected outputs of every clock.
 //!
-//! For example, `rough` has `rough_tb.v`, `rough_stimulus.mem` and `rough_expected.mem`. The bench reads both `.mem` files, and
-//! compares the core's outputs with the expected outputs.
+//! For example, `rough` has `rough_tb.v`, and the two files that it reads: `rough_stimulus.mem` and `rough_expected.mem`.
 
 use anyhow::{Result, ensure};
 use glint_base::fill;
@@ -26,8 +25,8 @@ fresh_names!(Variables {
     write_microinstruction
 });
 
-/// An output, with the Verilog expression that selects its bits from the expected outputs of a clock, which are one wide
-/// number. For example, `want[7:0]`.
+/// An output, with the Verilog expression that selects its bits from the expected outputs of a clock. For example,
+/// `want[7:0]`.
 struct ExpectedOutput {
     name: String,
     select: String,
@@ -40,9 +39,6 @@ struct StepLabel {
     name: String,
 }
 
-/// Adds the test bench, its stimulus and the expected outputs to `files`.
-///
-/// # Errors
 /// Fails if the design has no inputs or no outputs, if the vectors are empty, or if they do not fit the ports.
 pub fn files(job: &EmitJob, vectors: &Vectors, files: &mut OutputFiles) -> Result<()> {
     let design = job.design;
@@ -71,7 +67,6 @@ pub fn files(job: &EmitJob, vectors: &Vectors, files: &mut OutputFiles) -> Resul
     Ok(())
 }
 
-/// Returns the Verilog of the test bench. Fails if the template fails to print.
 fn bench(job: &EmitJob, vectors: &Vectors) -> Result<String> {
     let design = job.design;
     let port_name = |port: &Port| design.net(port.net).name.clone();
@@ -122,7 +117,6 @@ fn bench(job: &EmitJob, vectors: &Vectors) -> Result<String> {
         known_from: usize = vectors.known_from,
         word_stride: usize = vectors.word_stride,
         declarations: Vec<String> = variables(design, true),
-        // The assignment of a word of stimulus to the inputs.
         stimulus: Vec<String> = statement(12, &stimulus),
         connections: Vec<String> = connections(design),
         // The initial value of `was_reset`: without a reset there is nothing to wait for.
@@ -133,7 +127,7 @@ fn bench(job: &EmitJob, vectors: &Vectors) -> Result<String> {
         // Only in a pipeline: whether the expected word says that a point's results are shown. In a bubble the results mean
         // nothing.
         shown: Option<String>,
-        // The path of the address register below the bench; `None` without a microprogram.
+        // The path of the address register below the bench.
         address: Option<String> = address.map(|address| {
             let address = &design.net(address).name;
             format!("{}.{}.{address}", own.dut, job.naming.control_instance)
@@ -144,8 +138,7 @@ fn bench(job: &EmitJob, vectors: &Vectors) -> Result<String> {
 }
 
 /// Returns the file that the test bench reads with `$readmemh`: a comment with `title` and the columns, and a line for each
-/// clock. `rows` has for each clock a value for each of `ports`. Fails if a row has another number of values, or if a value
-/// does not fit the bits of its port.
+/// clock. `rows` has for each clock a value for each of `ports`, and each value must fit the bits of its port.
 fn vector_file(design: &Design, title: &str, ports: &[&Port], rows: &[Vec<u64>]) -> Result<String> {
     let widths: Vec<_> = ports.iter().map(|port| design.width(port.net)).collect();
     let mut words = Vec::with_capacity(rows.len());
@@ -177,8 +170,8 @@ fn vector_file(design: &Design, title: &str, ports: &[&Port], rows: &[Vec<u64>])
     Ok(lines.join("\n") + "\n")
 }
 
-/// Concatenates a row of port values, for a line of a file that a test bench reads. The first value is in the highest bits; the
-/// result is in hexadecimal digits. `widths` are the widths in bits. For example, 1 in one bit and 5 in three bits give `d`.
+/// Concatenates the port values of a clock in hexadecimal, the first value in the highest bits. `widths` are the widths in
+/// bits. For example, 1 in one bit and 5 in three bits give `d`.
 pub(super) fn packed(row: &[u64], widths: &[u32]) -> String {
     let total: u32 = widths.iter().sum();
     let mut digits = vec![0u8; total.div_ceil(4) as usize];

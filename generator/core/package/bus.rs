@@ -8,23 +8,21 @@ use glint_base::fill;
 /// A bus, such as AXI4-Lite, on which software can reach the registers of a core.
 #[derive(Debug)]
 pub struct Bus {
-    /// The value of the key `interface.registers` that selects this bus.
     pub key: &'static str,
-    /// The name of the bus in messages and comments.
     pub title: &'static str,
-    /// The suffix of the names of modules on this bus. For example, `axil` in `threshold_levels_axil`.
+    /// The suffix of module names on this bus, for example `axil` in `threshold_levels_axil`.
     pub suffix: &'static str,
-    /// The level, 0 or 1, of the reset port while the bus is in reset.
+    /// The level of the reset port while the bus is in reset.
     pub reset_level: u8,
     /// The ports of the bus module as text, clock and reset first. Each has a direction, a name, the width of a vector and, if
     /// LiteX connects the port, the name of its LiteX signal. `#` denotes the number of bits of an address.
     pub ports: &'static str,
-    /// The standard interface that tools recognise by the names of its ports; empty if no such standard exists.
+    /// The standard interfaces that tools recognise by the names of the ports.
     pub protocol: &'static [Protocol],
     /// The Python expression that makes this bus in LiteX.
     pub litex: &'static str,
-    /// Makes the Verilog of the bus module and of its proof. The parameters of the function are the name of the core, the command
-    /// that generates the core again, and the highest bit of an address. Fails if a template fails.
+    /// Makes the Verilog of the bus module and of its proof. The parameters are the name of the core, the command that
+    /// generates the core again, and the highest bit of an address.
     pub module: fn(&str, &str, u32) -> Result<[String; 2]>,
 }
 
@@ -37,27 +35,24 @@ impl PartialEq for Bus {
 /// A standard interface, which tools recognise by the names of its ports.
 #[derive(Debug)]
 pub struct Protocol {
-    /// The prefix of the names of the ports that belong to the interface, such as `s_axis`.
+    /// The prefix of the names of the interface's ports, such as `s_axis`.
     pub name: &'static str,
-    /// The name of the interface in ARM's definitions for IP-XACT.
+    /// The name in ARM's definitions for IP-XACT.
     pub amba: &'static str,
-    /// The version of ARM's definition of the interface, for IP-XACT.
+    /// The version of ARM's definition, for IP-XACT.
     pub version: &'static str,
-    /// The type of the interface in Intel's Platform Designer.
+    /// The type in Intel's Platform Designer.
     pub platform: &'static str,
     /// Whether the module is the receiving side of the interface.
     pub is_slave: bool,
 }
 
-/// The input stream and the output stream of an AXI4-Stream wrapper.
 pub static STREAMS: [Protocol; 2] = [stream("s_axis", true), stream("m_axis", false)];
 
-/// Returns the interface of an AXI4-Stream.
 const fn stream(name: &'static str, is_slave: bool) -> Protocol {
     Protocol { name, amba: "AXI4Stream", version: "r0p0_1", platform: "axi4stream", is_slave }
 }
 
-/// The buses on which Glint can put the registers of a core.
 pub static BUSES: [Bus; 2] = [
     Bus {
         key: "axi-lite",

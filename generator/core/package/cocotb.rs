@@ -12,7 +12,7 @@ use super::output_files::OutputFiles;
 use super::seal::{Seal, sealed};
 use crate::observation::{ContractFacts, Quantity, WorkedExample};
 
-/// The names of the driver's tests for a core with a microprogram. The first test needs the formula as a Python expression.
+/// The driver's tests for a core with a microprogram. The first test needs the formula as a Python expression.
 const SEQUENTIAL: [&str; 5] = [
     "formula_holds_at_random_points",
     "computations_are_exact",
@@ -24,7 +24,7 @@ const SEQUENTIAL: [&str; 5] = [
 /// The test that replaces the last test of [`SEQUENTIAL`] if the operands have buffers.
 const BUFFERED: &str = "writes_while_busy_are_for_the_next_computation";
 
-/// The names of the driver's tests for a pipeline. The first test needs the formula as a Python expression.
+/// The driver's tests for a pipeline. The first test needs the formula as a Python expression.
 const PIPELINE: [&str; 4] = [
     "random_points_follow_the_formula",
     "points_are_exact",
@@ -32,10 +32,6 @@ const PIPELINE: [&str; 4] = [
     "reset_drops_every_point",
 ];
 
-/// Adds the cocotb test bench of a core to `files`.
-///
-/// # Errors
-/// Fails if a template fails.
 pub fn file(
     job: &EmitJob,
     example: &WorkedExample,
@@ -55,17 +51,15 @@ pub fn file(
         name: &'a str,
         operands: Vec<String> = lines(&example.operands, |name, raw| format!("{name}={raw},")),
         outputs: Vec<String> = lines(&example.outputs, |name, raw| format!("\"{name}\": {raw},")),
-        // The names that are imported from the driver, sorted.
         tests: Vec<&'static str>,
         pipeline: bool,
-        // The Python expression of the results in the example test.
         shown: &'a str = if pipeline { "shown" } else { "shown.results[0]" },
     })?;
     files.add(FileKind::CocotbBench, format!("test_{name}.py"), text);
     Ok(())
 }
 
-/// Returns one line for each number. If its value differs from the raw integer, a Python comment shows the value.
+/// Returns one line for each number. A Python comment shows its value if that differs from the raw integer.
 fn lines(quantities: &[Quantity], code: fn(&str, i128) -> String) -> Vec<String> {
     let mut lines = Vec::new();
     for quantity in quantities {
@@ -78,7 +72,7 @@ fn lines(quantities: &[Quantity], code: fn(&str, i128) -> String) -> Vec<String>
     lines
 }
 
-/// Returns the Python driver that the cocotb benches share. Its last line has a digest of its text.
+/// Returns the Python driver that the cocotb benches of all configurations share. Its last line has a digest of its text.
 pub fn driver() -> OutputFile {
     let text = fill!("glint_cocotb.py" {}).expect("a template without fields");
     let kind = FileKind::CocotbDriver;

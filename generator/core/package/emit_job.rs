@@ -1,8 +1,7 @@
 //! Collects the data of one core that the generators of its files read.
 //!
 //! An [`EmitJob`] has the netlist, facts such as the clocks of a computation, the names of modules and memories in the emitted
-//! Verilog, and the core's registers on a bus. For example, the generator of the test bench takes the ports from `design`, and
-//! the name of the control unit's instance from `naming`.
+//! Verilog, and the core's registers on a bus.
 
 use super::bus::Bus;
 use super::inputs::EmitInputs;
@@ -15,22 +14,20 @@ pub struct EmitJob<'a> {
     pub design: &'a Design,
     pub inputs: &'a EmitInputs,
     pub naming: &'a Naming,
-    /// The bus that the configuration asks for, and the map of the core's registers on it; `None` without a bus.
+    /// The bus that the configuration asks for, and the map of the core's registers on it.
     pub registers: Option<(&'static Bus, Map)>,
 }
 
 impl<'a> EmitJob<'a> {
-    /// Returns the name of the core, which is the name of its top module.
     pub fn name(&self) -> &'a str {
         &self.design.name
     }
 
-    /// Returns the command that generates the core's files again. The comments at the heads of the files quote it.
+    /// Returns the command that generates the core's files again, which their heads quote.
     pub fn regenerate(&self) -> &'a str {
         &self.inputs.regenerate
     }
 
-    /// Returns whether the core computes a line of several points after one `start`.
     pub fn is_line(&self) -> bool {
         self.inputs.accuracy.as_ref().is_some_and(|accuracy| accuracy.length.is_some())
     }

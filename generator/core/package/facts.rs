@@ -7,17 +7,15 @@ use serde::{Serialize, Serializer, ser::SerializeMap};
 use glint_rtl::netlist::{self, Design, FieldKind, NetId, Role, RomId};
 use glint_rtl::verilog::naming::{Naming, is_control_rom};
 
-/// The facts about a port of the top module, for files and pages. For example, `cos_gamma` of `rough` is an operand of 21 bits in
-/// `u1.20`, and `cos_gamma_write` writes it.
+/// A port of the top module. For example, `cos_gamma` of `rough` is an operand of 21 bits in `u1.20`, and `cos_gamma_write`
+/// writes it.
 #[derive(Default, Serialize)]
 pub struct PortFacts<'a> {
-    /// The name of the port.
     pub name: &'a str,
-    /// Whether the port is an `input` or an `output`.
+    /// The text `input` or `output`.
     pub direction: &'static str,
-    /// The role of the port in the interface of the device. For example, `operand` or `strobe`.
+    /// The role of the port, for example `operand` or `strobe`.
     pub role: &'static str,
-    /// The number of bits of the port.
     pub width: u32,
     /// The number format, if the port is an operand, a result or a status bit.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -26,28 +24,25 @@ pub struct PortFacts<'a> {
     signed: Option<bool>,
     #[serde(skip_serializing_if = "Option::is_none")]
     fraction_bits: Option<i32>,
-    /// The name of the write strobe of the port, if the port is an operand.
+    /// The write strobe of an operand.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub strobe: Option<&'a str>,
     /// The number of the port's block in the block diagram of the document that describes the device.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub block: Option<u16>,
-    /// A description of the port in one line; may be empty.
+    /// A description in one line; may be empty.
     #[serde(skip_serializing_if = "str::is_empty")]
     pub doc: &'a str,
 }
 
-/// The facts about a field of the control word, for files and pages. For example, `operand_select` of `rough` has 2 bits from
-/// bit 7 on, and the choices `cosines`, `sines`, `half_n` and `square`.
+/// A field of the control word. For example, `operand_select` of `rough` has 2 bits from bit 7 on, and the choices `cosines`,
+/// `sines`, `half_n` and `square`.
 #[derive(Serialize)]
 pub struct FieldFacts<'a> {
-    /// The name of the field.
     pub name: &'a str,
-    /// The kind of the field: `select`, `enable`, `flag` or `sequence`.
+    /// The kind of field: `select`, `enable`, `flag` or `sequence`.
     pub kind: &'static str,
-    /// The lowest bit of the field in the control word.
     pub low: u32,
-    /// The number of bits of the field.
     pub width: u32,
     /// The names of a select field's choices, from the value 0 on.
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
@@ -57,74 +52,59 @@ pub struct FieldFacts<'a> {
     pub lines: &'a [u16],
 }
 
-/// The facts about a microinstruction, for files and pages. For example, microinstruction 3 of `rough` is named `12 <- sin
-/// gamma * sin dgamma`.
+/// A microinstruction. For example, microinstruction 3 of `rough` is named `12 <- sin gamma * sin dgamma`.
 #[derive(Serialize)]
 pub struct MicroinstructionFacts<'a> {
-    /// The address of the microinstruction in the control ROM.
     pub address: usize,
-    /// The name of the microinstruction in the device's description.
     pub name: &'a str,
     /// The name and the value of each field of the control word, in the order of the fields.
     #[serde(serialize_with = "as_map")]
     pub fields: Vec<(&'a str, u64)>,
-    /// The rule for the microinstruction that follows.
     pub sequence: SequenceFacts<'a>,
 }
 
-/// The rule for the microinstruction that follows another microinstruction.
 #[derive(Serialize)]
 #[serde(untagged)]
 pub enum SequenceFacts<'a> {
-    /// The plain rules: `next`, `wait for start` or `end`.
+    /// The plain rules `next`, `wait for start` or `end`.
     Plain(&'static str),
     /// A jump back, which makes a loop.
     Loop {
-        /// The address of the microinstruction to which control jumps.
         loop_to: usize,
-        /// The net that must be 1 for the jump.
         #[serde(rename = "while")]
         condition: &'a str,
     },
     /// A jump ahead, over some microinstructions.
     Jump {
-        /// The address of the microinstruction to which control jumps.
         jump_to: usize,
-        /// The net that must be 1 for the jump.
         #[serde(rename = "if")]
         condition: &'a str,
     },
 }
 
-/// The facts about a ROM of a core, for files and pages. For example, `sine` of `rough` has 584 words of 35 bits, which are 20440
-/// bits in all.
+/// A ROM of a core. For example, `sine` of `rough` has 584 words of 35 bits, which are 20440 bits in all.
 #[derive(Serialize)]
 pub struct RomFacts<'a> {
-    /// The name of the ROM in the device's description.
     pub name: &'a str,
     /// The file with the ROM's contents; `None` if the Verilog contains the words.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub file: Option<&'a str>,
     #[serde(skip_serializing_if = "Option::is_none")]
     parameter: Option<&'a str>,
-    /// The number of words in the ROM.
     pub depth: usize,
-    /// The number of bits of a word.
     pub width: u32,
-    /// The number of bits of all words together.
     pub bits: u64,
-    /// The number format of a word.
     pub format: String,
     /// Whether the ROM is read on the clock edge.
     pub synchronous: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
     radix: Option<u8>,
-    /// The words of the ROM, if the Verilog contains them; otherwise `None`.
+    /// The words, if the Verilog contains them.
     #[serde(skip_serializing_if = "Option::is_none")]
     words: Option<&'a [u64]>,
-    /// The meaning of a word of the ROM, in one or more lines.
+    /// The meaning of a word, in one or more lines.
     pub doc: &'a [String],
-    /// The number of the ROM in the block diagram of the document that describes the device.
+    /// The number in the block diagram of the document that describes the device.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub block: Option<u16>,
 }
@@ -137,7 +117,6 @@ fn as_map<S: Serializer>(pairs: &[(&str, u64)], serializer: S) -> Result<S::Ok, 
     map.end()
 }
 
-/// Returns the ports of a design, the clock first.
 pub fn ports(design: &Design) -> Vec<PortFacts<'_>> {
     let clock = PortFacts {
         name: "clk",
@@ -195,7 +174,7 @@ fn role(role: Role) -> &'static str {
     }
 }
 
-/// Returns the fields of a design's control word, from the highest bits to the lowest.
+/// Returns the fields from the highest bits to the lowest.
 pub fn fields(design: &Design) -> Vec<FieldFacts<'_>> {
     let positions = design.field_positions();
     design
@@ -222,7 +201,6 @@ pub fn fields(design: &Design) -> Vec<FieldFacts<'_>> {
         .collect()
 }
 
-/// Returns the microinstructions of a design, from address 0.
 pub fn microprogram(design: &Design) -> Vec<MicroinstructionFacts<'_>> {
     let control = &design.control;
     let mut facts = Vec::new();
@@ -248,8 +226,7 @@ pub fn microprogram(design: &Design) -> Vec<MicroinstructionFacts<'_>> {
     facts
 }
 
-/// Returns the ROMs of a design, including the control ROM. The function leaves out a ROM that is only the second read port of
-/// another ROM.
+/// Returns the ROMs, including the control ROM, but not a ROM that is only the second read port of another.
 pub fn roms<'a>(design: &'a Design, naming: &'a Naming) -> Vec<RomFacts<'a>> {
     let in_file = !naming.style.inline;
     let mut facts = Vec::new();

@@ -1,6 +1,5 @@
-//! Lists the kinds of files that Glint emits for a core, for example Verilog, memory contents, benches and constraints.
-//!
-//! The kind of a file decides its folder, and its position in the list of files.
+//! Lists the kinds of files that Glint emits for a core. The kind of a file decides its folder, and its position in the list
+//! of files.
 
 use FileKind::{
     Bench, BenchPackage, BenchVectors, BusWrapper, CocotbBench, CocotbDriver, Constraint,
@@ -9,8 +8,7 @@ use FileKind::{
     WrapperProofScript,
 };
 
-/// The purpose of an emitted file, such as Verilog of the core. Lists of a core's files follow the order of the kinds here;
-/// a few kinds are listed among the files of another kind (`listed_with`).
+/// Lists of a core's files follow the order of the kinds here, except for the kinds that `FileKind::listed_with` moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum FileKind {
     /// Verilog of the core, the top module first. For example, `rough.v`, `rough_control.v` and `rough_datapath.v`.
@@ -63,22 +61,20 @@ pub enum FileKind {
 }
 
 impl FileKind {
-    /// The files of the core that synthesis tools and simulators read.
     pub const CORE_SOURCES: &[Self] = &[CoreVerilog, Memory];
 
     /// The files of the core and of its wrappers that synthesis tools and simulators read.
     pub const DESIGN_SOURCES: &[Self] = &[CoreVerilog, StreamWrapper, BusWrapper, Memory];
 
-    /// The files of the benches in Verilog.
     pub const BENCH_SOURCES: &[Self] = &[Bench, BenchVectors];
 
     /// The files that a simulator of Verilog reads: the core, its wrappers and the benches.
     pub const SIMULATED: &[Self] =
         &[CoreVerilog, StreamWrapper, BusWrapper, Memory, Bench, BenchVectors];
 
-    /// Returns the folder in the output directory that contains the files of this kind, in a folder for each configuration. For
-    /// example, [`FileKind::Memory`] gives `rtl_out`, and the memories of `rough` are in `rtl_out/rough/`. Only the driver that
-    /// all configurations share, [`FileKind::CocotbDriver`], is in the folder itself.
+    /// Returns the folder in the output directory for files of this kind. In it, each configuration has a folder of its own:
+    /// the memories of `rough` are in `rtl_out/rough/`. Only the driver that all configurations share,
+    /// [`FileKind::CocotbDriver`], is in the folder itself.
     pub fn folder(self) -> &'static str {
         match self {
             CoreVerilog | TargetVerilog | StreamWrapper | BusWrapper | Memory | CorePackage
@@ -89,15 +85,14 @@ impl FileKind {
         }
     }
 
-    /// Returns whether the files of this kind are Verilog that simulators, linters and synthesis tools compile. Files in
-    /// SystemVerilog are not among them.
+    /// Returns whether simulators, linters and synthesis tools compile the files of this kind as Verilog. SystemVerilog is not
+    /// among them.
     pub fn is_verilog(self) -> bool {
         matches!(self, CoreVerilog | TargetVerilog | StreamWrapper | BusWrapper | Bench)
     }
 
     /// Returns the kind that decides the position of a file of this kind in the list of a core's files. For example,
-    /// [`FileKind::BenchVectors`] gives [`FileKind::Bench`], so that the vectors of a bench follow the bench directly:
-    /// `rough_tb.v`, `rough_stimulus.mem`, `rough_expected.mem`, `rough_axis_tb.v`.
+    /// [`FileKind::BenchVectors`] gives [`FileKind::Bench`], so that the vectors of a bench follow the bench directly.
     pub(super) fn listed_with(self) -> Self {
         match self {
             WrapperProofScript => WrapperProof,

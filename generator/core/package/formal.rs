@@ -34,15 +34,14 @@ impl Age {
     }
 }
 
-/// The register [`Age`] as strings for the template.
 struct AgeView {
     name: String,
     range: String,
     one: String,
 }
 
-/// The clocks in which `valid` and `done` are high, counted from the clock of `start`, and the largest age of a computation (its
-/// clocks since `start`), as Verilog literals. Only a core whose clocks do not depend on the data has such clocks.
+/// The clocks in which `valid` and `done` are high, counted from `start`, and the largest age of a computation, as Verilog
+/// literals. Only a core whose clocks do not depend on the data has them.
 struct EventClocks {
     valid: String,
     done: String,
@@ -58,17 +57,16 @@ struct Bounded {
     latest: Vec<Latest>,
     /// Whether `valid` is high in the clock of `done` of every computation.
     ends_with_result: bool,
-    /// The clock of the first result as a Verilog literal, if `valid` is high in every clock from then on to `done`;
-    /// otherwise `None`.
+    /// The clock of the first result as a Verilog literal, if `valid` is high from then on in every clock to `done`.
     first: Option<String>,
 }
 
-/// An upper limit of the age at which a computation ends, for the clocks in which one microinstruction is executed. `label`
-/// is the microinstruction's address as a Verilog literal. The age counts the clocks since `start`.
+/// An upper limit of the age at which a computation ends, while one microinstruction is executed. `label` is its address as a
+/// Verilog literal.
 struct Latest {
     label: String,
-    /// The age at which the computation ends if it takes as long as it can, as a Verilog expression. For example, the age plus
-    /// a counter plus 3 clocks.
+    /// The latest age at which the computation ends, as a Verilog expression. For example, the age plus a counter plus 3
+    /// clocks.
     end: String,
 }
 
@@ -82,11 +80,8 @@ pub(super) struct Script<'a> {
 }
 
 impl Script<'_> {
-    /// Adds the files of a formal proof: the Verilog `wrapper`, the script for Yosys, and the task for SymbiYosys. `depth` is the
-    /// depth of the induction in clocks.
-    ///
-    /// # Errors
-    /// Fails if a template fails.
+    /// Adds the Verilog `wrapper`, the script for Yosys, and the task for SymbiYosys. `depth` is the depth of the induction in
+    /// clocks.
     pub(super) fn files(
         &self,
         wrapper: String,
@@ -110,8 +105,7 @@ impl Script<'_> {
     }
 }
 
-/// Returns the number of registers between the signal that sets `valid` and the port `valid`, which is a number of clocks.
-/// Returns 0 for a design without `valid`.
+/// Returns the number of registers between the signal that sets `valid` and the port `valid`, or 0 without `valid`.
 fn valid_delay(design: &Design) -> u32 {
     let Some(valid) = design.port(|role| role == Role::Valid) else { return 0 };
     let mut at = valid.net;
@@ -129,10 +123,6 @@ fn valid_delay(design: &Design) -> u32 {
     clocks
 }
 
-/// Adds the formal wrapper of a core with a microprogram and the scripts of its proof.
-///
-/// # Errors
-/// Fails if a template fails.
 pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<()> {
     let EmitJob { design, inputs, naming, .. } = *job;
     let (timing, module) = (&inputs.timing, job.name());
@@ -161,8 +151,8 @@ pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<()> {
         width: u32::BITS - largest.leading_zeros(),
     });
     let waits = design.control.microprogram.iter().any(|it| it.sequence == Sequence::WaitStart);
-    // If the steps are unrolled, z3 proves a short induction over much state faster. The same holds for a device that accepts
-    // `start` in the last clock of a computation. z3 proves a long induction faster if the steps are not unrolled.
+    // z3 proves a long induction faster without unrolled steps. With them, it is faster for a short induction over much state.
+    // It is also faster for a device that accepts `start` in the last clock of a computation.
     let unroll = exact_clocks.is_none() || design.control.overlaps;
     let exact = exact_clocks.zip(age.as_ref()).map(|((clocks, start), age)| EventClocks {
         valid: age.literal(clocks[0]),
@@ -187,7 +177,6 @@ pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<()> {
         // The solver, as the command line of yosys-smtbmc has it.
         solver: &'a str = if unroll { "--unroll -s z3" } else { "-s z3" },
         instance: String,
-        // Ports with their commas.
         ports: Vec<String> = separated(inputs_of(design)),
         outputs: Vec<String> = outputs_of(design),
         connections: Vec<String> = connections(design),
@@ -207,8 +196,7 @@ pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<()> {
     script.files(wrapper, depth, if unroll { "smtbmc --unroll z3" } else { "smtbmc z3" }, files)
 }
 
-/// Returns the Verilog ports of a formal wrapper for the clock and the inputs of a design. A solver chooses the values of these
-/// ports.
+/// Returns the Verilog ports of a formal wrapper whose values a solver chooses.
 pub(super) fn inputs_of(design: &Design) -> Vec<String> {
     let mut inputs = vec!["input  wire clk".to_owned()];
     for port in design.inputs() {
@@ -220,7 +208,6 @@ pub(super) fn inputs_of(design: &Design) -> Vec<String> {
     inputs
 }
 
-/// Returns the Verilog wires of a formal wrapper for the outputs of a design.
 pub(super) fn outputs_of(design: &Design) -> Vec<String> {
     let mut rows = Vec::new();
     for port in design.outputs() {
@@ -230,9 +217,8 @@ pub(super) fn outputs_of(design: &Design) -> Vec<String> {
     Row::declarations(&rows)
 }
 
-/// Returns the data for the proof that every computation ends. In each microinstruction, the age (the clocks since `start`)
-/// plus the largest number of remaining clocks must be at most `most`, the largest number of clocks of a computation. `left`
-/// has the remaining clocks of each microinstruction.
+/// Returns the data for the proof that every computation ends. No microinstruction may have an age and remaining clocks
+/// (`left`) whose sum exceeds `most`, the largest number of clocks of a computation.
 fn bounded_view(
     design: &Design,
     naming: &Naming,
@@ -241,8 +227,7 @@ fn bounded_view(
     (left, most): (&[Left], u32),
     age: &Age,
 ) -> Bounded {
-    // Makes an inner net of the core readable in the wrapper under the name `name`. Yosys joins the two nets when it flattens
-    // the design.
+    // Makes an inner net of the core readable under the name `name`. Yosys joins the two nets when it flattens the design.
     let mut inside = Vec::new();
     let mut seen = |partition: Partition, net: NetId, name: String| {
         let range = range(design.width(net));
@@ -284,8 +269,8 @@ fn bounded_view(
     }
 }
 
-/// Returns the clocks of `valid` and `done`, and the number of clocks from one start to the next. This last number is at least
-/// one more than the clock of `done`. Returns `None` if one of these numbers depends on the data.
+/// Returns the clocks of `valid` and `done`, and the number of clocks from one start to the next. None of them may depend on
+/// the data.
 fn exact(timing: &HandshakeTiming) -> Option<([u32; 2], u32)> {
     let (valid, done) = (timing.start_to_valid?, timing.start_to_done?);
     // The next computation may start in the clock of `done`, but the age counts every computation to its last clock.

@@ -1,8 +1,8 @@
 //! Generates formal properties of a pipeline, which Yosys and an SMT solver prove by k-induction.
 //!
 //! The generated wrapper has a reference queue, which moves points from stage to stage as the pipeline should. The proof shows
-//! that the pipeline holds points in exactly the same stages as the queue. If the pipeline has a side channel, the wrapper also
-//! follows one arbitrary point, and asserts that the point's side value arrives with it. Multipliers and ROMs are replaced by
+//! that the pipeline holds points in exactly the same stages as the queue. If the pipeline has a side channel, the wrapper
+//! also follows one arbitrary point, and asserts that its side value arrives with it. Multipliers and ROMs are replaced by
 //! free values, since no property depends on them.
 
 use anyhow::Result;
@@ -19,18 +19,16 @@ use glint_rtl::verilog::text::{Names, literal, range};
 /// The depth of the induction, in clocks. Every property follows from the state one clock earlier.
 const DEPTH: u32 = 2;
 
-/// The side channel of the pipeline: bits that enter with a point and leave with its results. The wrapper follows one
-/// arbitrary point. `tag` is the wrapper's register with the side value of this point, and `stages` has the side value of
-/// each stage.
+/// The side channel: bits that enter with a point and leave with its results. `tag` is the wrapper's register with the side
+/// value of the followed point, and `stages` has the side value of each stage.
 struct SideChannel {
     range: String,
     tag: String,
     stages: Vec<SideStage>,
 }
 
-/// Two counters of a pipeline that accepts a point every k clocks. Each counts the clocks from 0 to k − 1. `slot` is the
-/// path of the pipeline's own counter; `name` is the wrapper's counter, and the proof shows that both are always equal.
-/// `next` is the expression of the wrapper counter's next value.
+/// Two counters from 0 to k − 1 of a pipeline that accepts a point every k clocks. `slot` is the path of the pipeline's own
+/// counter, and `name` is the wrapper's, with `next` as the expression of its next value. The proof shows that both are equal.
 struct Turn {
     range: String,
     name: String,
@@ -44,10 +42,6 @@ struct SideStage {
     value: String,
 }
 
-/// Adds the formal wrapper of a pipeline and the scripts of its proof.
-///
-/// # Errors
-/// Fails if a template fails.
 pub fn files(job: &EmitJob, pipeline: &Pipeline, files: &mut OutputFiles) -> Result<()> {
     let (module, design) = (job.name(), job.design);
     let name = format!("{module}_formal");
@@ -59,8 +53,7 @@ pub fn files(job: &EmitJob, pipeline: &Pipeline, files: &mut OutputFiles) -> Res
     if pipeline.side > 0 {
         ports.push(format!("input  wire {chosen}"));
     }
-    // Declares an inner net of the core by its path, and returns the path. Yosys joins the two nets when it flattens the
-    // design.
+    // Declares an inner net of the core by its path, and returns the path.
     let mut inside = Vec::new();
     let mut seen = |name: &str, range: &str| {
         let path = format!("\\{instance}.{name} ");
@@ -108,18 +101,15 @@ pub fn files(job: &EmitJob, pipeline: &Pipeline, files: &mut OutputFiles) -> Res
         module: &'a str,
         depth: u32 = DEPTH,
         instance: String,
-        // Ports with their commas.
         ports: Vec<String> = separated(ports),
         outputs: Vec<String> = outputs_of(design),
         connections: Vec<String> = connections(design),
-        // Declarations of the inner nets that the proof reads.
         inside: Vec<String>,
         stages: usize = latency,
-        // The path of the net that has one bit for each stage: whether the stage holds a point.
+        // The net that has one bit for each stage: whether the stage holds a point.
         valid: String,
         stall: bool = pipeline.stall,
         moves_when: &'a str = if pipeline.stall { "out_ready | ~out_valid" } else { "1'b1" },
-        // The literal for a pipeline without points.
         empty: String = literal(0, latency as u32),
         results: Vec<String> = results.map(|port| port_name(port.net)).collect(),
         present: String = names.fresh("present"),

@@ -1,7 +1,6 @@
-//! Generates the FuseSoC core files (CAPI2) of a device: `<name>.core` for the device, and `<name>_tb.core` for its bench.
+//! Generates the FuseSoC core files (CAPI2): `<name>.core` for the device, and `<name>_tb.core` for its bench.
 //!
-//! FuseSoC lets a core file list only files in its own directory or below. The bench is in another directory, so it needs a core
-//! file of its own.
+//! FuseSoC lets a core file list only files in its own directory or below, and the bench is in another directory.
 
 use anyhow::Result;
 use glint_base::fill;
@@ -12,11 +11,8 @@ use super::output_files::OutputFiles;
 use super::tops::{Face, Top};
 use glint_rtl::verilog::text::ascii;
 
-/// Adds `<name>.core`. If the core has a bench, `<name>.core` has a target for simulation, and `<name>_tb.core` is added
-/// too. The file names in a core file are relative to its directory.
-///
-/// # Errors
-/// Fails if a template fails to print.
+/// Adds `<name>.core`. With a bench, it gets a target for simulation, and `<name>_tb.core` is added too. The file names in a
+/// core file are relative to its directory.
 pub fn files(job: &EmitJob, tops: &[Top], files: &mut OutputFiles) -> Result<()> {
     let (name, around) = (job.name(), &job.inputs.around);
     let (version, licence) = (around.version.as_str(), around.licence.as_str());
@@ -37,7 +33,7 @@ pub fn files(job: &EmitJob, tops: &[Top], files: &mut OutputFiles) -> Result<()>
         wrappers: Vec<String> =
             files.local_paths(&[FileKind::StreamWrapper, FileKind::BusWrapper]),
         memories: Vec<String> = files.local_paths(&[FileKind::Memory]),
-        // The suffixes of the wrappers that have a bench; `None` if the core has no bench.
+        // The suffixes of the wrappers that have a bench.
         benches: Option<Vec<&'static str>> = wrapper_benches(tops, files),
         // The clock of `<name>.xdc` and `<name>.sdc`, if these files exist.
         clock_mhz: Option<f64> = around.clock_mhz,

@@ -1,5 +1,5 @@
-//! Writes example instances of a core and its wrappers in Verilog, with a wire for each port, for the user to copy. Datasheets
-//! show these examples.
+//! Writes example instances of a core and its wrappers in Verilog, with a wire for each port. Datasheets show them for the
+//! user to copy.
 
 use anyhow::Result;
 
@@ -12,18 +12,15 @@ use glint_rtl::netlist::Design;
 use glint_rtl::verilog::naming::{Naming, remark};
 use glint_rtl::verilog::rows::{Row, separated};
 
-/// An example instance of a module.
 pub struct InstanceExample {
-    /// The name of the module.
     pub module: String,
-    /// A description of the module in a few words. For example, `the core between two AXI4-Streams`.
+    /// The module in a few words, for example `the core between two AXI4-Streams`.
     pub what: String,
-    /// The Verilog: declarations of the wires for the module's ports, and the instance. The clock must be declared already.
+    /// Declarations of the wires for the module's ports, and the instance. The clock must be declared already.
     pub verilog: String,
 }
 
-/// Returns an example instance of each module that a system can instantiate: the bus wrapper and the stream wrapper, if the
-/// configuration asks for these wrappers, and then the core.
+/// Returns an example instance of each module that a system can instantiate, the outermost wrapper first.
 ///
 /// # Errors
 /// Fails if the core cannot have a wrapper that the configuration asks for. For example, streams need operands and results,
@@ -60,7 +57,6 @@ fn instance(design: &Design, top: Top) -> InstanceExample {
     InstanceExample { module, what: top.what, verilog }
 }
 
-/// Returns the wires of the core, with the formats of operands and results.
 fn core_wires(design: &Design) -> Vec<Row> {
     let wires = design.ports.iter().map(|port| {
         let net = design.net(port.net);
@@ -75,8 +71,7 @@ fn wire(port: &TopPort) -> Row {
     Row::port("", kind_of(port.input), port.width, false, &port.name, &port.doc)
 }
 
-/// Returns the Verilog keyword of the net that a system connects to a port: `reg` for an input of the module, `wire` for an
-/// output.
+/// A system drives an input of the module from a `reg`, and reads an output by a `wire`.
 fn kind_of(is_input: bool) -> &'static str {
     if is_input { "reg" } else { "wire" }
 }

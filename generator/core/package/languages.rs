@@ -18,7 +18,7 @@ use glint_rtl::netlist::Role;
 use glint_rtl::verilog::rows::separated;
 use glint_rtl::verilog::text::{Names, ascii, comment, constant_name, literal};
 
-/// Adds the VHDL file and the SystemVerilog file, if the configuration asks for them.
+/// Adds the files that the configuration asks for.
 ///
 /// # Errors
 /// Fails if a template fails, or if the configuration asks for streams and a package of SystemVerilog, and the core has no
@@ -35,12 +35,10 @@ pub fn files(job: &EmitJob, tops: &[Top], files: &mut OutputFiles) -> Result<()>
     Ok(())
 }
 
-/// Returns whether a port with this role carries a fixed-point number: an operand or a result.
 fn is_number(role: Role) -> bool {
     matches!(role, Role::Operand { .. } | Role::Point | Role::Result)
 }
 
-/// A component of VHDL.
 struct VhdlComponent<'a> {
     name: String,
     what: &'a str,
@@ -48,7 +46,7 @@ struct VhdlComponent<'a> {
     ports: Vec<String>,
 }
 
-/// Returns the VHDL component of a module. `of_core` are the generics of the core; wrappers have none.
+/// `of_core` are the generics of the core; wrappers have none.
 fn component<'a>(top: &'a Top, of_core: &[String]) -> VhdlComponent<'a> {
     VhdlComponent {
         name: module_name(&top.module),
@@ -58,10 +56,7 @@ fn component<'a>(top: &'a Top, of_core: &[String]) -> VhdlComponent<'a> {
     }
 }
 
-/// Returns the VHDL file: components of all modules, and an entity around the core whose ports have fixed-point types.
-///
-/// # Errors
-/// Fails if the template fails.
+/// Writes components of all modules, and an entity around the core whose ports have fixed-point types.
 fn vhdl(job: &EmitJob, tops: &[Top]) -> Result<String> {
     let (name, design, naming) = (job.name(), job.design, job.naming);
     let (mut generics, mut passed) = (Vec::new(), Vec::new());
@@ -106,7 +101,6 @@ fn vhdl(job: &EmitJob, tops: &[Top]) -> Result<String> {
         component: String = module_name(name),
         package: String = vhdl_name(&format!("{name}_components")),
         entity: String = vhdl_name(&format!("{name}_fixed")),
-        // The label of the component.
         label: String = vhdl_name(&names.fresh("core")),
         regenerate: &'a str = job.regenerate(),
         components: Vec<VhdlComponent<'a>> = tops.iter().map(|top| component(top, &generics)).collect(),
@@ -119,7 +113,7 @@ fn vhdl(job: &EmitJob, tops: &[Top]) -> Result<String> {
     })
 }
 
-/// Returns the declarations with a semicolon behind each declaration except the last, as VHDL separates ports and generics.
+/// VHDL separates ports and generics by semicolons, and has none behind the last.
 fn listed(mut declarations: Vec<String>) -> Vec<String> {
     let last = declarations.len().saturating_sub(1);
     declarations.iter_mut().take(last).for_each(|line| line.push(';'));
@@ -131,8 +125,7 @@ fn plain(port: &TopPort) -> String {
     format!("{} : {direction} {}", vhdl_name(&port.name), std_logic(port.width, port.vector))
 }
 
-/// Returns the VHDL type of a port of `width` bits: a vector such as `std_logic_vector(7 downto 0)` if `vector` is true, and
-/// otherwise `std_logic`.
+/// Returns for example `std_logic_vector(7 downto 0)` if `vector` is true, and otherwise `std_logic`.
 fn std_logic(width: u32, vector: bool) -> String {
     match vector {
         false => "std_logic".to_owned(),
@@ -140,7 +133,7 @@ fn std_logic(width: u32, vector: bool) -> String {
     }
 }
 
-/// Returns the type of a number, whose bits are numbered by their weights. For example, `u1.20` becomes `ufixed(0 downto -20)`.
+/// Returns a fixed-point type whose bits are numbered by their weights. For example, `u1.20` becomes `ufixed(0 downto -20)`.
 fn fixed(format: Format) -> String {
     let kind = if format.signed { "sfixed" } else { "ufixed" };
     let low = -format.frac;
@@ -148,8 +141,7 @@ fn fixed(format: Format) -> String {
 }
 
 /// Returns a name for VHDL. A name that VHDL does not accept, or that has an upper-case letter, becomes an extended identifier
-/// between backslashes. Generics, whose names are all upper case, are an exception. For example, the reserved word `signal`
-/// becomes `\signal\`.
+/// between backslashes: the reserved word `signal` becomes `\signal\`.
 fn vhdl_name(name: &str) -> String {
     let reserved = VHDL_2008.split_ascii_whitespace().any(|word| word == name.to_ascii_lowercase());
     let plain = !name.starts_with('_') && !name.ends_with('_') && !name.contains("__");
@@ -159,8 +151,7 @@ fn vhdl_name(name: &str) -> String {
     if plain && !reserved && (small || generic) { name.to_owned() } else { format!("\\{name}\\") }
 }
 
-/// Returns the name of a module as the name of a VHDL component. A name that the emitted package uses itself, such as `ieee`,
-/// also becomes an extended identifier.
+/// A module name that the emitted package uses itself, such as `ieee`, also becomes an extended identifier.
 fn module_name(name: &str) -> String {
     let used = ["ieee", "work", "std", "std_logic", "std_logic_vector", "std_ulogic", "string"];
     if used.contains(&name) { format!("\\{name}\\") } else { vhdl_name(name) }
@@ -183,19 +174,19 @@ const VHDL_2008: &str = "
 struct VerilogConstant {
     name: String,
     constant: String,
-    /// The name of the type in SystemVerilog. For example, `cos_gamma_t`.
+    /// The type in SystemVerilog, for example `cos_gamma_t`.
     kind: String,
     doc: Vec<String>,
     format: Format,
 }
 
 impl VerilogConstant {
-    /// Returns the weight of the lowest bit as a SystemVerilog real, 2^−F with F fraction bits.
+    /// Returns 2^−F for F fraction bits as a SystemVerilog real.
     fn unit(&self) -> String {
         format!("{:?}", exp2(-self.format.frac))
     }
 
-    /// Returns the inverse of the lowest bit's weight as a SystemVerilog real, 2^F with F fraction bits.
+    /// Returns 2^F for F fraction bits as a SystemVerilog real.
     fn scale(&self) -> String {
         format!("{:?}", exp2(self.format.frac))
     }
@@ -206,7 +197,7 @@ impl VerilogConstant {
         (format!("{:?}", low as f64), format!("{:?}", high as f64))
     }
 
-    /// Returns the smallest value as a bit pattern, in SystemVerilog. For example, `{1'b1, 7'd0}` for 8 bits with a sign.
+    /// Returns the smallest value as a bit pattern. For example, `{1'b1, 7'd0}` for 8 bits with a sign.
     fn least(&self) -> String {
         let width = self.format.width();
         match self.format.signed {
@@ -216,7 +207,7 @@ impl VerilogConstant {
         }
     }
 
-    /// Returns the expression that converts the real `scaled` to the raw integer. `scaled` must be within the limits. Verilator
+    /// Returns the expression that converts the real `scaled`, which must be within the limits, to the raw integer. Verilator
     /// cannot convert a real above 2^63 to an integer.
     fn whole(&self) -> String {
         let plain = format!("{}'(longint'(scaled))", self.kind);
@@ -229,20 +220,18 @@ impl VerilogConstant {
         }
     }
 
-    /// Returns the largest value as a bit pattern, in SystemVerilog.
     fn most(&self) -> String {
         literal(self.format.max_raw() as u64, self.format.width())
     }
 }
 
-/// A transfer of a stream as a packed structure of SystemVerilog, with the members from the top bits down.
+/// A transfer of a stream as a packed structure, with the members from the top bits down.
 struct Structure {
     net: &'static str,
     members: Vec<String>,
 }
 
-/// Returns the SystemVerilog package: types, limits and conversions of all operands and results, and the layout of stream
-/// transfers. Fails if the configuration asks for streams, and the core has no operands or no results.
+/// Writes types, limits and conversions of all operands and results, and the layout of stream transfers.
 fn systemverilog(job: &EmitJob) -> Result<String> {
     let (name, design) = (job.name(), job.design);
     let mut names = Names::new(design.nets.iter().map(|net| net.name.as_str()));

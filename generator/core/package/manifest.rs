@@ -19,14 +19,13 @@ use crate::observation::{Computation, ContractFacts, Quantity};
 use glint_rtl::netlist::HandshakeTiming;
 use glint_rtl::netlist::{Design, Pipeline, RegId};
 
-/// The version of the manifest's structure, for programs that read it. The version is increased when a name is renamed, moved, or
-/// gets another meaning, and not when a name is added.
+/// The version of the manifest's structure, for programs that read it. It increases when a name is renamed, moved, or gets
+/// another meaning, and not when a name is added.
 const SCHEMA: u32 = 2;
 
 #[derive(Serialize)]
 struct Manifest<'a> {
     schema: u32,
-    /// The version of Glint.
     glint: &'static str,
     name: &'a str,
     device: &'a str,
@@ -57,7 +56,6 @@ struct Manifest<'a> {
     stream: Option<Value>,
 }
 
-/// Computations, with the names of the numbers in each.
 #[derive(Serialize)]
 struct ComputationNames<'a> {
     /// The operands of each point, in the order of the ports.
@@ -68,8 +66,8 @@ struct ComputationNames<'a> {
     points: Vec<Box<RawValue>>,
 }
 
-/// Returns the paths of all files except the manifest, in lists by purpose. For example, `rtl` lists the Verilog of the
-/// core. Paths are relative to the directory of the configuration.
+/// Returns the paths of all files except the manifest, in lists by purpose. For example, `rtl` lists the Verilog of the core.
+/// Paths are relative to the directory of the configuration.
 fn file_names(files: &OutputFiles) -> serde_json::Map<String, Value> {
     let lists: [(&str, &[FileKind]); 10] = [
         ("rtl", &[FileKind::CoreVerilog]),
@@ -105,7 +103,7 @@ fn file_names(files: &OutputFiles) -> serde_json::Map<String, Value> {
     names
 }
 
-/// Returns the text of the manifest, with the digests of all `others`: the files of the configuration except the manifest.
+/// `others` are the files of the configuration except the manifest, which has their digests.
 ///
 /// # Errors
 /// Fails if the configuration asks for streams and the core has no operands or no results. Fails if an operand or a result of the
@@ -155,8 +153,6 @@ pub fn contents(job: &EmitJob, others: &OutputFiles) -> Result<String> {
     Ok(serde_json::to_string_pretty(&manifest)? + "\n")
 }
 
-/// Returns the manifest's entry of the streams: the layout of a transfer on each stream. Fails if the core has no operands
-/// or no results.
 fn stream(job: &EmitJob) -> Result<Value> {
     let around = &job.inputs.around;
     Ok(json!({
@@ -167,7 +163,6 @@ fn stream(job: &EmitJob) -> Result<Value> {
     }))
 }
 
-/// Returns the number of bits of a transfer, and the position of each field in it.
 fn layout(transfer: &Transfer) -> Value {
     let mut fields = Vec::new();
     for field in &transfer.fields {
@@ -246,8 +241,7 @@ fn computations<'a>(
     }))
 }
 
-/// Returns `names` in the order of the ports that have these names, each with its index in `names`. Fails if no port has one
-/// of the names.
+/// Returns `names` in the order of the ports, each with its index in `names`. Fails if a name has no port.
 fn in_port_order<'a>(
     design: &Design,
     names: impl Iterator<Item = &'a String>,
@@ -268,11 +262,7 @@ fn positions(ordered: &[(usize, &str)]) -> Vec<usize> {
     ordered.iter().map(|(place, _)| *place).collect()
 }
 
-/// Returns a computation as JSON on a single line. `operands` and `results` give the order of the raw values: the indices into
-/// the values of `computation`.
-///
-/// # Errors
-/// Fails if the computation cannot be written as JSON.
+/// `operands` and `results` are the indices of the raw values of `computation`, in the order in which they are written.
 fn line(computation: &Computation, operands: &[usize], results: &[usize]) -> Result<Box<RawValue>> {
     let (mut valid, mut outputs) = (Vec::new(), Vec::new());
     for result in &computation.results {
@@ -287,7 +277,6 @@ fn line(computation: &Computation, operands: &[usize], results: &[usize]) -> Res
     }))?)
 }
 
-/// Returns the elements of `values` with the indices `places`, in the order of `places`.
 fn in_order(places: &[usize], values: &[i64]) -> Vec<i64> {
     places.iter().map(|&place| values[place]).collect()
 }
@@ -308,9 +297,8 @@ fn control(design: &Design) -> Value {
     entry
 }
 
-/// Returns the manifest's entry of a pipeline. Latency and interval are in clocks. `register_bits` of a stage counts the
-/// bits of the registers behind the stage. `delayed_bits` counts the bits that are in delay memories in place of these
-/// registers.
+/// Latency and interval are in clocks. `register_bits` of a stage counts the bits of the registers behind the stage.
+/// `delayed_bits` counts the bits that are in delay memories in place of these registers.
 fn pipeline(pipeline: &Pipeline) -> Value {
     let stages = pipeline.stages.iter().map(|stage| {
         json!({

@@ -1,7 +1,7 @@
 //! Makes the register map of a core: gives each operand, each result and each status bit an address on the bus.
 //!
-//! The Verilog of the bus wrapper, the C header and the documentation use the same assignment. For example, the first operand is
-//! at word 8, which is byte address 32.
+//! The Verilog of the bus wrapper, the C header and the documentation use the same map. For example, the first operand is at
+//! word 8, which is byte address 32.
 
 use std::collections::BTreeSet;
 
@@ -17,23 +17,19 @@ use glint_rtl::verilog::text::ascii;
 /// The number of bits of a register.
 const WORD: u32 = 32;
 
-/// The number of bus registers with constant contents. These registers have the lowest addresses of a core's register map.
+/// The number of registers with constant contents, at the lowest addresses.
 pub const CONSTANTS: u32 = 4;
 
-/// The word address of the control register, the first that software can write. [`INTERRUPT_ENABLE`] and [`INTERRUPT_PENDING`]
-/// follow.
+/// The word address of the control register, the first that software can write.
 pub const CONTROL: u32 = 5;
 
-/// The word address of the register that enables the interrupt.
 pub const INTERRUPT_ENABLE: u32 = 6;
 
-/// The word address of the register that shows whether an interrupt is pending.
 pub const INTERRUPT_PENDING: u32 = 7;
 
 /// The word address of the first operand.
 const FIRST_OPERAND: u32 = 8;
 
-/// How software can access some bits of a register.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Access {
@@ -50,85 +46,74 @@ pub enum Access {
 /// A field of a bus register of a core: some of its bits with a meaning of their own.
 #[derive(Clone, Debug, Deserialize)]
 pub struct RegisterBits {
-    /// The name of the field, in plain lower-case words.
+    /// The name, in plain lower-case words.
     pub name: String,
-    /// The lowest bit of the field.
     #[serde(default)]
     pub low: u32,
-    /// The number of bits of the field.
     pub width: u32,
-    /// How software can access the field.
     pub access: Access,
-    /// The value of the field after a reset.
     #[serde(default)]
     pub reset: u64,
-    /// A description of the field for software, as a sentence without its full stop.
+    /// The meaning for software, as a sentence without its full stop.
     pub doc: String,
 }
 
-/// A register of 32 bits of a core, which software reads or writes over a bus.
+/// A register of 32 bits, which software reads or writes over a bus.
 #[derive(Clone, Debug, Deserialize)]
 pub struct BusRegister {
-    /// The name of the register, in plain lower-case words.
+    /// The name, in plain lower-case words.
     pub name: String,
-    /// The address of the register in words of 32 bits.
+    /// The address in words of 32 bits.
     #[serde(default)]
     pub place: u32,
-    /// A description of the register for software, as a sentence without its full stop.
+    /// The purpose for software, as a sentence without its full stop.
     pub doc: String,
-    /// The fields of the register, from the lowest bits to the highest.
+    /// The fields, from the lowest bits to the highest.
     pub bits: Vec<RegisterBits>,
 }
 
 impl BusRegister {
-    /// Returns the address of the register in bytes. For example, the first operand, at word address 8, has the offset 32.
+    /// Returns the address in bytes.
     pub fn offset(&self) -> u32 {
         4 * self.place
     }
 }
 
-/// The placement of a port of the core (an operand or a result) in bus registers, the lowest bits first. For example, an operand
-/// of 40 bits takes two registers, the first register with 32 bits and the second register with 8 bits.
+/// An operand or a result in bus registers, the lowest bits first. For example, an operand of 40 bits takes two registers,
+/// with 32 and 8 of its bits.
 #[derive(Clone, Debug)]
 pub struct PortPlacement {
-    /// The name of the port.
     pub name: String,
-    /// The number format of the port.
     pub format: Format,
-    /// For an operand, the name of the strobe, the input port that writes it.
+    /// For an operand, the input port that writes it.
     pub strobe: String,
-    /// The parts of the port, one in each register.
     pub parts: Vec<PortBits>,
 }
 
-/// Some bits of a port, and their position in a bus register.
+/// Some bits of a port in a bus register.
 #[derive(Clone, Copy, Debug)]
 pub struct PortBits {
-    /// The address of the bus register that holds the bits, in words of 32 bits.
+    /// The address of the bus register, in words of 32 bits.
     pub place: u32,
-    /// The position of the lowest of the bits in the bus register.
+    /// The lowest of the bits in the register.
     pub at: u32,
-    /// The position of the lowest of the bits in the port.
+    /// The lowest of the bits in the port.
     pub low: u32,
-    /// The number of bits of the port in this register.
     pub width: u32,
 }
 
 /// The register map of a core: the registers that software reads and writes over a bus, with their addresses.
 #[derive(Clone, Debug)]
 pub struct Map {
-    /// All bus registers, in the order of their addresses, which have no gaps.
+    /// The registers in the order of their addresses, which have no gaps.
     pub registers: Vec<BusRegister>,
-    /// The registers of the operands, in the order of the ports.
+    /// The operands in the order of the ports.
     pub operands: Vec<PortPlacement>,
-    /// The registers of the results, in the order of the ports.
+    /// The results in the order of the ports.
     pub results: Vec<PortPlacement>,
 }
 
 impl Map {
-    /// Makes the register map of a core: assigns bus registers to its operands, results and status bits.
-    ///
-    /// # Errors
     /// Fails if the core is a pipeline, computes several results after one `start`, or lacks the handshake, operands or
     /// results. Fails if two registers would have the same name, for example because an operand is called `status`.
     pub fn new(design: &Design, inputs: &EmitInputs) -> Result<Self> {
@@ -178,26 +163,21 @@ impl Map {
         Ok(map)
     }
 
-    /// Returns the word address of the last register that holds an operand.
     pub fn last_operand(&self) -> u32 {
         last_place(&self.operands)
     }
 
-    /// Returns the word address of the last register of the map, which holds a result.
+    /// Returns the word address of the last register, which holds a result.
     pub fn last(&self) -> u32 {
         last_place(&self.results)
     }
 
-    /// Returns the number of bits that a byte address in the register map needs. For example, a map whose last register has word
-    /// address 15 needs 6 bits.
+    /// Returns the number of bits of a byte address. For example, a map whose last register has word address 15 needs 6 bits.
     pub fn address_bits(&self) -> u32 {
         (4 * self.last()).ilog2() + 1
     }
 
-    /// Checks that no two registers have the same name, because software refers to registers by their names.
-    ///
-    /// # Errors
-    /// Fails if two registers have the same name. The error is a [`ConfigError`] of the key `interface.registers`.
+    /// Software refers to registers by their names, so no two may have the same.
     fn check(&self, core: &str) -> Result<()> {
         let mut names = BTreeSet::new();
         for register in &self.registers {
@@ -213,7 +193,6 @@ impl Map {
     }
 }
 
-/// Returns the error of the key that asks for registers on a bus.
 fn registers_error(message: String, remedy: &str) -> ConfigError {
     ConfigError::new("interface.registers", message, remedy)
 }
@@ -223,8 +202,8 @@ fn last_place(ports: &[PortPlacement]) -> u32 {
     parts.map(|part| part.place).max().unwrap_or_default()
 }
 
-/// Places a port in as many registers as it needs, which no other port uses, from the word address `place` on. Afterwards `place`
-/// is the word address behind these registers. `strobe` is the name of the port that writes an operand; empty for a result.
+/// Places a port in as many registers as it needs, from the word address `place` on, and advances `place` behind them.
+/// `strobe` is the name of the port that writes an operand.
 fn placed(design: &Design, port: &Port, strobe: String, place: &mut u32) -> PortPlacement {
     let net = design.net(port.net);
     let width = net.format.width();
@@ -238,9 +217,8 @@ fn placed(design: &Design, port: &Port, strobe: String, place: &mut u32) -> Port
     PortPlacement { name: net.name.clone(), format: net.format, strobe, parts }
 }
 
-/// Returns the placements of the results, from the word address `place` on. Afterwards `place` is the word address behind their
-/// registers. If all results fit into one register, each in whole bytes, they share this register; otherwise each result has its
-/// own registers. For example, three colours of 8 bits share a register, from bits 0, 8 and 16 on.
+/// Places the results from the word address `place` on, and advances `place` behind them. If all results fit into one
+/// register, each in whole bytes, they share it. For example, three colours of 8 bits are at bits 0, 8 and 16.
 fn results(design: &Design, place: &mut u32) -> Vec<PortPlacement> {
     let ports: Vec<&Port> = design.outputs().filter(|port| port.role == Role::Result).collect();
     let padded = |port: &Port| design.width(port.net).next_multiple_of(8);
@@ -264,15 +242,13 @@ fn results(design: &Design, place: &mut u32) -> Vec<PortPlacement> {
     results
 }
 
-/// The registers that every core has, in `registers.toml`.
 #[derive(Deserialize)]
 struct CommonRegisters {
     register: Vec<BusRegister>,
 }
 
-/// Returns the registers that every core has. The constant registers have an identification, the version of Glint, the digest of
-/// the configuration, and the numbers of operands and results of this core. The last operand and the last register are given as
-/// word addresses.
+/// The constant registers have an identification, the version of Glint, the digest of the configuration, and the numbers of
+/// operands and results of this core. The last operand and the last register are given as word addresses.
 ///
 /// # Errors
 /// Fails if `registers.toml`, which is part of the program, is not valid.
@@ -346,9 +322,8 @@ fn of_results(results: &[PortPlacement], design: &Design) -> Vec<BusRegister> {
     }]
 }
 
-/// Returns the bus registers of a port that shares no register with another port. `access` says how software can access these
-/// registers. A port of more than 32 bits has several registers, named `<port>_0`, `<port>_1` and so on, with the lowest bits in
-/// the first register.
+/// Returns the registers of a port that shares no register with another port. A port of more than 32 bits has several, named
+/// `<port>_0`, `<port>_1` and so on, with the lowest bits in the first.
 fn own(port: &PortPlacement, access: Access, doc: &str) -> Vec<BusRegister> {
     let mut registers = Vec::new();
     for (number, part) in port.parts.iter().enumerate() {

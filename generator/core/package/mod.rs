@@ -2,12 +2,10 @@
 //! test benches, formal wrappers, bus wrappers and the model in C.
 //!
 //! `hdl::verilog` turns names and expressions of the netlist into strings. Each module here collects such strings in a view, a
-//! plain struct, and a template in `templates/` prints the view. A template can repeat lines or leave out lines, but the view
-//! has the data that decides this. Emission returns the files and writes nothing to disk, and the same design always gives the
-//! same bytes.
+//! plain struct, and a template in `templates/` prints the view. Emission returns the files and writes nothing to disk, and
+//! the same design always gives the same bytes.
 
-/// Declares a struct with the names that a test bench uses for its own variables. Its function `new` chooses names that no port
-/// has.
+/// Declares a struct with names for the variables of a test bench. Its function `new` chooses names that no port has.
 macro_rules! fresh_names {
     ($all:ident { $($name:ident),* }) => {
         struct $all {
@@ -71,9 +69,8 @@ pub use seal::{Seal, is_sealed, sealed, sealed_json, sealed_object};
 pub use software::check_recomputation;
 pub use surroundings::{Surroundings, check_clock, check_rom_style};
 
-/// Returns a Verilog test bench that computes the points (sets of operands) of a file, with a pipeline or with a core that
-/// has a microprogram. The simulation ends with `FAIL` if a computation takes `limit` clocks or more. For a pipeline,
-/// `limit` counts the clocks from the last point to the last result.
+/// Returns a Verilog test bench that computes the points (sets of operands) of a file. The simulation ends with `FAIL` if a
+/// computation takes `limit` clocks or more. For a pipeline, `limit` counts the clocks from the last point to the last result.
 ///
 /// # Errors
 /// Fails if the design lacks a port of its handshake, or if a template fails.
@@ -84,8 +81,7 @@ pub fn points_bench(design: &Design, limit: u32) -> Result<PointsBench> {
     }
 }
 
-/// Returns only the Verilog of a core and the files with the contents of its ROMs, without wrappers, test benches and other
-/// files.
+/// Returns only the Verilog of a core and the files with the contents of its ROMs.
 ///
 /// # Errors
 /// Fails if [`Design::verify_structure`] finds mistakes, if a net is named `clk`, or if the name of a module is used for
@@ -97,10 +93,7 @@ pub fn emit_core(design: &Design, inputs: &EmitInputs) -> Result<OutputFiles> {
     Ok(files)
 }
 
-/// Returns the Verilog of a design and the contents of its ROMs. Names of modules are not checked yet.
-///
-/// # Errors
-/// Fails if a net is named `clk`, if [`Design::verify_structure`] finds mistakes, or if a template fails.
+/// The names of modules are not checked yet.
 fn core_files(job: &EmitJob) -> Result<OutputFiles> {
     let EmitJob { design, inputs, naming, .. } = *job;
     ensure!(
@@ -119,9 +112,6 @@ fn core_files(job: &EmitJob) -> Result<OutputFiles> {
     Ok(files)
 }
 
-/// Returns all files of a core.
-///
-/// # Errors
 /// Fails if [`Design::verify_structure`] finds mistakes, if a net is named `clk`, or if vectors do not fit the ports. Fails if
 /// the core cannot have a wrapper or a model that the configuration asks for, or if the name of a module is used for anything
 /// else.

@@ -1,9 +1,8 @@
-//! Checks the module names in emitted Verilog: a module's name must not be used for anything else, and no two configurations may
-//! define the same module.
+//! Checks the module names in emitted Verilog: a module's name must not be used for anything else, and no two configurations
+//! may define the same module.
 //!
 //! Verilog allows a module to have the name of something inside it, but some tools fail. For example, elaboration fails if a
-//! bench reads a signal of the instance `control` of a module `control`. Linters warn of a port that has the name of its
-//! module. Each file lists its modules in [`OutputFile::modules`].
+//! bench reads a signal of the instance `control` of a module `control`.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +11,7 @@ use anyhow::{Result, bail};
 use super::file_kind::FileKind;
 use super::output_file::OutputFile;
 
-/// Checks that the names of the modules in some files of one configuration are not used for anything else.
+/// Checks the files of one configuration.
 ///
 /// # Errors
 /// Fails if the name of a module is also used for something else. The error names the module, the file and the line.
@@ -42,8 +41,7 @@ pub fn check(files: &[OutputFile]) -> Result<()> {
     Ok(())
 }
 
-/// Makes sure that no two configurations define a module of the same name. `configurations` gives each configuration as its name
-/// for messages and its files.
+/// Makes sure that no two configurations define a module of the same name. Each of `configurations` has a name for messages.
 ///
 /// # Errors
 /// Fails if two configurations define the same module. The error names the module and both configurations.
@@ -67,7 +65,7 @@ pub fn check_together<'a>(
     Ok(())
 }
 
-/// Returns whether the files of a kind are Verilog or SystemVerilog, in which the name of a module may have another meaning.
+/// Only in files of Verilog or SystemVerilog can the name of a module have another meaning.
 fn is_checked(kind: FileKind) -> bool {
     let is_system_verilog = matches!(
         kind,
@@ -76,7 +74,7 @@ fn is_checked(kind: FileKind) -> bool {
     is_system_verilog || kind.is_verilog()
 }
 
-/// Returns whether token `at`, which is the name of a module, means the module: the module is defined or instantiated there.
+/// Returns whether token `at`, which is the name of a module, defines or instantiates the module.
 fn names_module(tokens: &[Token<'_>], at: usize) -> bool {
     let text = |at: usize| tokens.get(at).map_or("", |token| token.text);
     let is_defined = at > 0 && text(at - 1) == "module";

@@ -6,17 +6,15 @@ use sha2::{Digest, Sha256};
 /// A generated file that is not written yet: its kind, path and contents.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OutputFile {
-    /// The kind of the file, such as Verilog of the core or ROM contents.
     pub kind: FileKind,
     /// The path relative to the output directory, with `/`: `rtl_out/<name>/<name>.v`.
     pub path: String,
-    /// The whole text, which must end with a newline.
+    /// The text, which must end with a newline.
     pub contents: String,
-    /// The names of the modules that a file in Verilog or SystemVerilog defines, the main one first; empty for any other
-    /// file. For example, `testbench/rough/rough_registers_formal.sv` defines `rough_registers_formal`, and `rough` as a
-    /// stub.
+    /// The names of the modules that the file defines, the main one first. For example,
+    /// `testbench/rough/rough_registers_formal.sv` defines `rough_registers_formal`, and `rough` as a stub.
     pub modules: Vec<String>,
-    /// The target of a [`FileKind::TargetVerilog`]; `None` for any other file. For example, `ecp5`.
+    /// The target of a [`FileKind::TargetVerilog`], for example `ecp5`.
     pub target: Option<String>,
 }
 
@@ -37,12 +35,12 @@ impl OutputFile {
         self.path.rsplit('/').next().unwrap_or(&self.path)
     }
 
-    /// Returns the file as outside tools read it: its plain name and its contents. For example, `rough.v` with its Verilog.
+    /// Returns the file as outside tools read it: its name without directory, and its contents.
     pub fn source(&self) -> (&str, &str) {
         (self.name(), &self.contents)
     }
 
-    /// Returns the path inside the directory of the configuration. For example, `rtl_out/rough/rough.v` gives `rough.v`, and
+    /// Returns the path inside the directory of the configuration. For example,
     /// `rtl_out/blinn_pipelined/ecp5/blinn_pipelined_multiplier.v` gives `ecp5/blinn_pipelined_multiplier.v`.
     pub(super) fn local_path(&self) -> String {
         match &self.target {
@@ -51,15 +49,13 @@ impl OutputFile {
         }
     }
 
-    /// Returns the name of the main module of a file in Verilog or SystemVerilog, and an empty text for any other file. For
-    /// example, `rtl_out/rough/rough.v` gives `rough`.
+    /// Returns an empty text for a file without modules.
     pub fn main_module(&self) -> &str {
         self.modules.first().map_or("", String::as_str)
     }
 }
 
-/// Returns the SHA-256 of a file's contents as 64 hexadecimal digits in lower case. The manifest has this digest of each
-/// file.
+/// Returns the SHA-256 of a file's contents as 64 hexadecimal digits in lower case.
 pub fn digest(contents: &[u8]) -> String {
     Sha256::digest(contents).iter().map(|byte| format!("{byte:02x}")).collect()
 }

@@ -8,22 +8,21 @@ use std::vec::IntoIter;
 use super::file_kind::FileKind;
 use super::output_file::OutputFile;
 
-/// The emitted files of a configuration, in the order of their kinds, [`FileKind`]. Some kinds share a position, for example
-/// benches and their vectors (`FileKind::listed_with`). Files at one position are in the order in which they were added.
+/// The emitted files of a configuration, in the order of their kinds (see [`FileKind`]). Files at one position are in the
+/// order in which they were added.
 #[derive(Clone, Debug)]
 pub struct OutputFiles {
-    /// The name of the configuration, which its directories have too.
+    /// Its directories have the same name.
     name: String,
     files: Vec<OutputFile>,
 }
 
 impl OutputFiles {
-    /// Makes an empty collection for the configuration `name`.
     pub(super) fn new(name: &str) -> Self {
         Self { name: name.to_owned(), files: Vec::new() }
     }
 
-    /// Adds a file that defines no modules. For example, `rough_sine.mem` of the kind [`FileKind::Memory`].
+    /// Adds a file that defines no modules.
     pub(super) fn add(&mut self, kind: FileKind, file: impl AsRef<str>, contents: String) {
         let path = self.path(kind, file.as_ref());
         self.insert(OutputFile::new(kind, path, contents));
@@ -35,8 +34,7 @@ impl OutputFiles {
         self.add_modules(kind, "v", modules, contents);
     }
 
-    /// Adds a file in SystemVerilog that defines `modules`, and has the name of the first module. For example, `rough_formal` is
-    /// in `rough_formal.sv`.
+    /// Does the same as [`OutputFiles::add_verilog`] in SystemVerilog, for example for `rough_formal.sv`.
     pub(super) fn add_system_verilog(
         &mut self,
         kind: FileKind,
@@ -73,32 +71,29 @@ impl OutputFiles {
         format!("{}/{}/{file}", kind.folder(), self.name)
     }
 
-    /// Inserts a file behind all files whose kinds have an earlier position in the list, or the same position.
     fn insert(&mut self, file: OutputFile) {
         let kind = file.kind.listed_with();
         let place = self.files.partition_point(|other| other.kind.listed_with() <= kind);
         self.files.insert(place, file);
     }
 
-    /// Returns the files of some kinds, in their order in the list of all files.
     pub fn of(&self, kinds: &[FileKind]) -> Vec<&OutputFile> {
         self.files.iter().filter(|file| kinds.contains(&file.kind)).collect()
     }
 
-    /// Returns the paths of the files of some kinds, relative to the directory of the configuration. For example, the kind
-    /// [`FileKind::Memory`] gives `rough_sine.mem`.
+    /// Returns paths relative to the directory of the configuration. For example, [`FileKind::Memory`] gives `rough_sine.mem`.
     pub(super) fn local_paths(&self, kinds: &[FileKind]) -> Vec<String> {
         self.of(kinds).into_iter().map(OutputFile::local_path).collect()
     }
 
-    /// Returns the name of the main module of each file of some kinds. For example, the kind [`FileKind::Bench`] gives
-    /// `rough_tb` and `rough_axis_tb`. A file without modules gives an empty name.
+    /// Returns the name of the main module of each file. For example, [`FileKind::Bench`] gives `rough_tb` and
+    /// `rough_axis_tb`. A file without modules gives an empty name.
     pub fn modules(&self, kinds: &[FileKind]) -> Vec<&str> {
         self.of(kinds).into_iter().map(OutputFile::main_module).collect()
     }
 
-    /// Returns the names of the modules that a system can instantiate: the core, then the wrappers that exist. For example,
-    /// `rough`, `rough_axis` and `rough_axil`.
+    /// Returns the names of the modules that a system can instantiate, the core first. For example, `rough`, `rough_axis` and
+    /// `rough_axil`.
     pub fn top_modules(&self) -> Vec<&str> {
         let mut tops = Vec::new();
         for kind in [FileKind::CoreVerilog, FileKind::StreamWrapper, FileKind::BusWrapper] {
@@ -107,15 +102,13 @@ impl OutputFiles {
         tops
     }
 
-    /// Returns the files of some kinds as outside tools read them: pairs of a name without directory, and the contents. For
-    /// example, `rough.v` with its Verilog. A module that also has a version for one target is in the portable version.
+    /// Returns the files as outside tools read them: pairs of a name without directory, and the contents. A module that also
+    /// has a version for one target is in the portable version.
     pub fn sources(&self, kinds: &[FileKind]) -> Vec<(String, String)> {
         self.sources_for(kinds, "")
     }
 
-    /// Returns the same files as [`OutputFiles::sources`], but a file that has a version for `target` has the contents of
-    /// this version. For example, for the target `ecp5` the file `blinn_pipelined_multiplier.v` instantiates the DSP block
-    /// of ECP5.
+    /// Does the same as [`OutputFiles::sources`], but a file that has a version for `target` has the contents of this version.
     pub fn sources_for(&self, kinds: &[FileKind], target: &str) -> Vec<(String, String)> {
         let mut sources = Vec::new();
         for file in self.of(kinds) {
@@ -125,7 +118,6 @@ impl OutputFiles {
         sources
     }
 
-    /// Returns the version of the file `name` for one target, or `None` if the file has no such version.
     fn form_for(&self, target: &str, name: &str) -> Option<&OutputFile> {
         let forms = self.of(&[FileKind::TargetVerilog]);
         let is_form =
@@ -133,17 +125,14 @@ impl OutputFiles {
         forms.into_iter().find(is_form)
     }
 
-    /// Returns an iterator over all files, in the order of their kinds.
     pub fn iter(&self) -> Iter<'_, OutputFile> {
         self.files.iter()
     }
 
-    /// Returns all files as a slice, in the order of their kinds.
     pub fn as_slice(&self) -> &[OutputFile] {
         &self.files
     }
 
-    /// Returns the number of files.
     #[expect(clippy::len_without_is_empty, reason = "emission always makes the core's Verilog")]
     pub fn len(&self) -> usize {
         self.files.len()

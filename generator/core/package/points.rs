@@ -1,7 +1,7 @@
 //! Generates a Verilog test bench that computes a list of points with a core that has a microprogram.
 //!
 //! The bench reads the operands of each point from one file and writes the results to another. `glint render --through
-//! verilator` uses the bench to compute pictures with the emitted Verilog.
+//! verilator` computes pictures with it.
 
 pub(super) mod pipeline;
 
@@ -12,19 +12,18 @@ use glint_rtl::netlist::{Design, NetId, Role};
 use glint_rtl::verilog::rows::{connections, variables};
 use glint_rtl::verilog::text::Names;
 
-/// The default name of the file from which the bench reads operands. The file has a line for each computation: its operands in
-/// hexadecimal, in the order of [`PointsBench::operands`], with spaces between.
+/// The default name of the operand file. It has a line for each computation: the operands in hexadecimal, in the order of
+/// [`PointsBench::operands`], with spaces between.
 pub const POINTS_FILE: &str = "points.hex";
 
-/// The default name of the file to which the bench writes results. The file has a line for each result: its outputs in
-/// hexadecimal, in the order of [`PointsBench::results`]. A line with a dot follows the last result of each computation.
+/// The default name of the result file. It has a line for each result: the outputs in hexadecimal, in the order of
+/// [`PointsBench::results`]. A line with a dot follows the last result of each computation.
 pub const RESULTS_FILE: &str = "results.hex";
 
 /// A test bench that reads operands from a file and writes results to another file.
 pub struct PointsBench {
-    /// The name of the bench's module. Its file has the same name with `.v`.
+    /// The module's name; its file has the same with `.v`.
     pub name: String,
-    /// The Verilog text of the test bench.
     pub text: String,
     /// The operand ports, in the order of the values on a line of the operand file.
     pub operands: Vec<String>,
@@ -32,7 +31,7 @@ pub struct PointsBench {
     pub results: Vec<String>,
 }
 
-/// The names and texts that the benches for a pipeline and for a core with a microprogram have in common.
+/// The common data of the benches for a pipeline and for a core with a microprogram.
 struct PointList {
     name: String,
     module: String,
@@ -45,14 +44,14 @@ struct PointList {
     valid: String,
     operands: Vec<String>,
     results: Vec<String>,
-    /// The format string that reads a line of operands; `print` is the format string that prints a line of results.
+    /// The format strings that read a line of operands and print a line of results.
     scan: String,
     print: String,
 }
 
 impl PointList {
-    /// Collects the names and texts of the bench for a design. A port is an operand if `is_operand` returns true for its
-    /// role. The last parameter has the net of the reset, then the net of `valid`.
+    /// A port is an operand if `is_operand` returns true for its role. The last parameter has the nets of the reset and of
+    /// `valid`.
     fn new(
         design: &Design,
         limit: u32,
@@ -87,7 +86,6 @@ impl PointList {
         }
     }
 
-    /// Returns the finished bench, whose Verilog is `text`.
     fn bench(self, text: String) -> PointsBench {
         PointsBench { name: self.name, text, operands: self.operands, results: self.results }
     }
@@ -95,8 +93,8 @@ impl PointList {
 
 fresh_names!(Variables { points, results, read, clocks, total, tick, dut });
 
-/// Returns the test bench that computes points (sets of operands) with a core that has a microprogram. The simulation ends
-/// with `FAIL` if a computation takes `limit` clocks or more.
+/// Returns the bench for a core that has a microprogram. The simulation ends with `FAIL` if a computation takes `limit` clocks
+/// or more.
 ///
 /// # Errors
 /// Fails if the design lacks a port of the handshake `rst_n`, `start`, `busy`, `valid`, `done`, or if the template fails.

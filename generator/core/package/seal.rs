@@ -1,14 +1,14 @@
 //! Adds a SHA-256 digest to generated files that no manifest lists, and checks the digest of such a file.
 //!
-//! The digest is in the last line of a text file, or in a member of a JSON object. The digest shows whether anybody changed the
-//! file since Glint wrote the file. For example, the last line of a Python file is `# sha256` and 64 hexadecimal digits.
+//! The digest shows whether anybody changed the file since Glint wrote it. It is in the last line of a text file, or in a
+//! member of a JSON object. In Python, the line is `# sha256` and 64 hexadecimal digits.
 
 use anyhow::{Context, Result};
 use serde_json::Value;
 
 use super::output_file::digest;
 
-/// The position of the digest in a file: in the last line, or in a member of a JSON object.
+/// The position of the digest in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Seal {
     /// Markdown and HTML: a last line `<!-- … -->`, which no reader of the page sees.
@@ -22,8 +22,8 @@ pub enum Seal {
 /// The member of sealed JSON with the digest of the other members.
 const MEMBER: &str = "sha256";
 
-/// Returns `text` with one line more, which has the digest of the text. `text` must end with a newline. A JSON file cannot have
-/// such a line and stays as it is: see [`sealed_json`]. For example, the last line of a Python file is `# sha256` and 64 digits.
+/// Returns `text`, which must end with a newline, with one line more that has the digest of the text. A JSON file cannot have
+/// such a line and stays as it is: see [`sealed_json`].
 pub fn sealed(text: String, seal: Seal) -> String {
     let line = last_line(text.as_bytes(), seal);
     text + &line
@@ -37,7 +37,7 @@ fn last_line(above: &[u8], seal: Seal) -> String {
     }
 }
 
-/// Returns a JSON object with one member more, `sha256`, which has the digest of the other members.
+/// Adds the member `sha256`, which has the digest of the other members, to a JSON object.
 ///
 /// # Errors
 /// Fails if the value is no object.
@@ -48,7 +48,7 @@ pub fn sealed_object(mut value: Value) -> Result<Value> {
     Ok(value)
 }
 
-/// Returns the JSON text of the object that [`sealed_object`] returns, indented, with a newline at its end.
+/// Returns the JSON text of [`sealed_object`], indented, with a newline at its end.
 ///
 /// # Errors
 /// Fails if the value is no object.
@@ -56,9 +56,9 @@ pub fn sealed_json(value: Value) -> Result<String> {
     Ok(serde_json::to_string_pretty(&sealed_object(value)?)? + "\n")
 }
 
-/// Returns whether the digest in a file matches the file's other contents, which is so if nobody has edited the file since
-/// Glint wrote it. In JSON, only the members count, and not the spaces and lines between them. An editor who computes the
-/// digest again is not noticed. Returns `false` if the file has no digest at the position `seal`.
+/// Returns whether nobody has edited the file since Glint wrote it, by its digest. In JSON, only the members count, and not
+/// the spaces and lines between them. An editor who computes the digest again is not noticed. A file without a digest at the
+/// position `seal` gives `false`.
 pub fn is_sealed(contents: &[u8], seal: Seal) -> bool {
     match seal {
         Seal::Json => is_sealed_json(contents),

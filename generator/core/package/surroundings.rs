@@ -1,7 +1,6 @@
 //! Reads the configuration keys that ask for files around a core, for example bus wrappers, a C model or constraints.
 //!
-//! The module also checks that the core allows two of these keys, `package.clock_mhz` and `package.rom_style`. For example,
-//! `package.rom_style` is an error if the core has no ROM that the key can affect.
+//! The module also checks that the core allows two of these keys, `package.clock_mhz` and `package.rom_style`.
 
 use super::bus::{BUSES, Bus};
 use glint_base::config_error::ConfigError;
@@ -18,11 +17,10 @@ const CLOCK: &str = "package.clock_mhz";
 /// The key that says whether ROMs should be in memory blocks or in look-up tables.
 const ROM_STYLE: &str = "package.rom_style";
 
-/// Checks that `package.clock_mhz`, the clock of the constraint files, is not faster than the clock for which the pipeline
-/// is scheduled.
+/// Checks that the clock of the constraint files is not faster than the clock for which the pipeline is scheduled.
 ///
 /// # Errors
-/// Fails if `package.clock_mhz` is larger than the clock of the pipeline, both in MHz. The error names values that are valid.
+/// Fails if `package.clock_mhz` is larger than the clock of the pipeline. The error names valid values.
 pub fn check_clock(config: &Config, pipeline: &Pipeline) -> Result<(), ConfigError> {
     let (asked, made_for) = (config.number(CLOCK), pipeline.clock_mhz);
     if asked <= made_for {
@@ -44,8 +42,7 @@ pub fn check_clock(config: &Config, pipeline: &Pipeline) -> Result<(), ConfigErr
     ))
 }
 
-/// Checks that the Verilog has a memory for the attribute that `package.rom_style` asks for. The value "auto" asks for no
-/// attribute.
+/// Checks that the Verilog has a memory for the attribute that `package.rom_style` asks for.
 ///
 /// # Errors
 /// Fails if the core has no ROM that is read on the clock, or if `package.memories` writes ROMs as functions.
@@ -78,46 +75,37 @@ pub fn check_rom_style(config: &Config, design: &Design) -> Result<(), ConfigErr
 /// The wrappers and packages that a configuration asks for in addition to the core.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surroundings {
-    /// Whether to emit a wrapper that connects the core to two AXI4-Streams.
     pub stream: bool,
     /// The number of bits of `tuser`, the user's own data that travel with each point on the streams.
     pub user_bits: u32,
-    /// Whether the number of bits of a transfer is padded to a power of two. For example, 24 bits become 32.
+    /// Whether the number of bits of a transfer is padded to a power of two.
     pub power_of_two: bool,
-    /// Whether the streams have the signal `tkeep`, which marks the valid bytes of a transfer.
+    /// Whether the streams have `tkeep`, which marks the valid bytes of a transfer.
     pub keep: bool,
-    /// The bus on which the core has registers, if any.
     pub registers: Option<&'static Bus>,
     /// Whether to emit a C model, in `software/<name>/`.
     pub software: bool,
-    /// Whether to emit a C program that computes the results of every combination of operands, and compares them with the
-    /// formulas.
+    /// Whether to emit a C program that compares the results of every combination of operands with the formulas.
     pub recomputation: bool,
-    /// How the Verilog declares memories and registers. For example, whether a ROM's words are in the Verilog or in a file.
+    /// How the Verilog declares memories and registers.
     pub style: Style,
-    /// Whether to emit a module for LiteX.
     pub litex: bool,
-    /// The clock frequency of the constraint files in MHz, or `None` if the configuration asks for no constraint files.
+    /// The clock frequency of the constraint files in MHz, or `None` for no constraint files.
     pub clock_mhz: Option<f64>,
-    /// Whether to emit Tcl for Vivado.
     pub vivado: bool,
-    /// Whether to emit Tcl for Quartus.
     pub quartus: bool,
-    /// Whether to emit components of IP-XACT.
     pub ip_xact: bool,
-    /// Whether to emit components and an entity in VHDL.
     pub vhdl: bool,
-    /// Whether to emit a package in SystemVerilog.
     pub systemverilog: bool,
-    /// The name of the vendor in the emitted packages.
+    /// The vendor in the emitted packages.
     pub vendor: String,
-    /// The version of the core in the emitted packages: three numbers with dots between them.
+    /// The version in the emitted packages: three numbers with dots between them.
     pub version: String,
-    /// The licence of the core, as an SPDX expression.
+    /// The licence as an SPDX expression.
     pub licence: String,
 }
 
-/// Returns the values of a configuration that sets no key of `interface` and `package`.
+/// Gives the values of a configuration that sets no key of `interface` and `package`.
 impl Default for Surroundings {
     fn default() -> Self {
         let schema = Schema { device: "", keys: Vec::new(), check: |_, _| () };
@@ -126,8 +114,8 @@ impl Default for Surroundings {
 }
 
 impl Surroundings {
-    /// Reads the keys of the tables `interface` and `package`, which every device has. The default clock of the constraint
-    /// files is the clock of `pipeline`, or 100 MHz if `pipeline` is `None`.
+    /// Reads the keys of the tables `interface` and `package`. The default clock of the constraint files is the clock of
+    /// `pipeline`, or 100 MHz without one.
     pub fn new(config: &Config, pipeline: Option<&Pipeline>) -> Self {
         let keys = Shared::of(config);
         Self {

@@ -1,7 +1,5 @@
-//! Lists the modules that a system can instantiate, with their ports: the core itself, its stream wrapper and its bus
-//! wrapper.
-//!
-//! The generators of constraints, Tcl scripts, IP-XACT, VHDL and LiteX modules make their files from this list.
+//! Lists the modules that a system can instantiate, with their ports: the core itself, its stream wrapper and its bus wrapper.
+//! The generators of constraints, Tcl scripts, IP-XACT, VHDL and LiteX modules read this list.
 
 use anyhow::Result;
 
@@ -13,74 +11,63 @@ use super::wrap::fields::Transfer;
 use glint_rtl::netlist::{Design, Role};
 use glint_rtl::verilog::text::ascii;
 
-/// The kind of interface that a module has to the system.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Face {
-    /// The module is the core itself, with its own handshake.
+    /// The core itself, with its own handshake.
     Core,
-    /// The module has an AXI4-Stream for operands and another AXI4-Stream for results.
+    /// An AXI4-Stream for operands and another for results.
     Stream,
-    /// The module has registers on a bus.
     Registers(&'static Bus),
 }
 
-/// A port of a module that a system can instantiate.
 #[derive(Clone, Debug)]
 pub struct TopPort {
-    /// The name of the port.
     pub name: String,
-    /// Whether the port is an input; otherwise it is an output.
     pub input: bool,
-    /// The number of bits of the port.
     pub width: u32,
-    /// Whether the port is declared with a range, such as `[0:0]`. A port of one bit may have no range.
+    /// Whether the port is declared with a range, such as `[0:0]`. A port of one bit may have none.
     pub vector: bool,
-    /// The signal of the LiteX bus that connects to the port; empty if there is no such signal.
+    /// The signal of the LiteX bus that connects to the port, if any.
     pub signal: String,
-    /// The comment on the port, one line; may be empty.
+    /// A comment of one line; may be empty.
     pub doc: String,
 }
 
-/// A module that a system can instantiate. For example, `threshold_levels` is a core, `threshold_levels_axis` is the same
-/// core between streams, and `threshold_levels_axil` is the core behind registers on AXI4-Lite.
+/// A module that a system can instantiate. For example, `threshold_levels` is a core, `threshold_levels_axis` the same core
+/// between streams, and `threshold_levels_axil` the core behind registers on AXI4-Lite.
 #[derive(Clone, Debug)]
 pub struct Top {
-    /// The name of the module.
     pub module: String,
-    /// The end of the module's name, after the name of the core and `_`. For example, `axis`; the end is empty for the core
-    /// itself.
+    /// The end of the module's name behind the name of the core and `_`, for example `axis`; empty for the core itself.
     pub suffix: &'static str,
-    /// The kind of interface that the module has to the system.
     pub face: Face,
     /// The purpose of the module in a few words.
     pub what: String,
-    /// The name of the clock port, which is the first port.
+    /// The clock, which is the first port.
     pub clock: String,
-    /// The name of the reset port. The reset is synchronous.
+    /// The reset, which is synchronous.
     pub reset: String,
-    /// The level, 0 or 1, of the reset port while the module is in reset.
+    /// The level of the reset port while the module is in reset.
     pub reset_level: u8,
-    /// All ports, in the order of the Verilog.
+    /// The ports in the order of the Verilog.
     pub ports: Vec<TopPort>,
-    /// The standard interfaces among the ports.
     pub protocols: &'static [Protocol],
     /// The Verilog files of the module and of all modules below it, its own file first.
     pub verilog: Vec<String>,
 }
 
 impl Top {
-    /// Returns the number of bits of the port `name`, or 0 if there is no such port.
+    /// Returns 0 if there is no such port.
     pub fn width(&self, name: &str) -> u32 {
         self.ports.iter().find(|port| port.name == name).map_or(0, |port| port.width)
     }
 
-    /// Returns the ports except clock and reset.
     pub fn signals(&self) -> impl Iterator<Item = &TopPort> {
         self.ports.iter().filter(|port| port.name != self.clock && port.name != self.reset)
     }
 
-    /// Returns the ports of a standard interface, each with its name in the definition of the interface. For example, the
-    /// port `s_axis_tdata` of the interface `s_axis` has the name `tdata`.
+    /// Returns the ports of a standard interface with their names in its definition. For example, the port `s_axis_tdata` of
+    /// the interface `s_axis` has the name `tdata`.
     pub fn ports_of(&self, protocol: &Protocol) -> Vec<(&TopPort, String)> {
         let prefix = format!("{}_", protocol.name);
         let mut ports = Vec::new();
@@ -92,15 +79,14 @@ impl Top {
         ports
     }
 
-    /// Returns whether the module has an interrupt output, `irq`. The output is 1 as long as an interrupt is pending and
-    /// enabled.
+    /// Returns whether the module has an interrupt output, `irq`, which is 1 while an interrupt is pending and enabled.
     pub fn interrupts(&self) -> bool {
         matches!(self.face, Face::Registers(_))
     }
 }
 
-/// Returns the modules that a system can instantiate: the core, then its stream wrapper and its bus wrapper, if the
-/// configuration asks for them. Fails if the configuration asks for streams, and the core has no operands or no results.
+/// Returns the core, then its stream wrapper and its bus wrapper, if the configuration asks for them. Fails if streams are
+/// asked for, and the core has no operands or no results.
 pub fn tops(job: &EmitJob, files: &OutputFiles) -> Result<Vec<Top>> {
     let (name, design) = (job.name(), job.design);
     let reset = design.port(|role| role == Role::Reset);
@@ -118,7 +104,6 @@ pub fn tops(job: &EmitJob, files: &OutputFiles) -> Result<Vec<Top>> {
     }];
     let mut add =
         |suffix: &'static str, face: Face, what: String, level: u8, ports: Vec<TopPort>| {
-            // The files of the stream with its buffer, or the files of the registers with their bus.
             let kind = match face {
                 Face::Core => FileKind::CoreVerilog,
                 Face::Stream => FileKind::StreamWrapper,
@@ -171,7 +156,6 @@ fn core_ports(design: &Design) -> Vec<TopPort> {
     ports
 }
 
-/// Returns the ports of the stream wrapper. Fails if the core has no operands or no results.
 fn stream_ports(job: &EmitJob) -> Result<Vec<TopPort>> {
     let (input, output) = (Transfer::sent(job)?.bits, Transfer::received(job)?.bits);
     let keep = |port: &str, bits: u32| match job.inputs.around.keep {
@@ -189,9 +173,8 @@ fn stream_ports(job: &EmitJob) -> Result<Vec<TopPort>> {
     )))
 }
 
-/// Parses a list of ports: for each the direction, the name, the width of a vector, and the signal of LiteX. A width of `-`
-/// denotes a port of one bit. For example, `in s_axil_wdata 32 w.data, out irq` has an input of 32 bits and an output of one
-/// bit.
+/// Parses a list of ports. Each has its direction, its name, the width of a vector or `-` for one bit, and the signal of
+/// LiteX. For example, `in s_axil_wdata 32 w.data, out irq` has an input of 32 bits and an output of one bit.
 fn listed(ports: &str) -> Vec<TopPort> {
     let mut listed = Vec::new();
     for port in ports.split(", ") {

@@ -5,12 +5,11 @@ use std::fmt;
 use glint_base::config_error::ConfigError;
 use glint_base::diagnostic::Diagnostics;
 
-/// The reason why no netlist can be built from a configuration.
 #[derive(Clone, Debug)]
 pub enum DesignError {
-    /// The hardware description has mistakes. Every architecture of the device has these mistakes.
+    /// Every architecture of the device has these mistakes.
     Description(Diagnostics),
-    /// A pipeline with the values of the configuration cannot be made. The error names the key to change.
+    /// A pipeline cannot be made. The error names the key to change.
     Key(ConfigError),
 }
 

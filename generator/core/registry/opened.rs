@@ -1,8 +1,8 @@
-//! Defines [`DeviceParts`], the description, golden model and contract of a device, and [`OpenedConfig`], a configuration for which
-//! Glint has them.
+//! Defines [`DeviceParts`], the description, golden model and contract of a device, and [`OpenedConfig`], a configuration for
+//! which Glint has them.
 //!
-//! Opening does once what takes long and what can fail: for example, the device `expression` plans its formulas and proves their
-//! error bounds. Everything that is made of a configuration afterwards reads what was found.
+//! Opening does once what takes long and what can fail. For example, the device `expression` plans its formulas and proves
+//! their error bounds.
 
 use std::sync::Arc;
 
@@ -25,30 +25,25 @@ const OUTPUT_REGISTERED: &str = "output.registered";
 /// The key that asks for buffers in front of the operand registers.
 const OPERANDS_BUFFERED: &str = "operands.buffered";
 
-/// The hardware description, the golden model and the contract of a device, for the values of the device's own keys with which the
-/// device was opened.
+/// The hardware description, the golden model and the contract of a device, for the values of its own keys with which it was
+/// opened.
 ///
-/// Callers must pass only configurations with these values. The keys that all devices share may differ: for example, the core and
-/// the pipeline of a formula share its plan.
+/// Callers must pass only configurations with these values. The keys that all devices share may differ: for example, the core
+/// and the pipeline of a formula share its plan.
 pub trait DeviceParts: Send + Sync {
-    /// Describes the hardware: adds blocks and a microprogram to a designer, whose name is the name of the module. The function
-    /// must not call `finish`.
+    /// Adds blocks and a microprogram to a designer, whose name is the name of the module. The function must not call
+    /// `finish`.
     fn describe(&self, designer: &Designer, config: &Config);
 
-    /// Returns the golden model.
     fn model(&self, config: &Config) -> Box<dyn Model>;
 
-    /// Returns the accuracy contract.
     fn contract(&self, config: &Config) -> Box<dyn Contract>;
 }
 
 /// The parts of a device whose functions read all that they need from the configuration.
 pub struct KeyParts {
-    /// Describes the hardware, as [`DeviceParts::describe`] does.
     pub describe: fn(&Designer, &Config),
-    /// Returns the golden model.
     pub model: fn(&Config) -> Box<dyn Model>,
-    /// Returns the accuracy contract.
     pub contract: fn(&Config) -> Box<dyn Contract>,
 }
 
@@ -69,9 +64,7 @@ impl DeviceParts for KeyParts {
 /// A configuration of a device, with the parts that the device made for it.
 #[derive(Clone)]
 pub struct OpenedConfig {
-    /// The device that the configuration names.
     pub device: Device,
-    /// The configuration: a value for each key of the device.
     pub config: Config,
     parts: Arc<dyn DeviceParts>,
 }
@@ -89,8 +82,8 @@ impl Device {
 }
 
 impl OpenedConfig {
-    /// Returns another configuration of the same device. The parts are taken over if the device's own keys have the same values;
-    /// otherwise the other configuration is opened.
+    /// Returns another configuration of the same device. It shares the parts if the device's own keys have the same values;
+    /// otherwise it is opened.
     ///
     /// # Errors
     /// Fails as [`Device::open`] does.
@@ -103,12 +96,11 @@ impl OpenedConfig {
         self.device.open(config)
     }
 
-    /// Returns the accuracy contract.
     pub fn contract(&self) -> Box<dyn Contract> {
         self.parts.contract(&self.config)
     }
 
-    /// Returns the netlist: with a microprogram, or as a pipeline if the configuration asks for a pipeline.
+    /// Returns the netlist: with a microprogram, or as a pipeline.
     ///
     /// # Errors
     /// Fails if the description has mistakes, or if the pipeline cannot be made. The error lists the mistakes, or names the key
@@ -119,7 +111,7 @@ impl OpenedConfig {
         Ok(pipelined.unwrap_or(sequential))
     }
 
-    /// Returns the netlist of a configuration that does not set a clock frequency. If a pipeline cannot reach the default of
+    /// Returns the netlist of a configuration without a clock frequency. If a pipeline cannot reach the default of
     /// [`CLOCK_MHZ`], the function sets this key to the fastest clock that the pipeline can reach.
     ///
     /// # Errors
@@ -137,8 +129,8 @@ impl OpenedConfig {
         Ok(pipelined?.unwrap_or(sequential))
     }
 
-    /// Returns the computation of a pipeline before the passes that rewrite it, and after each pass. Returns an empty list if
-    /// the configuration has a sequential architecture.
+    /// Returns the computation of a pipeline before the passes that rewrite it, and after each pass. A sequential architecture
+    /// gives an empty list.
     ///
     /// # Errors
     /// Fails if the description has mistakes, or if the microprogram cannot be unrolled.
@@ -148,7 +140,7 @@ impl OpenedConfig {
         Ok(results.unwrap_or_default())
     }
 
-    /// Returns the sequential netlist, which executes a microprogram. [`OpenedConfig::design`] makes pipelines from this netlist.
+    /// Returns the netlist with a microprogram, from which [`OpenedConfig::design`] makes pipelines.
     ///
     /// # Errors
     /// Fails if the description has mistakes. The error lists them.
@@ -169,7 +161,7 @@ impl OpenedConfig {
     }
 
     /// Returns the golden model of the sequential netlist, with output registers and operand buffers if the configuration asks
-    /// for them and the model supports them.
+    /// for them.
     pub fn golden(&self) -> Box<dyn Model> {
         let mut model = self.parts.model(&self.config);
         // A model that lacks the registers or buffers differs from the design, and the comparison reports the difference.
@@ -182,9 +174,6 @@ impl OpenedConfig {
         model
     }
 
-    /// Checks whether the golden model supports the keys of the configuration.
-    ///
-    /// # Errors
     /// Fails if the configuration asks for output registers or operand buffers, and the golden model does not model them.
     pub fn check_golden(&self) -> Result<()> {
         let model = self.parts.model(&self.config);
@@ -203,9 +192,6 @@ impl OpenedConfig {
         Ok(())
     }
 
-    /// Checks that the contract can describe the results of the device.
-    ///
-    /// # Errors
     /// Fails if [`Contract::check`] fails, for example because the golden model never shows a result, or because the formula
     /// gives too few values. Fails also if results depend on values that an earlier computation left.
     pub fn check_contract(&self, design: &Design, contract: &dyn Contract) -> Result<()> {
@@ -232,7 +218,7 @@ impl OpenedConfig {
     }
 }
 
-/// Completes the messages about mistakes that come from a key of the configuration: the user can also leave out this key.
+/// The user can also leave out a key from which a mistake comes; the messages say so.
 fn with_key_remedies(mut mistakes: Diagnostics, keys: &Shared) -> Diagnostics {
     for mistake in &mut mistakes.0 {
         if mistake.code == codes::OUTPUT_REGISTER && keys.output_registered {

@@ -1,5 +1,5 @@
-//! Converts the configuration keys of a pipeline to options of the pipeline builder. If the builder fails, the module names the
-//! key that the user should change.
+//! Makes a pipeline with the options that configuration keys state. If the pipeline builder fails, the module names the key
+//! that the user should change.
 
 use glint_base::config_error::ConfigError;
 use glint_base::diagnostic::Diagnostic;
@@ -11,8 +11,7 @@ use glint_rtl::pipeline::{self, PassResult, PipelineError, PipelineErrorKind};
 /// The key with the clock frequency in MHz for which a pipeline is scheduled.
 pub const CLOCK_MHZ: &str = "pipeline.clock_mhz";
 
-/// Makes a pipeline from a sequential netlist, with the options in `config`. Returns `None` if the configuration has a
-/// sequential architecture.
+/// Returns `None` if the configuration has a sequential architecture.
 ///
 /// # Errors
 /// Fails if the pipeline cannot be made. The error names the key that the user should change.
@@ -27,11 +26,8 @@ pub fn pipelined(sequential: &Design, config: &Config) -> Result<Option<Design>,
     }
 }
 
-/// Returns the computation before the passes and after each of them. Returns `None` if the configuration has a sequential
-/// architecture.
-///
-/// # Errors
-/// Fails if the microprogram cannot be unrolled.
+/// Returns the computation before the passes and after each of them, or `None` for a sequential architecture. Fails if the
+/// microprogram cannot be unrolled.
 pub fn pass_results(
     sequential: &Design,
     config: &Config,
@@ -44,7 +40,6 @@ pub fn pass_results(
     results.map(Some).map_err(|error| key_error(&error, &keys, &config.name))
 }
 
-/// Returns the options of a pipeline that the configuration keys state.
 fn options(keys: &Shared) -> pipeline::Options {
     pipeline::Options {
         target: target::Timing::named(&keys.target).unwrap_or(&target::TIMINGS[0]),
@@ -67,9 +62,8 @@ fn options(keys: &Shared) -> pipeline::Options {
     }
 }
 
-/// Converts an error of the pipeline builder to an error of the key that the user should change. For example, a clock that is
-/// too fast is an error of `pipeline.clock_mhz`, with the fastest possible clock as the nearest value. `name` is the name of
-/// the module.
+/// Names the key that the user should change. For example, a clock that is too fast is an error of `pipeline.clock_mhz`, with
+/// the fastest possible clock as the nearest value. `name` is the name of the module.
 fn key_error(error: &PipelineError, keys: &Shared, name: &str) -> ConfigError {
     let diagnostic = &error.diagnostic;
     let of_key = |key: &str, remedy: String| {
@@ -128,7 +122,7 @@ fn key_error(error: &PipelineError, keys: &Shared, name: &str) -> ConfigError {
     }
 }
 
-/// Returns the message, followed in brackets by the code of the diagnostic and the location in the Rust source.
+/// Adds the code of the diagnostic and the location in the Rust source, in brackets.
 fn with_location(message: &str, diagnostic: &Diagnostic) -> String {
     format!("{message} ({}, {})", diagnostic.code, diagnostic.location)
 }

@@ -1,5 +1,5 @@
-//! Opens the devices whose configurations state formulas: `function`, `expression` and `shading`. Their formulas are planned once,
-//! and the hardware description, the golden model and the contract read the plan.
+//! Opens the devices whose configurations state formulas. Their formulas are planned once, and the hardware description, the
+//! golden model and the contract read the plan.
 
 use std::sync::Arc;
 
@@ -31,10 +31,7 @@ impl DeviceParts for FunctionParts {
     }
 }
 
-/// Opens a configuration of the device `function`: finds polynomials for its function.
-///
-/// # Errors
-/// Fails if the function has no polynomials with the allowed error. The error names the key to change.
+/// Finds polynomials for the function. The error of a function without such polynomials names the key to change.
 pub(super) fn function(config: &Config) -> PartsResult {
     Ok(Arc::new(FunctionParts(keys::function::plan(config)?)))
 }
@@ -55,10 +52,7 @@ impl DeviceParts for ExpressionParts {
     }
 }
 
-/// Opens a configuration of the device `expression`: plans its formulas, and proves the error of each result.
-///
-/// # Errors
-/// Fails if a formula has no plan with the allowed error. The error names the formula.
+/// Plans the formulas, and proves the error of each result. The error of a formula without a plan names the formula.
 pub(super) fn expression(config: &Config) -> PartsResult {
     Ok(Arc::new(ExpressionParts(Arc::new(keys::expression::plan(config)?))))
 }
@@ -79,10 +73,7 @@ impl DeviceParts for ShadingParts {
     }
 }
 
-/// Opens a configuration of the device `shading`: makes the configurations of its parts, and plans the formula of its highlight.
-///
-/// # Errors
-/// Fails if a part refuses its configuration. The error names the key to change.
+/// Makes the configurations of the parts, and plans the formula of the highlight. The error of a part names the key to change.
 pub(super) fn shading(config: &Config) -> PartsResult {
     Ok(Arc::new(ShadingParts(keys::shading::parts(config)?)))
 }

@@ -3,8 +3,7 @@
 //!
 //! For example, a saturation with one limit has two cases: the value is inside the limit, or the limit replaces it. For each
 //! case, the module finds the interval of raw values of every node on which the results depend. Statements about the error
-//! bound are then written case by case. The module fails if it examines more than 4096 cases, including impossible ones, or if
-//! a condition has more than 64 values.
+//! bound are then written case by case.
 
 use std::collections::BTreeMap;
 
@@ -15,32 +14,28 @@ use glint_base::interval::{self, Interval, common, wrap};
 use glint_rtl::netlist::{RomId, interval::of_cell};
 use glint_rtl::pipeline::{Cell, Graph, NodeId, NodeOp};
 
-/// The largest number of cases that are examined, including cases that turn out to be impossible.
+/// The largest number of cases that are examined, including impossible ones.
 const MOST: usize = 4096;
 
-/// Intervals of raw values for some nodes of a computation's graph. These intervals narrow the intervals that follow from the
-/// operands alone.
+/// Intervals of raw values that narrow the intervals which follow from the operands alone.
 pub type NodeIntervals = BTreeMap<NodeId, Interval>;
 
-/// A case of a computation: one combination of outcomes of its conditions. For example, one case of a saturation is that the
-/// value exceeds the upper limit.
+/// A case of a computation: one combination of outcomes of its conditions.
 #[derive(Clone, Debug)]
 pub struct Case {
-    /// The hypotheses of the case: intervals of nodes that follow from the outcomes of the conditions.
+    /// The hypotheses: intervals of nodes that follow from the outcomes of the conditions.
     pub known: NodeIntervals,
     /// The interval of raw values of every node in this case.
     pub ranges: Vec<Interval>,
-    /// The nodes whose value is a quadratic polynomial in one operand, if the polynomial narrows the node's interval.
+    /// The nodes whose value is a quadratic polynomial in one operand, if the polynomial narrows the interval.
     pub parabolas: BTreeMap<NodeId, RawPolynomial>,
 }
 
-/// Returns the raw value of a ROM's word at an address.
 pub type WordLookup<'a> = &'a dyn Fn(RomId, u64) -> i128;
 
 /// A computation as a graph of values, with the words of its ROMs and with its dividers.
 #[derive(Clone, Copy)]
 pub struct UnrolledComputation<'a> {
-    /// The graph of all values of the computation.
     pub graph: &'a Graph,
     /// A function that returns the word of a ROM at an address, as a raw value.
     pub words: WordLookup<'a>,
@@ -49,8 +44,8 @@ pub struct UnrolledComputation<'a> {
 }
 
 impl UnrolledComputation<'_> {
-    /// Returns the nodes `roots` and every node that they depend on, in the order of the graph. The bits of a quotient are left
-    /// out: a quotient depends directly on its dividend and divisor.
+    /// Returns `roots` and every node that they depend on, in the order of the graph. The bits of a quotient are left out: a
+    /// quotient depends directly on its dividend and divisor.
     fn cone(&self, roots: &[NodeId]) -> Vec<NodeId> {
         let operands = |at| self.operands(NodeId(at as u32)).into_iter().map(NodeId::index);
         let roots = roots.iter().map(|root| root.index());
@@ -67,7 +62,7 @@ impl UnrolledComputation<'_> {
 }
 
 /// Returns all cases of the computation of `results`, with the intervals `known` of the operands. Together the cases cover
-/// every combination of operands. For example, a saturation that may or may not happen makes two cases.
+/// every combination of operands.
 ///
 /// # Errors
 /// Fails if more than 4096 cases are examined, or if a condition has more than 64 values.
@@ -111,8 +106,8 @@ pub fn cases(
     Ok(found)
 }
 
-/// Returns the interval of raw values of a node, with the intervals `known` of the operands. Returns `None` if the value
-/// depends on a condition whose outcome is not decided, or if no operands lie in the intervals `known`.
+/// Returns the interval of raw values of a node. Returns `None` if the value depends on a condition whose outcome is not
+/// decided, or if no operands lie in the intervals `known`.
 pub fn range(view: UnrolledComputation, node: NodeId, known: &NodeIntervals) -> Option<Interval> {
     let ranges = view.graph.nodes.iter().map(|node| node.range).collect();
     let mut case = Case { known: known.clone(), ranges, parabolas: BTreeMap::new() };
@@ -122,19 +117,18 @@ pub fn range(view: UnrolledComputation, node: NodeId, known: &NodeIntervals) -> 
     }
 }
 
-/// The result of following a case through the graph.
 enum Decision {
     /// Every selection is decided, so the intervals of all nodes are known.
     Whole,
-    /// No operands satisfy the hypotheses of the case.
+    /// No operands satisfy the hypotheses.
     Never,
     /// A selection depends on this node, which still has several values.
     Splits(NodeId, Interval),
 }
 
 impl Case {
-    /// Computes the intervals of the nodes in `cone`, in order, and stores them in `ranges`. The function ends at the first
-    /// selection that is not decided, or at the first node that has no possible value.
+    /// Computes the intervals of the nodes in `cone`, in order. The function ends at the first selection that is not decided,
+    /// or at the first node that has no possible value.
     fn follow(&mut self, view: UnrolledComputation, cone: &[NodeId]) -> Decision {
         let graph = view.graph;
         let mut polynomials: BTreeMap<NodeId, RawPolynomial> = BTreeMap::new();
@@ -169,7 +163,7 @@ impl Case {
         Decision::Whole
     }
 
-    /// Returns the interval of a node, computed from the intervals of its operands. A selection at the node must be decided.
+    /// Computes the interval of a node from the intervals of its operands. A selection at the node must be decided.
     fn computed(&self, view: UnrolledComputation, id: NodeId) -> Interval {
         let graph = view.graph;
         let node = graph.node(id);
@@ -200,8 +194,7 @@ impl Case {
     }
 }
 
-/// Returns the node whose value must be known before a cell is computed: the select of a mux, or the carry of a sum. Returns
-/// `None` for any other cell.
+/// Returns the node whose value must be known before a cell is computed: the select of a mux, or the carry of a sum.
 fn selection(cell: &Cell) -> Option<NodeId> {
     match cell {
         Cell::Op(NodeOp::Mux { select, .. }) => Some(*select),
@@ -210,21 +203,18 @@ fn selection(cell: &Cell) -> Option<NodeId> {
     }
 }
 
-/// Returns whether a node has several values.
 fn is_open(ranges: &[Interval], id: NodeId) -> bool {
     let (low, high) = ranges[id.index()];
     low != high
 }
 
-/// Returns the input of a mux that a decided select chooses.
 fn selected(select: NodeId, inputs: &[NodeId], ranges: &[Interval]) -> NodeId {
     let (number, _) = ranges[select.index()];
     inputs[(number as usize).min(inputs.len() - 1)]
 }
 
-/// Returns the raw value of a node as a polynomial in the raw value of an operand. `polynomials` has the polynomials of earlier
-/// nodes. Returns `None` if the node has another form, or if a node drops bits in a way that is not the same for its whole
-/// interval.
+/// Returns the raw value of a node as a polynomial in the raw value of an operand. `polynomials` has the polynomials of
+/// earlier nodes. A node that drops bits must do so in the same way for its whole interval.
 fn polynomial(
     graph: &Graph,
     id: NodeId,
@@ -277,7 +267,7 @@ fn polynomial(
 }
 
 /// Returns the condition whose values must be distinguished first, so that the undecided selection `id` becomes decided. For
-/// example, if the select is `a & b` of one bit, and only `b` is undecided, it is `b`.
+/// example, it is `b` for the select `a & b` of one bit, if only `b` is undecided.
 fn decider(graph: &Graph, id: NodeId, ranges: &[Interval]) -> NodeId {
     let operands =
         match &graph.node(id).cell {
@@ -294,9 +284,9 @@ fn decider(graph: &Graph, id: NodeId, ranges: &[Interval]) -> NodeId {
     id
 }
 
-/// Narrows the interval of node `id` in `known` to `range`, and narrows the intervals of the nodes from which it is computed
+/// Narrows the interval of node `id` in `known` to `range`, and the intervals of the nodes from which it is computed
 /// accordingly. Returns false if no value is left. `ranges` are the intervals without this restriction. For example, if the
-/// inverse of an 8-bit node `a` is restricted to 0, then `a` is restricted to 255.
+/// inverse of an 8-bit node `a` is 0, then `a` is 255.
 pub fn learn(
     graph: &Graph,
     known: &mut NodeIntervals,
@@ -386,7 +376,7 @@ pub fn learn(
     }
 }
 
-/// Returns whether all bits of a node from bit `from` up are always 0, or do not exist.
+/// Returns whether a node has only zeros from bit `from` up.
 fn reaches_top(graph: &Graph, id: NodeId, from: u32) -> bool {
     let node = graph.node(id);
     from == graph.width(id) || !node.format.signed && node.range.1 < 1 << from

@@ -1,10 +1,9 @@
 //! Translates the formula of a contract to real expressions for the prover Gappa.
 //!
 //! A formula with `max`, `min` or `if` becomes several branches, each with conditions under which it applies. For example,
-//! `max(a, b)` has two branches: `a` where a − b ≥ 0, and `b` where a − b ≤ 0. The range of the operands may decide the
-//! condition of an `if`, and then only one branch is left. The module fails for any other function, such as `sqrt`, for a
-//! constant such as `pi`, and for the operator `%`. It also fails for a number that no `f64` represents, such as 0.1, and for
-//! an exponent that varies.
+//! `max(a, b)` has two branches: `a` where a − b ≥ 0, and `b` where a − b ≤ 0. The module fails for any other function, such
+//! as `sqrt`, for a constant such as `pi`, and for the operator `%`. It also fails for a number that no `f64` represents, such
+//! as 0.1, and for an exponent that varies.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -16,18 +15,16 @@ use glint_golden::Operand;
 /// The largest exponent of a power that has a translation.
 const MOST_EXPONENT: f64 = 1000.0;
 
-/// One branch of a contract's formula that has conditions, such as `if x < 0`: a term, and the conditions under which this term
-/// is the formula's value. The terms `at_least` must not be negative, and the terms `at_most` must not be positive.
+/// One branch of a formula: a term, and the conditions under which this term is the formula's value.
 #[derive(Clone, Debug, Default)]
 pub struct Branch {
-    /// Conditions of the branch: terms that must be at least 0 for the branch to apply.
+    /// Terms that must be at least 0 for the branch to apply.
     pub at_least: Vec<RealTermId>,
-    /// Conditions of the branch: terms that must be at most 0 for the branch to apply.
+    /// Terms that must be at most 0 for the branch to apply.
     pub at_most: Vec<RealTermId>,
-    /// The term that is the value of the formula if the branch applies.
     pub term: RealTermId,
-    /// For every choice that the branch has made, whether its condition holds. The key is the term that is compared with 0, and
-    /// the kind of comparison.
+    /// For every choice that the branch has made, whether its condition holds. The key is the term that is compared with 0,
+    /// and the kind of comparison.
     chosen: BTreeMap<(RealTermId, Choice), bool>,
 }
 
@@ -41,7 +38,7 @@ enum Choice {
 }
 
 impl Branch {
-    /// Returns whether the branch can never apply, because a constant violates one of its conditions.
+    /// Returns whether a constant violates one of the conditions.
     pub fn is_never(&self, terms: &RealTerms) -> bool {
         for &id in &self.at_least {
             if matches!(terms.get(id), RealTerm::Number(value) if *value < 0.0) {
@@ -56,8 +53,8 @@ impl Branch {
         false
     }
 
-    /// Combines this branch with a branch of another formula: the conditions of both, and the term of `other`. Returns `None` if
-    /// the two branches decide the same condition differently.
+    /// Combines the conditions of both branches, and takes the term of `other`. Returns `None` if the branches decide the same
+    /// condition differently.
     pub fn and(&self, other: &Self) -> Option<Self> {
         let mut both = self.clone();
         both.term = other.term;
@@ -79,8 +76,8 @@ impl Branch {
         Some(both)
     }
 
-    /// Returns this branch with an additional condition: `difference` must be at least 0 if `taken` is set, and at most 0
-    /// otherwise. Returns `None` if the branch has decided this choice differently.
+    /// Adds a condition: `difference` must be at least 0 if `taken` is set, and at most 0 otherwise. Returns `None` if the
+    /// branch has decided this choice differently.
     fn choosing(&self, difference: RealTermId, choice: Choice, taken: bool) -> Option<Self> {
         let mut condition = Self { term: self.term, ..Self::default() };
         condition.chosen.insert((difference, choice), taken);
@@ -93,7 +90,7 @@ impl Branch {
     }
 }
 
-/// The variables, ranges and ROM words with which Glint translates a contract's formula to a Gappa script.
+/// Everything about a case that the translation of a formula needs.
 pub struct FormulaContext<'a> {
     /// For each operand, the name of its variable in the script, and the power of two by which the operand is divided. For
     /// example, the variable `exponent_over_8` has the power 3.
@@ -102,18 +99,17 @@ pub struct FormulaContext<'a> {
     pub ranges: &'a HashMap<String, (f64, f64)>,
     /// For each ROM, by its name, the values of its words.
     pub words: &'a HashMap<String, Vec<f64>>,
-    /// The operands of the contract.
     pub operands: &'a [Operand],
 }
 
-/// Returns the name of the variable for a word of the ROM `rom`. `variable` is the variable of the operand that addresses the
-/// ROM. For example, the ROM `coefficient` at `exponent` has the variable `coefficient_at_exponent`.
+/// Names the variable for a word of the ROM `rom`. `variable` addresses the ROM. For example, the ROM `coefficient` at
+/// `exponent` has the variable `coefficient_at_exponent`.
 pub fn word_variable(rom: &str, variable: &str) -> String {
     format!("{rom}_at_{variable}")
 }
 
 /// Stores in `found` the power of two by which the formula divides each operand, or 0 if the power is not the same everywhere.
-/// For example, `exponent` has 3 in `exponent / 8`, and 0 in `exponent / 8 + exponent`.
+/// For example, `exponent` has 0 in `exponent / 8 + exponent`.
 pub fn divisors(formula: &Expression, found: &mut HashMap<String, Option<i32>>) {
     if let Some((name, power)) = quotient(formula) {
         return note_divisor(name, power, found);
@@ -130,7 +126,7 @@ pub fn divisors(formula: &Expression, found: &mut HashMap<String, Option<i32>>) 
     }
 }
 
-/// Stores in `found` a power by which an operand is divided, or 0 if another power is already stored.
+/// Stores 0 if another power is already stored.
 fn note_divisor(name: &str, power: i32, found: &mut HashMap<String, Option<i32>>) {
     let noted = found.entry(name.to_owned()).or_insert(Some(power));
     if *noted != Some(power) {
@@ -138,8 +134,8 @@ fn note_divisor(name: &str, power: i32, found: &mut HashMap<String, Option<i32>>
     }
 }
 
-/// Returns the operand and the power if a formula is an operand divided by a power of two from 2⁰ to 2³⁰. For example,
-/// `exponent / 8` gives `exponent` and 3. Returns `None` for any other formula.
+/// Returns the operand and the power if a formula divides an operand by a power of two from 2⁰ to 2³⁰. For example, `exponent
+/// / 8` gives `exponent` and 3.
 fn quotient(formula: &Expression) -> Option<(&str, i32)> {
     let Kind::Binary(Operator::Div, a, b) = &formula.kind else { return None };
     let (Kind::Operand(name), Kind::Number(by)) = (&a.kind, &b.kind) else { return None };
@@ -150,12 +146,11 @@ fn power_of_two(value: f64) -> Option<i32> {
     (0..=30).find(|&power| exp2(power) == value)
 }
 
-/// Returns the error message for a function in a contract's formula that the prover Gappa does not have.
 pub fn untranslated(function: Function) -> String {
     format!("the function `{}` cannot be written for Gappa", function.name())
 }
 
-/// Returns all branches of a contract's formula, as terms for a Gappa script. A formula without conditions has one branch.
+/// A formula without conditions has one branch.
 ///
 /// # Errors
 /// Fails if the formula has a part without a translation, an unknown operand or table, or an exponent that varies in this case.
@@ -250,13 +245,12 @@ pub fn branches(
     }
 }
 
-/// Returns the one branch of a formula without choices.
 fn unconditional(term: RealTermId) -> Vec<Branch> {
     vec![Branch { term, ..Branch::default() }]
 }
 
-/// Returns every combination of a branch of `a` with a branch of `b` whose choices do not contradict each other: the conditions
-/// of both branches, the term of `a` and the term of `b`. Fails if a formula has a part without a translation.
+/// Combines each branch of `a` with each branch of `b`, unless their choices contradict each other. A combination has the
+/// conditions of both, the term of `a` and the term of `b`.
 fn pairs(
     [a, b]: [&Expression; 2],
     setting: &FormulaContext,
@@ -274,8 +268,7 @@ fn pairs(
     Ok(pairs)
 }
 
-/// Returns the branches of an operation on two formulas. `make` returns the term of the operation. Fails if one of the formulas
-/// has no translation.
+/// `make` returns the term of the operation.
 fn operation(
     operands: [&Expression; 2],
     make: fn(RealTermId, RealTermId) -> RealTerm,
@@ -290,8 +283,7 @@ fn operation(
     Ok(found)
 }
 
-/// Returns the branches in which a comparison is true, or is false if `taken` is false. Fails if a side of the comparison has
-/// no translation.
+/// Returns the branches in which a comparison is true, or false if `taken` is false.
 fn conditions(
     comparison: &Comparison,
     taken: bool,
@@ -307,8 +299,8 @@ fn conditions(
     Ok(conditions)
 }
 
-/// Returns the word of a table at an address, as a number if the word is the same at all addresses of this case, and otherwise
-/// as a variable.
+/// Returns the word of a table at an address. The word is a number if it is the same at all addresses of this case, and
+/// otherwise a variable.
 ///
 /// # Errors
 /// Fails if the address is neither a number nor an operand without fraction bits, or if the table has no such word.
@@ -373,8 +365,8 @@ fn variable_of(
     }
 }
 
-/// Returns `base` to the power `exponent` if `base` is 2 and `exponent` is an integer from −1000 to 1000, because an `f64`
-/// represents such a power exactly. Returns `None` for any other power. For example, 2 to the power −14 is 2⁻¹⁴.
+/// Returns a power of 2 with an integer exponent from −1000 to 1000, which an `f64` represents exactly. Returns `None` for any
+/// other power.
 fn scaling(base: Option<f64>, exponent: f64) -> Option<f64> {
     let is_power_of_two =
         base == Some(2.0) && exponent.fract() == 0.0 && exponent.abs() <= MOST_EXPONENT;
@@ -382,14 +374,13 @@ fn scaling(base: Option<f64>, exponent: f64) -> Option<f64> {
 }
 
 /// Returns the value of a number, or of an operand that has a single value in this case, with or without a minus before it.
-/// Returns `None` for any other formula.
 fn constant(formula: &Expression, setting: &FormulaContext) -> Option<f64> {
     let (low, high) = known_range(formula, setting)?;
     if low == high { Some(low) } else { None }
 }
 
-/// Returns the smallest and the largest value of a number or an operand in this case, with or without a minus before it.
-/// Returns `None` for any other formula, and for a number that no `f64` represents, such as 0.1.
+/// Returns the smallest and the largest value of a number or an operand in this case, with or without a minus before it. A
+/// number that no `f64` represents, such as 0.1, gives `None`.
 fn known_range(formula: &Expression, setting: &FormulaContext) -> Option<(f64, f64)> {
     match &formula.kind {
         Kind::Number(literal) if literal.is_exact() => Some((literal.nearest(), literal.nearest())),
@@ -402,9 +393,8 @@ fn known_range(formula: &Expression, setting: &FormulaContext) -> Option<(f64, f
     }
 }
 
-/// Returns whether a comparison of numbers and operands is true for all values of this case, or for none. Returns `None` if it
-/// is true for some values, or if a side is neither a number nor an operand. For example, `x < 4` is true if x is from 0 to 3,
-/// and is undecided if x is from 0 to 5.
+/// Returns whether a comparison of numbers and operands is true for all values of this case, or for none. For example, `x < 4`
+/// is true if x is from 0 to 3, and is undecided if x is from 0 to 5.
 fn decided(comparison: &Comparison, setting: &FormulaContext) -> Option<bool> {
     let left = known_range(&comparison.left, setting)?;
     let right = known_range(&comparison.right, setting)?;
@@ -417,7 +407,7 @@ fn decided(comparison: &Comparison, setting: &FormulaContext) -> Option<bool> {
     None
 }
 
-/// Returns a power as products, by repeated squaring, as the hardware computes it. For example, x⁵ is x times (x²)².
+/// Makes products by repeated squaring, as the hardware computes the power. For example, x⁵ is x times (x²)².
 fn power(terms: &mut RealTerms, base: RealTermId, exponent: u32) -> RealTermId {
     let mut result = None;
     let (mut square, mut rest) = (base, exponent);
@@ -436,8 +426,8 @@ fn power(terms: &mut RealTerms, base: RealTermId, exponent: u32) -> RealTermId {
     result.unwrap_or_else(|| terms.number(1.0))
 }
 
-/// Adds a term in simplified form and returns its number: `x + 0` becomes `x`, and an operation on constants becomes its value
-/// if an f64 can represent it exactly. For example, 0.5 + 0.25 becomes 0.75.
+/// Adds a term in simplified form: `x + 0` becomes `x`, and an operation on constants becomes its value if an f64 can
+/// represent it exactly.
 pub fn folded(terms: &mut RealTerms, term: RealTerm) -> RealTermId {
     match term {
         RealTerm::Add(a, b) | RealTerm::Sub(a, b) if is_number(terms, b, 0.0) => return a,
@@ -455,7 +445,6 @@ pub fn folded(terms: &mut RealTerms, term: RealTerm) -> RealTermId {
     }
 }
 
-/// Returns the value of a term, or `None` if the term is no number.
 fn number_of(terms: &RealTerms, id: RealTermId) -> Option<f64> {
     match terms.get(id) {
         RealTerm::Number(value) => Some(*value),
@@ -467,8 +456,7 @@ fn is_number(terms: &RealTerms, id: RealTermId, value: f64) -> bool {
     number_of(terms, id) == Some(value)
 }
 
-/// Returns the value of an operation on numbers. Returns `None` if an operand is no number, or if an f64 cannot represent the
-/// value exactly.
+/// Returns the value of an operation on numbers, if an f64 can represent it exactly.
 fn exact_value(terms: &RealTerms, term: &RealTerm) -> Option<f64> {
     let (RealTerm::Add(a, b) | RealTerm::Sub(a, b) | RealTerm::Mul(a, b) | RealTerm::Div(a, b)) =
         *term

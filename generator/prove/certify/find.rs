@@ -1,8 +1,7 @@
 //! Finds an error bound that Gappa can prove, for statements that ask for a bound.
 //!
 //! Gappa first answers each statement with an upper bound. A bisection then searches a smaller bound that Gappa proves, to
-//! 1/2048 output units. In this search, a proof may take at most two seconds. The result is one bound for all statements, or a
-//! reason in words if Gappa finds no bound for a statement. A smaller bound may be true.
+//! 1/2048 output units. In this search, a proof may take at most two seconds. A smaller bound than the result may be true.
 
 use std::fs;
 use std::time::Duration;
@@ -15,19 +14,18 @@ use super::statement::{ASKED, Statement};
 use glint_tools::transient::Directory;
 use glint_tools::{LimitReached, Tool};
 
-/// The factor for six digits after the point, to which an answer is rounded up.
+/// Answers are rounded up to six digits after the point.
 const MILLIONTHS: f64 = 1e6;
 
-/// The precision of the search for a bound, in output units.
+/// The precision of the search, in output units.
 const STEP: f64 = 1.0 / 2048.0;
 const TRY: Duration = Duration::from_secs(2);
 
-/// Returns an error bound, in output units, that Gappa proves for all statements `asked`, or a reason in words why Gappa finds
-/// none. Gappa answers each statement with an upper bound within the time limit `limit`. A bisection then searches a smaller
-/// bound, to 1/2048 units.
+/// Returns one error bound, in output units, that Gappa proves for all statements `asked`, or a reason in words why Gappa
+/// finds none. `limit` is the time limit of Gappa's first answer to each statement.
 ///
 /// # Errors
-/// Fails if Gappa cannot be run. The inner `Err` is the reason in words.
+/// Fails if Gappa cannot be run.
 pub fn bound(gappa: &Tool, asked: &[Statement], limit: Duration) -> Result<Result<f64, String>> {
     let answers = asked.par_iter().map(|one| answer(gappa, one, limit));
     let answers: Result<Vec<_>, String> =
@@ -61,9 +59,8 @@ pub fn bound(gappa: &Tool, asked: &[Statement], limit: Duration) -> Result<Resul
     Ok(Ok(bound))
 }
 
-/// Returns the bound that Gappa finds for a statement: the smallest bound among its scripts, in output units. The inner value
-/// is `None` if the statement does not ask for a bound, and a reason in words if Gappa finds none. Fails if Gappa cannot be
-/// run.
+/// Returns the smallest bound that Gappa finds among a statement's scripts, in output units. The inner value is `None` if the
+/// statement asks for no bound, and a reason in words if Gappa finds none.
 fn answer(
     gappa: &Tool,
     statement: &Statement,
@@ -94,8 +91,8 @@ fn answer(
 }
 
 /// Returns the upper end of the interval in Gappa's output, rounded up to six digits after the point. Returns 0 if Gappa says
-/// that the hypotheses contradict each other, and `None` if the output has no interval. For example, `|d_1| in [0, 43998467b-26
-/// {0.655628, 2^(-0.60905)}]` gives 0.655629.
+/// that the hypotheses contradict each other. For example, `|d_1| in [0, 43998467b-26 {0.655628, 2^(-0.60905)}]` gives
+/// 0.655629.
 fn largest(output: &str) -> Option<f64> {
     if output.contains("anything can be proved") {
         return Some(0.0);

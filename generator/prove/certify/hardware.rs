@@ -1,9 +1,8 @@
 //! Translates the hardware's computation to real expressions with roundings for the prover Gappa, one case at a time.
 //!
-//! A case is one combination of outcomes of all conditions in the computation ([`super::cases`]). For example, in one case a
-//! saturation limits the value, and the result is a constant. In another case the result is a term with the value's rounding.
-//! The translation fails for bitwise logic whose result is used as a number, unless the result is constant in the case; an
-//! inversion is no such logic.
+//! For example, in one case a saturation limits the value, and the result is a constant. In another case the result is a term
+//! with the value's rounding. The translation fails for bitwise logic whose result is used as a number, unless the result is
+//! constant in the case; an inversion is no such logic.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -16,32 +15,29 @@ use glint_base::interval::{Interval, wrap};
 use glint_rtl::netlist::RomId;
 use glint_rtl::pipeline::{Cell, Graph, Node, NodeId, NodeOp};
 
-/// The raw value of a node of the computation's graph in one case: a constant, or a term in a Gappa script.
+/// The raw value of a node in one case: a constant, or a term in a Gappa script.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NodeValue {
-    /// The node has only this raw value in the case.
     Constant(i128),
-    /// The raw value of the node is the term `id` times 2^`scale`.
+    /// The raw value is the term `id` times 2^`scale`.
     Term {
-        /// The term for the value of the node, with its binary point.
         id: RealTermId,
         /// The number of fraction bits of the node.
         scale: i32,
     },
 }
 
-/// The operands as variables of the script: for each, its name and its number of fraction bits.
+/// For each variable of the script, its name and its number of fraction bits.
 pub type Variables = Vec<(String, i32)>;
 
-/// A translator from the nodes of one case of the hardware's computation to terms in a Gappa script.
+/// Translates the nodes of one case to terms in a Gappa script.
 #[derive(Clone)]
 pub struct Hardware<'a> {
     graph: &'a Graph,
     quotients: &'a BTreeMap<NodeId, Quotient>,
     case: &'a Case,
-    /// The variables: first the operands, then other nodes that are treated as variables.
+    /// First the operands, then other nodes that are treated as variables.
     pub variables: Variables,
-    /// The names of the tables.
     tables: &'a [String],
     /// Known intervals of terms that belong to no node.
     pub facts: BTreeMap<RealTermId, (f64, f64)>,
@@ -49,8 +45,7 @@ pub struct Hardware<'a> {
 }
 
 impl<'a> Hardware<'a> {
-    /// Prepares the translation of a case. `variables` are the operands, in the order of the computation, and `tables` the
-    /// names of the ROMs, by index.
+    /// `variables` are the operands, in the order of the computation, and `tables` the names of the ROMs, by index.
     pub fn new(
         view: UnrolledComputation<'a>,
         case: &'a Case,
@@ -66,8 +61,7 @@ impl<'a> Hardware<'a> {
         self.case.ranges[id.index()]
     }
 
-    /// Adds a variable for a node to the script, with `scale` fraction bits and with the node's interval as a fact, and returns
-    /// it.
+    /// Adds a variable for a node, with `scale` fraction bits and with the node's interval as a fact.
     fn variable(
         &mut self,
         terms: &mut RealTerms,
@@ -85,8 +79,8 @@ impl<'a> Hardware<'a> {
         NodeValue::Term { id, scale }
     }
 
-    /// Returns the value of a read from a table, as a variable. If an operand addresses the table, the variable is the same as
-    /// for this word in a formula.
+    /// Returns a word of a table as a variable. If an operand addresses the table, a formula has the same variable for the
+    /// word.
     fn read(
         &mut self,
         terms: &mut RealTerms,
@@ -104,7 +98,7 @@ impl<'a> Hardware<'a> {
     }
 
     /// Returns the result of a divider, as a variable. A fact says that the real quotient is larger than the variable by at
-    /// most one unit of its last bit. Fails if the dividend or the divisor has no translation.
+    /// most one unit of its last bit.
     fn quotient(
         &mut self,
         terms: &mut RealTerms,
@@ -123,12 +117,10 @@ impl<'a> Hardware<'a> {
         Ok(value)
     }
 
-    /// Returns the difference a − b of two nodes as a term, and the interval that contains this difference, in real values. The
-    /// caller must know that a < b if `less` is true, and that a ≥ b if it is false. For example, if `less` is true and the
-    /// nodes have 4 fraction bits, the interval ends at −1/16.
-    ///
-    /// Returns `None` if a node is constant in this case, if a node cannot be written as a term, or if the nodes have different
-    /// numbers of fraction bits.
+    /// Returns the difference a − b of two nodes as a term, and the interval of this difference, in real values. The caller
+    /// must know that a < b if `less` is true, and that a ≥ b if it is false. For example, if `less` is true and the nodes
+    /// have 4 fraction bits, the interval ends at −1/16. Returns `None` if a node is constant in this case or has no term, or
+    /// if the nodes have different numbers of fraction bits.
     pub fn compared(
         &mut self,
         terms: &mut RealTerms,
@@ -156,7 +148,7 @@ impl<'a> Hardware<'a> {
         Some((id, range))
     }
 
-    /// Returns the dividend and the divisor of the divider `of` as terms with the same number of fraction bits.
+    /// Returns the dividend and the divisor of a divider as terms with the same number of fraction bits.
     ///
     /// # Errors
     /// Fails if one of them has no translation.
@@ -175,9 +167,6 @@ impl<'a> Hardware<'a> {
         Ok((pointed(terms, dividend, scale, "dividend"), pointed(terms, divisor, scale, "divisor")))
     }
 
-    /// Returns the value of a node in this case, as a constant or as a term.
-    ///
-    /// # Errors
     /// Fails if an operation has no translation. The error names the result of the operation.
     pub fn value(&mut self, terms: &mut RealTerms, id: NodeId) -> Result<NodeValue, String> {
         if let Some(&value) = self.known.get(&id) {
@@ -190,8 +179,8 @@ impl<'a> Hardware<'a> {
         Ok(value)
     }
 
-    /// Returns the value of a node as a term, even if the node has only one value in this case: the term then states a fact about
-    /// the node's operands. Returns `None` if the node depends on constants alone, or if it is a slice of bits.
+    /// Returns a node as a term even if it has only one value in this case. The term then states a fact about the node's
+    /// operands. Returns `None` if the node depends on constants alone, or if it is a slice of bits.
     pub fn expression(&mut self, terms: &mut RealTerms, id: NodeId) -> Option<NodeValue> {
         let is_cut =
             matches!(self.graph.node(id).cell, Cell::Op(NodeOp::Slice { .. }) | Cell::Operand(_));
@@ -259,8 +248,8 @@ impl<'a> Hardware<'a> {
             NodeOp::Not(a) => {
                 let most = if node.format.signed { -1 } else { node.format.range().1 };
                 let value = self.value(terms, *a)?;
-                // The bitwise inverse of an unsigned number is 1.0 − ulp minus the number, if the binary point is above its top
-                // bit.
+                // The bitwise inverse of an unsigned number is 1.0 − ulp minus the number, if the binary point is above its
+                // top bit.
                 let inverted = match (value, node.format.signed) {
                     (NodeValue::Term { id, scale }, false) => {
                         let wanted = node.format.width() as i32;
@@ -335,15 +324,14 @@ impl<'a> Hardware<'a> {
         }
     }
 
-    /// Returns the node of a number y and a number of bits, if `a` + `b` is y without these bits, rounded to the nearest,
-    /// halves up. One node has the bits of y from `low` up, and the other has the bit below: ⌊y⌋ + (⌊2y⌋ − 2⌊y⌋) = ⌊y + 1/2⌋,
-    /// if y is divided by 2^low. Returns `None` if the nodes have another form, or if y may be negative.
+    /// Returns y and a number of bits, if `a` + `b` is y without these bits, rounded to the nearest, halves up. One node has
+    /// the bits of y from `low` up, and the other has the bit below. With y divided by 2^low, ⌊y⌋ + (⌊2y⌋ − 2⌊y⌋) = ⌊y + 1/2⌋.
+    /// y must not be negative.
     fn rounded(&self, a: NodeId, b: NodeId) -> Option<(NodeId, u32)> {
         self.upper_and_half(a, b).or_else(|| self.upper_and_half(b, a))
     }
 
-    /// Returns y and the position `low` if `upper` has the bits of y from `low` up, and `half` has the bit below. Returns
-    /// `None` otherwise.
+    /// Returns y and the position `low` if `upper` has the bits of y from `low` up, and `half` has the bit below.
     fn upper_and_half(&self, upper: NodeId, half: NodeId) -> Option<(NodeId, u32)> {
         let (upper, half) = (unextended(self.graph, upper), unextended(self.graph, half));
         let (of, low) = sliced(self.graph, upper)?;
@@ -358,9 +346,8 @@ impl<'a> Hardware<'a> {
     }
 }
 
-/// Returns the amount to add to a computed raw value to get the node's raw value, because bits above the node's format are
-/// dropped. For example, sums from 16 to 20 in an unsigned format of 4 bits have the amount −16. Fails if the amount is not the
-/// same for the whole interval `range`.
+/// Returns the amount by which a format that drops bits changes a computed raw value. For example, sums from 16 to 20 in an
+/// unsigned format of 4 bits have the amount −16. Fails if the amount is not the same for the whole interval `range`.
 fn wrap_of(node: &Node, range: Interval) -> Result<i128, String> {
     let Some(amount) = wrap(range, node.format) else {
         let ((low, high), format, name) = (range, node.format, &node.label.name);
@@ -371,7 +358,7 @@ fn wrap_of(node: &Node, range: Interval) -> Result<i128, String> {
     Ok(amount)
 }
 
-/// Returns the node that this one extends or renames, or the node itself.
+/// Returns the node that this one extends or renames, if any, or the node itself.
 fn unextended(graph: &Graph, id: NodeId) -> NodeId {
     match &graph.node(id).cell {
         Cell::Op(NodeOp::Extend(of) | NodeOp::Relabel(of)) => *of,
@@ -379,7 +366,7 @@ fn unextended(graph: &Graph, id: NodeId) -> NodeId {
     }
 }
 
-/// Returns the node from which a slice takes its bits, and the lowest bit of the slice. Returns `None` if the node is no slice.
+/// Returns the node from which a slice takes its bits, and the lowest bit of the slice.
 fn sliced(graph: &Graph, id: NodeId) -> Option<(NodeId, u32)> {
     match &graph.node(id).cell {
         Cell::Op(NodeOp::Slice { of, low }) => Some((widened(graph, *of), *low)),
@@ -387,8 +374,8 @@ fn sliced(graph: &Graph, id: NodeId) -> Option<(NodeId, u32)> {
     }
 }
 
-/// Returns a value without its lowest `low` bits, rounded in a direction. For example, the constant 14 without 2 bits is 3
-/// rounded down, and 4 to the nearest.
+/// Drops the lowest `low` bits of a value. For example, the constant 14 without 2 bits is 3 rounded down, and 4 to the
+/// nearest.
 fn cut(
     terms: &mut RealTerms,
     value: NodeValue,
@@ -410,7 +397,6 @@ fn cut(
     }
 }
 
-/// Returns the value shifted left by `position` bits. For example, the constant 3 shifted by 2 bits is 12.
 fn raised(value: NodeValue, position: i32) -> NodeValue {
     match value {
         NodeValue::Constant(raw) => NodeValue::Constant(raw << position),
@@ -418,8 +404,7 @@ fn raised(value: NodeValue, position: i32) -> NodeValue {
     }
 }
 
-/// Returns the sum or the difference of two values, with the larger number of fraction bits. `operation` is [`RealTerm::Add`]
-/// or [`RealTerm::Sub`].
+/// `operation` is [`RealTerm::Add`] or [`RealTerm::Sub`]. The result has the larger number of fraction bits.
 fn add(
     terms: &mut RealTerms,
     a: NodeValue,
@@ -448,7 +433,6 @@ fn add(
     NodeValue::Term { id: terms.insert(operation(a, b), name), scale }
 }
 
-/// Returns a value as a term with `scale` fraction bits.
 fn pointed(terms: &mut RealTerms, value: NodeValue, scale: i32, name: &str) -> RealTermId {
     match value {
         NodeValue::Constant(raw) => terms.number(raw as f64 * exp2(-scale)),
@@ -456,7 +440,7 @@ fn pointed(terms: &mut RealTerms, value: NodeValue, scale: i32, name: &str) -> R
     }
 }
 
-/// Returns the term `id` multiplied by 2^`power`. `name` names its definition in the script.
+/// Multiplies the term `id` by 2^`power`. `name` names its definition in the script.
 pub fn scaled(terms: &mut RealTerms, id: RealTermId, power: i32, name: &str) -> RealTermId {
     if power == 0 {
         return id;
@@ -465,8 +449,7 @@ pub fn scaled(terms: &mut RealTerms, id: RealTermId, power: i32, name: &str) -> 
     terms.insert(RealTerm::Mul(id, factor), name)
 }
 
-/// Returns a value as a term, and its number of fraction bits. A constant gets `frac` fraction bits. For example, the constant
-/// 3 with a `frac` of 2 is the number 0.75.
+/// Returns a value as a term, and its number of fraction bits. A constant gets `frac` of them: 3 with a `frac` of 2 is 0.75.
 pub fn placed(terms: &mut RealTerms, value: NodeValue, frac: i32) -> (RealTermId, i32) {
     match value {
         NodeValue::Constant(raw) => (terms.number(raw as f64 * exp2(-frac)), frac),

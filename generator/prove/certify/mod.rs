@@ -37,8 +37,8 @@ pub use statement::Statement;
 use statement::Statements;
 use task::Task;
 
-/// Returns the statements for the prover Gappa that together prove the error bound of a sequential design's contract. For
-/// example, an output that may saturate has one statement for each of the two cases.
+/// Returns the statements that together prove the error bound of a sequential design's contract. For example, an output that
+/// may saturate has one statement for each of the two cases.
 ///
 /// # Errors
 /// The error is a reason in words. Fails if an operation of the hardware or of the formula has no translation, if the contract
@@ -57,8 +57,8 @@ pub fn statements(
     }
 }
 
-/// Returns the statements without a bound: each asks Gappa for the largest difference between an output and the formula, in
-/// output units. [`bound`] finds the answer, and [`Statement::within`] inserts it.
+/// Returns statements without a bound: each asks Gappa for the largest difference between an output and the formula, in output
+/// units. [`bound`] finds the answer, and [`Statement::within`] inserts it.
 ///
 /// # Errors
 /// Fails as [`statements`] does, except that the contract needs no bound. Fails always for a device that computes a line of
@@ -124,8 +124,7 @@ fn within(
     Ok(statements.list)
 }
 
-/// Parses the formulas of a contract: for a highlight the formulas of f, otherwise one for each output. Fails if a formula is
-/// missing, cannot be parsed, or has a function without a translation.
+/// Parses the formulas of f for a highlight, and otherwise one formula for each output.
 fn formulas(contract: &dyn Contract) -> Result<Vec<Expression>, String> {
     let (expressions, wanted) = match contract.highlight() {
         Some(highlight) => (highlight.expressions(), 1),
@@ -152,8 +151,8 @@ fn formulas(contract: &dyn Contract) -> Result<Vec<Expression>, String> {
     parsed.collect()
 }
 
-/// Returns the SHA-256 of the scripts of all statements, in their order, in hexadecimal. Two certificates with the same digest
-/// prove the same statements.
+/// Returns the SHA-256 of all scripts, in their order, in hexadecimal. Two certificates with the same digest prove the same
+/// statements.
 pub fn digest(statements: &[Statement]) -> String {
     let scripts = statements.iter().flat_map(|statement| &statement.scripts);
     let text: Vec<&str> = scripts.map(String::as_str).collect();

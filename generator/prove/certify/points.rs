@@ -40,7 +40,6 @@ impl Task<'_> {
         variables
     }
 
-    /// Returns the words of the ROMs as values, by the name of the ROM.
     fn word_values(&self) -> HashMap<String, Vec<f64>> {
         let mut words = HashMap::new();
         for rom in &self.design.roms {
@@ -51,12 +50,8 @@ impl Task<'_> {
         words
     }
 
-    /// Adds the Gappa statements for one case of the computation to `statements`: the premises, and for each output, that the
-    /// output differs from the formula by at most the bound.
-    ///
-    /// # Errors
-    /// Fails if a value of the hardware or a part of the formula has no translation, or if the contract lacks an operand of the
-    /// design.
+    /// Adds the Gappa statements for one case: the premises, and for each output, that it differs from the formula by at most
+    /// the bound.
     pub(super) fn state(&self, case: &Case, statements: &mut Statements) -> Result<(), String> {
         let variables = self.variables();
         let mut ranges = HashMap::new();
@@ -136,8 +131,8 @@ impl Task<'_> {
         Ok(())
     }
 
-    /// Returns the hypotheses of a case: the interval of values of each term that is known. The function leaves out values that
-    /// cannot be written as a term, which is safe, because a statement with fewer hypotheses is stronger.
+    /// Returns the interval of values of each known term. The function leaves out values that cannot be written as a term,
+    /// which is safe, because a statement with fewer hypotheses is stronger.
     fn presupposed(
         &self,
         case: &Case,
@@ -183,8 +178,7 @@ fn real_operand(
     Ok(branches[0].term)
 }
 
-/// Returns every combination of one branch of each expression whose choices do not contradict each other. For example, two
-/// expressions of two independent branches each have four combinations.
+/// Returns every combination of one branch of each expression whose choices do not contradict each other.
 fn together(ways: &[Vec<Branch>]) -> Vec<Vec<Branch>> {
     // The choices of all branches together, and the branch of each expression.
     let mut combinations: Vec<(Branch, Vec<Branch>)> = vec![(Branch::default(), Vec::new())];

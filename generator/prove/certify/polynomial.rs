@@ -1,8 +1,8 @@
 //! Computes the range of polynomials of degree at most 2 in one operand, which interval arithmetic overestimates.
 //!
 //! For example, x² − 16·x for x from 0 to 16 lies between −64 and 0; interval arithmetic gives −256 to 256. Coefficients and
-//! operands are raw integers. The result is `None` for a polynomial in two operands or of a higher degree, and if coefficients
-//! or operands are too large.
+//! operands are raw integers. The result is `None` for a polynomial in two operands or of a higher degree, and if numbers are
+//! too large.
 
 use glint_base::interval::Interval;
 use glint_rtl::pipeline::NodeId;
@@ -12,26 +12,22 @@ use glint_rtl::pipeline::NodeId;
 pub struct RawPolynomial {
     /// The node whose raw value is x; `None` for a constant polynomial.
     pub of: Option<NodeId>,
-    /// The coefficients, from the constant up.
     pub factors: [i128; 3],
 }
 
-/// The largest absolute value of a coefficient. A polynomial with a larger one is not computed.
+/// The largest absolute value of a coefficient.
 const MOST: i128 = 1 << 80;
 
 impl RawPolynomial {
-    /// Makes the polynomial that has the constant value `value`.
     pub fn constant(value: i128) -> Self {
         Self { of: None, factors: [value, 0, 0] }
     }
 
-    /// Makes the polynomial x, where x is the raw value of a node.
     pub fn operand(id: NodeId) -> Self {
         Self { of: Some(id), factors: [0, 1, 0] }
     }
 
-    /// Makes the polynomial with the coefficients `factors`, in the operand of `self` and `other`. Returns `None` if they have
-    /// different operands, or if a coefficient is too large.
+    /// Returns `None` if `self` and `other` have different operands, or if a coefficient is too large.
     fn with(self, other: Self, factors: [i128; 3]) -> Option<Self> {
         let of = match (self.of, other.of) {
             (Some(a), Some(b)) if a != b => return None,
@@ -41,15 +37,14 @@ impl RawPolynomial {
         small.then_some(Self { of, factors })
     }
 
-    /// Returns this polynomial plus `times` times the polynomial `other`. Returns `None` if they have different operands, or if
-    /// a coefficient is too large.
+    /// Adds `times` times the polynomial `other`. Returns `None` for different operands or too large a coefficient.
     pub fn plus(self, other: Self, times: i128) -> Option<Self> {
         let sum = |at: usize| self.factors[at] + times * other.factors[at];
         self.with(other, [sum(0), sum(1), sum(2)])
     }
 
-    /// Returns the product of two polynomials in the same operand. Returns `None` if the product may have a degree above two,
-    /// for example x² times x. Returns `None` also if the operands differ, or if a coefficient is too large.
+    /// Multiplies two polynomials in the same operand. Returns `None` if the product may have a degree above two, for
+    /// different operands, or for too large a coefficient.
     pub fn times(self, other: Self) -> Option<Self> {
         let ([a, b, c], [d, e, f]) = (self.factors, other.factors);
         let small = |factors: [i128; 3]| factors.iter().all(|factor| factor.abs() <= 1 << 60);
@@ -59,8 +54,7 @@ impl RawPolynomial {
         self.with(other, [a * d, a * e + b * d, a * f + b * e + c * d])
     }
 
-    /// Returns the smallest and the largest value of the polynomial for integers x in an interval. Returns `None` if the
-    /// interval or a coefficient is too large.
+    /// Returns the smallest and the largest value for integers x in an interval. Returns `None` if numbers are too large.
     pub fn range(self, (low, high): Interval) -> Option<Interval> {
         let [a, b, c] = self.factors;
         if low.abs().max(high.abs()) > 1 << 32 || [a, b, c].iter().any(|it| it.abs() > 1 << 62) {

@@ -1,9 +1,9 @@
 //! Writes the premises of statements about outputs as Gappa statements of their own, so that Gappa proves them too.
 //!
 //! A premise is a fact about an intermediate value that a statement takes for granted. One kind says that a value lies in the
-//! range of a quadratic polynomial. Others say that the divisor of a divider is positive, that the dividend is from 0 to the
-//! divisor, and that a step of the divider keeps these limits. A divider has no premises if the intervals of its operands
-//! already imply them.
+//! range of a quadratic polynomial. The other kinds are about a divider. They say that the divisor is positive, that the
+//! dividend is from 0 to the divisor, and that a step keeps these limits. A divider has no premises if the intervals of its
+//! operands imply them.
 
 use super::cases::{Case, UnrolledComputation};
 use super::hardware::{Hardware, NodeValue};
@@ -16,14 +16,12 @@ use glint_rtl::pipeline::NodeId;
 
 /// A premise: a statement about an intermediate value that other statements take for granted.
 pub struct Premise {
-    /// The name of the intermediate value.
     pub about: String,
-    /// The Gappa script that states the premise.
     pub script: String,
 }
 
-/// Returns the premises of a case's statements: one for each parabola of the case, and three for each divider whose operands'
-/// intervals do not already imply the conditions. `operands` has each variable of the script with its interval of values.
+/// Returns one premise for each parabola of the case, and three for each divider whose operands' intervals do not already
+/// imply the conditions. `operands` has each variable of the script with its interval of values.
 ///
 /// # Errors
 /// Fails if a value has no translation.
@@ -63,9 +61,8 @@ struct PremiseTask<'a> {
 }
 
 impl PremiseTask<'_> {
-    /// Writes the statement that the value of a node lies from `low` to `high`, both raw. The value is a quadratic polynomial,
-    /// and a hint completes its square. Returns `None` if the node or the variable of the polynomial is a constant. Fails if a
-    /// value has no translation.
+    /// Writes the statement that the value of a node, a quadratic polynomial, lies from `low` to `high`, both raw. A hint
+    /// completes its square. Returns `None` if the node or the variable of the polynomial is a constant.
     fn parabola(
         &mut self,
         node: NodeId,
@@ -91,8 +88,7 @@ impl PremiseTask<'_> {
         Ok(Some(self.script(id, &goal, &[hint])))
     }
 
-    /// Writes the statement that the divisor of a divider is positive, and that the dividend is neither negative nor above the
-    /// divisor. Fails if one of them has no translation.
+    /// Writes the statement that the divisor is positive, and that the dividend is neither negative nor above the divisor.
     fn dividend(&mut self, quotient: Quotient) -> Result<String, String> {
         let (dividend, divisor) = self.hardware.fraction(&mut self.terms, quotient)?;
         let rest = self.terms.insert(RealTerm::Sub(divisor, dividend), "rest");
@@ -129,9 +125,9 @@ impl PremiseTask<'_> {
     }
 }
 
-/// Writes the statement that a step of a divider leaves a remainder from 0 to the divisor. `fits` says whether the divisor fits
-/// into twice the remainder. All numbers are in multiples of the divisor. For example, a remainder of 0.75 is doubled to 1.5,
-/// and leaves 0.5.
+/// Writes the statement that a step of a divider leaves a remainder from 0 to the divisor. `fits` says whether the divisor
+/// fits into twice the remainder. All numbers are in multiples of the divisor. For example, a remainder of 0.75 is doubled to
+/// 1.5, and leaves 0.5.
 fn step(fits: bool) -> String {
     let (condition, left) =
         if fits { ("doubled - 1 >= 0", "doubled - 1") } else { ("doubled - 1 <= 0", "doubled") };

@@ -13,29 +13,28 @@ use super::witness;
 use glint_tools::transient::Directory;
 use glint_tools::{LimitReached, Tool};
 
-/// Whether the hypotheses of a statement that Gappa proved can hold. If they cannot, the statement is true but says nothing.
+/// Whether the hypotheses of a proved statement can hold. If they cannot, the statement is true but says nothing.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ProofSubject {
-    /// The statement says something: there is a point at which all its hypotheses hold, for example `x = -0.5, y = 3`.
+    /// There is a point at which all hypotheses hold, for example `x = -0.5, y = 3`.
     Point(String),
-    /// The statement says nothing, because its hypotheses contradict each other, as Gappa proves.
+    /// Gappa proves that the hypotheses contradict each other.
     Nothing,
     /// Neither a point nor a contradiction was found.
     Unknown,
 }
 
-/// The outcome when Gappa tries to prove a statement about an error bound.
 pub enum ProofOutcome {
     /// Gappa accepted a script and, if Coq was given, Coq accepted the proof. The fields are the index of this script in
     /// [`Statement::scripts`], and whether its hypotheses can hold.
     Proved(usize, ProofSubject),
-    /// The statement is not proved. The text says why: Gappa's or Coq's answer to the last script, or the time limit that Gappa
+    /// The statement is not proved. The text is Gappa's or Coq's answer to the last script, or the time limit that Gappa
     /// reached.
     Open(String),
 }
 
-/// Proves a statement: runs Gappa on its scripts, in order, until Gappa accepts one. With `coq`, Coq must accept the proof,
-/// too. `limit` is the time limit of each run of Gappa; Coq has ten times as long.
+/// Runs Gappa on the scripts of a statement, in order, until Gappa accepts one. With `coq`, Coq must accept the proof, too.
+/// `limit` is the time limit of each run of Gappa; Coq has ten times as long.
 ///
 /// # Errors
 /// Fails if Gappa or Coq cannot be run or is killed, or if Gappa cannot write its proof for Coq. Fails also if Coq takes too
@@ -103,8 +102,8 @@ pub fn prove(
     Ok(ProofOutcome::Open(why))
 }
 
-/// Returns whether the hypotheses of an accepted script can hold. If the search finds no point at which they hold, the function
-/// asks Gappa whether they contradict each other. Fails if Gappa cannot be run.
+/// Searches a point at which the hypotheses of an accepted script hold. If the search finds none, the function asks Gappa
+/// whether the hypotheses contradict each other.
 fn subject(gappa: &Tool, script: &str, limit: Duration) -> Result<ProofSubject> {
     if let Some(point) = witness::witness(script) {
         return Ok(ProofSubject::Point(point));

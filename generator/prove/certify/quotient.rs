@@ -2,27 +2,23 @@
 //!
 //! A step doubles the remainder r and subtracts the divisor d if it fits: r' = 2·r − b·d with b = (2·r ≥ d). If d is positive
 //! and 0 ≤ r ≤ d, the same holds for r'. After k steps from r₀, the bits are the number q = Σ bᵢ·2^(k−i), and the last
-//! remainder is 2^k·r₀ − q·d, between 0 and d. Therefore q·2^−k is at most r₀/d, and less than r₀/d by at most 2^−k. Unless the
-//! intervals of r₀ and d show it, the module `premises` lets Gappa prove the conditions: 0 ≤ r₀ ≤ d, d > 0, and that a step
-//! keeps 0 ≤ r ≤ d.
+//! remainder is 2^k·r₀ − q·d, between 0 and d. Therefore q·2^−k is at most r₀/d, and less than r₀/d by at most 2^−k. The
+//! module `premises` lets Gappa prove the conditions, unless the intervals of r₀ and d show them.
 
 use std::collections::BTreeMap;
 
 use glint_rtl::pipeline::{Cell, Graph, NodeId, NodeOp};
 
-/// A divider: the nodes from which the hardware computes a quotient bit by bit. For example, 1 by 3 in two bits is q = 1: 0.25
-/// is below 1/3 by less than 2⁻².
+/// A divider, which computes a quotient bit by bit. For example, 1 by 3 in two bits is q = 1: 0.25 is below 1/3 by less than
+/// 2⁻².
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Quotient {
-    /// The dividend, which is the first remainder.
     pub dividend: NodeId,
-    /// The divisor, which a step subtracts if it is not larger than the doubled remainder.
     pub divisor: NodeId,
-    /// The number of bits of the quotient.
     pub bits: u32,
 }
 
-/// Returns the dividers that `results` depend on. The key of a divider is the node that concatenates the bits of its quotient.
+/// The key of a divider is the node that concatenates the bits of its quotient.
 pub fn quotients(graph: &Graph, results: &[NodeId]) -> BTreeMap<NodeId, Quotient> {
     let mut found = BTreeMap::new();
     let mut pending = results.to_vec();
@@ -42,8 +38,7 @@ pub fn quotients(graph: &Graph, results: &[NodeId]) -> BTreeMap<NodeId, Quotient
     found
 }
 
-/// Returns the divider whose quotient bits a node concatenates, the top bit first. Returns `None` if the node is no
-/// concatenation of at least two such bits.
+/// Returns the divider whose quotient bits a node concatenates, the top bit first. It must have at least two.
 fn quotient(graph: &Graph, id: NodeId) -> Option<Quotient> {
     let Cell::Op(NodeOp::Concat(_)) = graph.node(id).cell else { return None };
     let mut bits = Vec::new();
@@ -57,7 +52,7 @@ fn quotient(graph: &Graph, id: NodeId) -> Option<Quotient> {
     follows.then_some(Quotient { dividend, divisor, bits: steps.len() as u32 })
 }
 
-/// Appends the nodes that a node concatenates to `parts`, the top one first. A concatenation inside it is resolved.
+/// Appends the nodes that a node concatenates, also inside another concatenation, to `parts`, the top one first.
 fn joined(graph: &Graph, id: NodeId, parts: &mut Vec<NodeId>) {
     match &graph.node(id).cell {
         Cell::Op(NodeOp::Concat(inner)) => {
@@ -77,7 +72,6 @@ struct DivisionStep {
     bit: NodeId,
 }
 
-/// Returns the step that computes the quotient bit `bit`, or `None` if the node has another form.
 fn step(graph: &Graph, bit: NodeId) -> Option<DivisionStep> {
     let op = |id: NodeId| match &graph.node(id).cell {
         Cell::Op(op) => Some(op),
@@ -117,7 +111,7 @@ fn is_left(graph: &Graph, id: NodeId, step: &DivisionStep) -> bool {
     graph.node(of).cell == Cell::Op(left) && graph.width(id) >= graph.width(step.divisor)
 }
 
-/// Returns the node of the computation's graph that node `id` extends by zeros, or `id` itself.
+/// Returns the node that node `id` extends by zeros, or `id` itself.
 pub fn widened(graph: &Graph, id: NodeId) -> NodeId {
     match &graph.node(id).cell {
         Cell::Op(NodeOp::Extend(of)) if !graph.node(*of).format.signed => *of,

@@ -21,22 +21,20 @@ const TRIES: usize = 2_000;
 
 /// The parts that all Gappa scripts of one case have in common.
 pub struct GappaScript<'a> {
-    /// The terms of hardware and formula.
     pub terms: &'a RealTerms,
-    /// The number of terms that belong to the hardware. These terms are the first terms of `terms`, before the terms of the
-    /// formula.
+    /// The number of terms that belong to the hardware. They come before the terms of the formula.
     pub hardware_terms: usize,
     /// The variables of the script, with their numbers of fraction bits.
     pub placed: &'a Variables,
     /// The intervals of terms that the script takes as hypotheses.
     pub presupposed: &'a BTreeMap<RealTermId, (f64, f64)>,
-    /// The branches of the formula that apply in this case, one for each expression of the formula.
+    /// The branches of the formula that apply in this case, one for each expression.
     pub ways: &'a [Branch],
 }
 
 impl GappaScript<'_> {
-    /// Returns the script for one output, with the output `out` and the formula `f` times `factor`. The script states that both
-    /// differ by at most `bound`, in output units; without a bound, it asks Gappa for it.
+    /// Returns the script for one output: `out` and the formula `f` times `factor` differ by at most `bound`, in output units.
+    /// Without a bound, the script asks Gappa for it.
     pub fn text(
         &self,
         out: RealTermId,
@@ -51,8 +49,7 @@ impl GappaScript<'_> {
         self.statement(terms, difference, &goal, &[])
     }
 
-    /// Returns the Gappa script that states `goal` about the term `about`. `hints` are lines that come before the hints that
-    /// follow from hardware and formula.
+    /// Returns the script that states `goal` about the term `about`. `hints` are lines before the hints that the module finds.
     pub fn statement(
         &self,
         mut terms: RealTerms,
@@ -83,8 +80,8 @@ impl GappaScript<'_> {
         text
     }
 
-    /// Returns the hypotheses, one text for each: the formats of variables, the intervals of terms, and the signs of
-    /// differences. Terms that are not `needed` are left out. For example, `@FIX(x,-4)`, `x in [0,1]` and `exact_9 >= 0`.
+    /// Returns the formats of variables, the intervals of terms, and the signs of differences. Terms that are not `needed` are
+    /// left out. For example, `@FIX(x,-4)`, `x in [0,1]` and `exact_9 >= 0`.
     fn hypotheses(&self, terms: &RealTerms, needed: &[bool]) -> Vec<String> {
         let mut hypotheses = Vec::new();
         for (name, scale) in self.placed {
@@ -115,8 +112,8 @@ impl GappaScript<'_> {
         hypotheses
     }
 
-    /// Returns hints of four kinds: a list of equalities, and a list of pairs of terms that are near each other. A sum a + (1 −
-    /// a)·x gets a form that shows its range (`blend`). A term of the formula may be a factor times a term of the hardware,
+    /// Returns a list of equalities, and a list of pairs of terms that are near each other. There are four kinds. A sum a + (1
+    /// − a)·x gets a form that shows its range (`blend`). A term of the formula may be a factor times a term of the hardware,
     /// plus an offset. Or it equals a term of the hardware without its roundings; these terms are added to `roots`. Or it is
     /// near a term of the hardware with roundings. The comparison of samples finds the last three kinds, and Gappa proves each
     /// hint that it uses.
@@ -179,8 +176,8 @@ impl GappaScript<'_> {
         (equal, near)
     }
 
-    /// Returns the values of all terms at random points: first at up to 24 points of this case, then at up to 24 other points
-    /// of the domain. An entry has the values of all terms at one point.
+    /// Returns the values of all terms at random points. Up to 24 points are of this case, and then up to 24 are other points
+    /// of the domain.
     fn samples(&self, terms: &RealTerms) -> Vec<Vec<f64>> {
         let mut random = ChaCha8Rng::seed_from_u64(1);
         let (mut samples, mut others) = (Vec::new(), Vec::new());
@@ -199,7 +196,6 @@ impl GappaScript<'_> {
         samples
     }
 
-    /// Returns a random value of each variable, in the variable's format.
     fn random_variables(&self, random: &mut ChaCha8Rng) -> HashMap<String, f64> {
         let mut variables = HashMap::new();
         for (&id, &(low, high)) in self.presupposed {
@@ -221,8 +217,8 @@ impl GappaScript<'_> {
         variables
     }
 
-    /// Returns whether these values of all terms belong to the case: the conditions of the formula's branches hold, and every
-    /// value is in its presupposed interval.
+    /// Returns whether these values of all terms satisfy the conditions of the formula's branches and the presupposed
+    /// intervals.
     fn is_of_case(&self, values: &[f64]) -> bool {
         for way in self.ways {
             let is_way = way.at_least.iter().all(|&id| values[id] >= 0.0)
@@ -243,12 +239,10 @@ fn is_number(terms: &RealTerms, id: RealTermId) -> bool {
     matches!(terms.get(id), RealTerm::Number(_))
 }
 
-/// Returns whether a term is an operation.
 fn is_compound(terms: &RealTerms, id: RealTermId) -> bool {
     !is_number(terms, id) && !is_variable(terms, id)
 }
 
-/// Returns the value of one term in each sample.
 fn column(samples: &[Vec<f64>], id: RealTermId) -> Vec<f64> {
     samples.iter().map(|values| values[id]).collect()
 }
@@ -258,7 +252,7 @@ fn varies(values: &[f64]) -> bool {
 }
 
 /// Writes the hint that a + (1 − a)·x is 1 − (1 − a)·(1 − x). This form shows that the value is between a and 1. For example,
-/// `f_9 -> 1 - rest_4 * (1 - x);`. Returns `None` if the term has another form.
+/// `f_9 -> 1 - rest_4 * (1 - x);`.
 fn blend(terms: &RealTerms, id: RealTermId) -> Option<String> {
     let RealTerm::Add(first, second) = *terms.get(id) else { return None };
     let (product, a) = match terms.get(first) {
@@ -274,7 +268,6 @@ fn blend(terms: &RealTerms, id: RealTermId) -> Option<String> {
     Some(format!("{name} -> 1 - {rest_name} * (1 - {x_name});"))
 }
 
-/// Returns whether a term is 1 − a.
 fn is_rest(terms: &RealTerms, id: RealTermId, a: RealTermId) -> bool {
     match *terms.get(id) {
         RealTerm::Sub(one, other) => *terms.get(one) == RealTerm::Number(1.0) && other == a,
@@ -302,12 +295,11 @@ fn rewriting(
     format!("{} -> {line};", terms.name(left))
 }
 
-/// Returns the largest absolute value.
 fn largest_size(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |most, value| most.max(value.abs()))
 }
 
-/// Returns whether all values of `x` and `y` differ by at most 1/64 of the largest absolute value in `x`.
+/// Accepts differences up to 1/64 of the largest absolute value in `x`.
 fn is_near(x: &[f64], y: &[f64]) -> bool {
     let limit = largest_size(x) / 64.0;
     let mut apart: f64 = 0.0;
@@ -317,15 +309,14 @@ fn is_near(x: &[f64], y: &[f64]) -> bool {
     apart <= limit
 }
 
-/// Returns whether all values of `x` and `y` are equal except for the rounding of f64.
+/// Accepts differences by the rounding of f64.
 fn is_same(x: &[f64], y: &[f64]) -> bool {
     let limit = largest_size(y) * exp2(-44);
     x.iter().zip(y).all(|(x, y)| (x - y).abs() <= limit)
 }
 
 /// Returns the factor and the offset with which `y` is a linear function of `x`, rounded to 16 and 44 fraction bits. For
-/// example, 0, 1, 2 and 1, 3, 5 give the factor 2 and the offset 1. Returns `None` if no such function fits, or if the factor
-/// is 0.
+/// example, 0, 1, 2 and 1, 3, 5 give the factor 2 and the offset 1. The factor must not be 0.
 fn line_through(x: &[f64], y: &[f64]) -> Option<(f64, f64)> {
     let other = x.iter().position(|value| *value != x[0])?;
     let factor = rounded((y[other] - y[0]) / (x[other] - x[0]), 16);
@@ -343,13 +334,12 @@ fn line_through(x: &[f64], y: &[f64]) -> Option<(f64, f64)> {
     Some((factor, offset))
 }
 
-/// Returns a value rounded to a number of fraction bits.
 fn rounded(value: f64, bits: i32) -> f64 {
     libm::round(value * exp2(bits)) / exp2(bits)
 }
 
-/// Returns the goal of a script. With a bound, the goal states that the difference is within the bound; without one, it asks for
-/// the bound. For example, the goals are `|difference_7| <= 0.5` and `|difference_7| in ?`.
+/// Returns the goal that the difference is within the bound, for example `|difference_7| <= 0.5`, or the question for the
+/// bound, `|difference_7| in ?`.
 pub fn goal(difference: &str, bound: Option<f64>) -> String {
     match bound {
         Some(bound) => format!("|{difference}| <= {}", number(bound)),
@@ -357,8 +347,8 @@ pub fn goal(difference: &str, bound: Option<f64>) -> String {
     }
 }
 
-/// Returns the script with its names replaced by `n0`, `n1`, … in the order of their first use. Two scripts that become equal
-/// state the same. For example, `sum_2 = 0.5 + x;` becomes `n0 = 0.5 + n1;`.
+/// Replaces the names of a script by `n0`, `n1`, … in the order of their first use. Scripts which state the same become equal.
+/// For example, `sum_2 = 0.5 + x;` becomes `n0 = 0.5 + n1;`.
 pub fn nameless(script: &str) -> String {
     let mut numbers: HashMap<&str, usize> = HashMap::new();
     let is_part = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '.';

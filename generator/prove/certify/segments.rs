@@ -30,7 +30,7 @@ use glint_base::fixed::exp2;
 use glint_formula::{Enclosure, Expression, Function, Kind, Operator, parse};
 use glint_rtl::pipeline::{Cell, Graph, NodeId, NodeOp, WalkRegister};
 
-/// The number of ROM words in a script: Gappa's time grows with its square.
+/// Gappa's time grows with the square of this number.
 const WORDS: usize = 8;
 
 /// The number m in Taylor's formula: the polynomial for the cosine ends with the term in y²ᵐ. At a right angle, the remainder
@@ -55,8 +55,7 @@ struct WordSegment {
     to: f64,
 }
 
-/// Returns the statements for a device that computes a line of points. `walk` are the registers that change from point to
-/// point, such as the angle.
+/// `walk` are the registers that change from point to point, such as the angle.
 ///
 /// # Errors
 /// Fails if the task has no bound, or if the contract is no highlight. Fails also if the formula or the netlist does not have
@@ -92,8 +91,7 @@ pub fn statements(task: &Task, walk: &[WalkRegister]) -> Result<Vec<Statement>, 
     Ok(statements.list)
 }
 
-/// Returns x and k if a formula has the form cos(pi / 2 · x)ᵏ. For example, `cos(pi / 2 * x) ** 16` gives x and 16; `cos(x) **
-/// 2` gives `None`.
+/// Returns x and k if a formula has the form cos(pi / 2 · x)ᵏ. For example, `cos(pi / 2 * x) ** 16` gives x and 16.
 fn lobe(formula: &Expression) -> Option<(&Expression, u32)> {
     let Kind::Binary(Operator::Power, base, exponent) = &formula.kind else { return None };
     let Kind::Unary(Function::Cos, angle) = &base.kind else { return None };
@@ -111,14 +109,14 @@ fn lobe(formula: &Expression) -> Option<(&Expression, u32)> {
 struct AngleWalk {
     /// The operand with the angle of the first point.
     start: String,
-    /// The formula of the angle at any point, wrapped around in its format. For example, `(a + index * d + 2) % 4 - 2` for a
-    /// signed format of four right angles.
+    /// The formula of the angle at any point, wrapped around in its format. For a signed format of four right angles, for
+    /// example, it is `(a + index * d + 2) % 4 - 2`.
     wrapped: Expression,
 }
 
 impl AngleWalk {
-    /// Returns the angle along a line of points. The angle must be the only register that changes from point to point. The
-    /// register must begin with one operand, and another operand must be added to it modulo its format. Fails otherwise.
+    /// The angle must be the only register that changes from point to point. It must begin with one operand, and another
+    /// operand must be added to it modulo its format.
     fn new(task: &Task, walk: &[WalkRegister]) -> Result<Self, String> {
         let graph = task.graph();
         let is_more_than_a_sum =
@@ -144,14 +142,13 @@ impl AngleWalk {
         Ok(Self { start: start.to_owned(), wrapped })
     }
 
-    /// Returns `formula` with the name [`POINT`] in place of the angle of a point, which is start + index·step, wrapped around.
-    /// By induction, the register of the angle has this value.
+    /// Puts the name [`POINT`] in place of the angle of a point, which is start + index·step, wrapped around. By induction,
+    /// the register of the angle has this value.
     fn angle(&self, formula: &Expression) -> Expression {
         formula.substitute(&self.wrapped, &Expression::operand(POINT), &formula.span)
     }
 }
 
-/// Returns the name of the operand that a node is, or `None` if the node is no operand.
 fn operand_name<'t>(task: &'t Task, id: NodeId) -> Option<&'t str> {
     match task.graph().node(id).cell {
         Cell::Operand(at) => Some(&task.design.net(task.unrolled.operands[at]).name),
@@ -159,12 +156,11 @@ fn operand_name<'t>(task: &'t Task, id: NodeId) -> Option<&'t str> {
     }
 }
 
-/// The names of the colour operands, the node of the table word by which all outputs are multiplied, and the outputs with their
-/// nodes.
+/// The names of the colour operands, the node of the table word by which all outputs are multiplied, and the outputs with
+/// their nodes.
 type ProductsByColour = (Vec<String>, NodeId, Vec<(String, NodeId)>);
 
-/// Finds the one table word on which all outputs depend. Fails if the outputs depend on several words, if they depend on
-/// anything but this word and the colours, or if the numbers of colours and outputs differ.
+/// Finds the one table word on which all outputs depend. They may depend only on this word and on colours.
 fn table(task: &Task) -> Result<ProductsByColour, String> {
     let graph = task.graph();
     let outputs = task.outputs()?;
@@ -207,15 +203,13 @@ fn table(task: &Task) -> Result<ProductsByColour, String> {
     Ok((colours, table, outputs))
 }
 
-/// Returns whether a node has several values.
 fn is_open(graph: &Graph, id: NodeId) -> bool {
     let (low, high) = graph.node(id).range;
     low != high
 }
 
-/// Returns the words of the table that are read, in the order of their addresses, each with the interval of the angles that
-/// read it, in right angles. Fails if the address depends on anything but the angle, or if an angle leaves the range from 0 to
-/// 1.
+/// Returns the words that are read, in the order of their addresses, each with the interval of the angles that read it, in
+/// right angles. Fails if the address depends on anything but the angle, or if an angle leaves the range from 0 to 1.
 fn words(
     task: &Task,
     table: NodeId,
@@ -276,10 +270,9 @@ fn words(
     Ok(found.into_values().collect())
 }
 
-/// Returns the value of the node `address` if it is the same for every value of `operand` in `range`. Returns `None` if the
-/// intervals of the nodes do not show this; a caller can then try each half of the range.
-///
-/// For example, the address may be the top 8 bits of the operand. Its value is known if these bits are equal in the whole range.
+/// Returns the value of the node `address` if it is the same for every value of `operand` in `range`. The intervals of the
+/// nodes must show this. Otherwise a caller can try each half of the range. For example, the address may be the top 8 bits of
+/// the operand; it is known if these bits are equal in the whole range.
 fn decided_address(
     task: &Task,
     (operand, range): (NodeId, (i128, i128)),
@@ -293,9 +286,8 @@ fn decided_address(
     if low == high { Some(low) } else { None }
 }
 
-/// Returns an interval, in right angles, that contains the formula's angle if the angle of the point is from `low` to `high`.
-/// Returns `None` if the formula's angle depends on anything but the angle of the point, or if it may have no value there, for
-/// example at a pole.
+/// Returns an interval, in right angles, of the formula's angle if the angle of the point is from `low` to `high`. Returns
+/// `None` if the formula's angle depends on anything else, or may have no value there.
 fn enclosed(angle: &Expression, (low, high): (f64, f64)) -> Option<Enclosure> {
     angle.enclose(&[(POINT, Enclosure::between(low, high))]).ok()
 }
@@ -337,8 +329,8 @@ fn about_words(words: &[WordSegment], first: usize, power: u32, bound: f64) -> S
     text
 }
 
-/// Writes the definitions of a power of the cosine of an angle, in right angles. For example, the last line for the
-/// name `x` and the power 2 is `f_x = c_x_0 * c_x_0;`.
+/// Writes the definitions of a power of the cosine of an angle, in right angles. For example, the last line for the name `x`
+/// and the power 2 is `f_x = c_x_0 * c_x_0;`.
 fn cosine(name: &str, angle: f64, power: u32) -> String {
     let mut text =
         format!("y_{name} = right * {};\nsquare_{name} = y_{name} * y_{name};\n", number(angle));
@@ -354,7 +346,7 @@ fn cosine(name: &str, angle: f64, power: u32) -> String {
 }
 
 /// Writes the statement that the output `out` is within `bound`, in output units, of `colour` times f, for every f within
-/// `of_f` of the table word. Fails if the output has no translation or the table has a single word.
+/// `of_f` of the table word.
 fn about_output(
     task: &Task,
     (out, table): (NodeId, NodeId),

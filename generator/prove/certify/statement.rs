@@ -1,7 +1,7 @@
 //! Collects the Gappa statements of a proof, and keeps equal statements only once.
 //!
 //! Statements are equal if their scripts are the same except for names. For example, the outputs red and green often share a
-//! statement. The module writes no script and runs no prover.
+//! statement.
 
 use std::collections::HashMap;
 
@@ -11,23 +11,21 @@ use super::terms::number;
 /// The end of a script's goal that asks for a bound.
 pub(super) const ASKED: &str = "| in ? }";
 
-/// A statement for the prover Gappa, such as that an output differs from the formula by at most the error bound.
+/// A statement for Gappa: for example, an output differs from the formula by at most the error bound.
 #[derive(Clone, Debug)]
 pub struct Statement {
-    /// The name of the output, or of the intermediate value, that the statement is about.
+    /// The output, or the intermediate value, that the statement is about.
     pub output: String,
-    /// The number of the statement among the statements of the output, from 1.
     pub number: usize,
-    /// The names of other outputs whose statements are the same except for names.
+    /// The other outputs whose statements are the same except for names.
     pub also: Vec<String>,
-    /// Alternative scripts: Gappa must accept one of them. There are two if the formula jumps, because on each side of the jump
-    /// another value is right.
+    /// Gappa must accept one of these scripts. There are two if the formula jumps, because on each side of the jump another
+    /// value is right.
     pub scripts: Vec<String>,
 }
 
 impl Statement {
-    /// Returns the statement with a stated bound instead of a question for the bound. For example, `|difference_7| in ? }`
-    /// becomes `|difference_7| <= 0.5 }`.
+    /// Puts a bound in place of the question for it. For example, `|difference_7| in ? }` becomes `|difference_7| <= 0.5 }`.
     #[must_use]
     pub fn within(&self, bound: f64) -> Self {
         let stated = format!("| <= {} }}", number(bound));
@@ -45,8 +43,7 @@ pub(super) struct Statements {
 }
 
 impl Statements {
-    /// Adds a statement about an output. If the collection has a statement that is the same except for names, the output is added
-    /// to that statement.
+    /// Adds a statement about an output, or adds the output to a statement that is the same except for names.
     pub(super) fn push(&mut self, output: &str, scripts: Vec<String>) {
         let nameless = scripts.iter().map(|script| script::nameless(script)).collect();
         if let Some(&at) = self.known.get(&nameless) {

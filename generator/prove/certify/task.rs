@@ -1,9 +1,7 @@
-//! Defines the subject of a proof by Gappa: the design, its contract and the unrolled computation. The modules that write
-//! statements share it.
+//! Defines the subject of a proof by Gappa, which the modules that write statements share.
 //!
 //! The module also splits the domain of the contract into parts, at operands that are exponents of the formula or that address
-//! ROMs. It does not split an operand with more than 1024 values. For example, `x ** exponent` becomes one part for each
-//! exponent.
+//! ROMs. For example, `x ** exponent` becomes one part for each exponent.
 
 use super::cases::{self, NodeIntervals, UnrolledComputation};
 use glint_formula::{Expression, Kind, Operator};
@@ -11,11 +9,11 @@ use glint_golden::Contract;
 use glint_rtl::netlist::{Design, RomId};
 use glint_rtl::pipeline::{Cell, Graph, NodeId, Unrolled};
 
-/// The largest number of values of an operand whose domain is split. A larger domain is not split.
+/// An operand with more values than this number is not split.
 const SPLIT: i64 = 1024;
 
-/// The largest number of runs of equal words for which the domain is always split at a single table, one part for each run. For
-/// example, the words 5, 5, 7 are two runs.
+/// The largest number of runs of equal words for which the domain is always split at a single table. For example, the words 5,
+/// 5, 7 are two runs.
 const RUNS: usize = 16;
 
 /// The subject of a proof by Gappa: a design, its contract with the error bound, and the unrolled computation as a graph.
@@ -27,18 +25,17 @@ pub(super) struct Task<'a> {
     pub(super) unrolled: &'a Unrolled,
     pub(super) view: UnrolledComputation<'a>,
     pub(super) tables: &'a [String],
-    /// The formulas: for a highlight the formulas of f, otherwise one for each output.
+    /// For a highlight the formulas of f, otherwise one for each output.
     pub(super) formulas: &'a [Expression],
 }
 
 impl Task<'_> {
-    /// Returns the graph of the computation.
     pub(super) fn graph(&self) -> &Graph {
         &self.unrolled.graph
     }
 
-    /// Narrows the interval of a node to `range`, and stores the result in `known`, as [`cases::learn`] does. All other nodes
-    /// have the intervals of the graph, before any case is distinguished. Returns false if no value is left.
+    /// Narrows the interval of a node to `range` in `known`, as [`cases::learn`] does, from the intervals of the graph.
+    /// Returns false if no value is left.
     pub(super) fn learn(
         &self,
         known: &mut NodeIntervals,
@@ -49,7 +46,7 @@ impl Task<'_> {
         cases::learn(self.graph(), known, &ranges, node, range)
     }
 
-    /// Returns the node of the operand `name`, or `None` if no result depends on it.
+    /// Returns `None` if no result depends on the operand.
     pub(super) fn operand(&self, name: &str) -> Option<NodeId> {
         let mut ports = self.unrolled.operands.iter();
         let at = ports.position(|&port| self.design.net(port).name == name)?;
@@ -58,8 +55,7 @@ impl Task<'_> {
         Some(NodeId(id as u32))
     }
 
-    /// Returns the interval of raw values of each operand in the contract's domain. Fails if a domain is not in the operand's
-    /// format.
+    /// Returns the intervals of raw values in the contract's domain, which must be in the operands' formats.
     pub(super) fn domain(&self) -> Result<NodeIntervals, String> {
         let mut known = NodeIntervals::new();
         for operand in self.contract.operands() {
@@ -73,7 +69,6 @@ impl Task<'_> {
         Ok(known)
     }
 
-    /// Returns each output of the contract, with the node that computes it. Fails if the design has no port of this name.
     pub(super) fn outputs(&self) -> Result<Vec<(String, NodeId)>, String> {
         let mut outputs = Vec::new();
         for output in self.contract.outputs() {
@@ -87,10 +82,9 @@ impl Task<'_> {
         Ok(outputs)
     }
 
-    /// Splits the domain `known` into parts. An operand that is an exponent makes a part for each of its values, and an operand
-    /// that addresses tables a part for each run of values with the same words. An operand with more than 1024 values is not
-    /// split. A single table with more than 16 runs that the formula reads too is not split, because its word can be a
-    /// variable. For example, `x ** exponent` with exponents from 1 to 64 has 64 parts.
+    /// Splits the domain `known`. An operand that is an exponent makes a part for each of its values. An operand that
+    /// addresses tables makes a part for each run of values with the same words. A single table with more than 16 runs that
+    /// the formula reads too is not split, because its word can be a variable.
     pub(super) fn split(&self, known: &NodeIntervals) -> Vec<NodeIntervals> {
         let mut split = vec![known.clone()];
         for operand in self.contract.operands() {
@@ -131,27 +125,23 @@ impl Task<'_> {
         split
     }
 
-    /// Returns whether an operand is the exponent of a power in a formula.
     fn is_exponent(&self, operand: &str) -> bool {
         let exponent = Expression::operand(operand);
         let is_power = |part: &Kind| matches!(part, Kind::Binary(Operator::Power, _, other) if **other == exponent);
         self.formulas.iter().any(|formula| formula.has(&is_power))
     }
 
-    /// Returns whether a formula reads the table.
     fn formulas_read(&self, table: RomId) -> bool {
         let name = &self.tables[table.index()];
         let reads = |part: &Kind| matches!(part, Kind::Word(rom, _) if rom == name);
         self.formulas.iter().any(|formula| formula.has(&reads))
     }
 
-    /// Returns whether every table in `tables` has the same word at the addresses `one` and `other`.
     fn have_same_words(&self, tables: &[RomId], one: i64, other: i64) -> bool {
         let words = self.view.words;
         tables.iter().all(|&rom| words(rom, one as u64) == words(rom, other as u64))
     }
 
-    /// Returns the tables whose address is this node.
     fn tables_read_at(&self, node: NodeId) -> Vec<RomId> {
         let mut tables: Vec<RomId> = Vec::new();
         for reader in &self.graph().nodes {

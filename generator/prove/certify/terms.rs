@@ -1,19 +1,16 @@
-//! Stores expressions over the real numbers, of a formula and of the hardware, and writes them in the syntax of Gappa.
-//!
-//! The expressions of the hardware contain roundings. Every term is stored once. The module can also evaluate all terms in f64.
+//! Stores expressions over the real numbers, of a formula and of the hardware, and writes them in the syntax of Gappa. The
+//! module can also evaluate them in f64.
 
 use std::collections::HashMap;
 use std::fmt::Write as _;
 
 use glint_base::cone;
 
-/// The number of a term in a [`RealTerms`].
 pub type RealTermId = usize;
 
-/// The direction in which a value is rounded to a multiple of a power of two.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum RoundingDirection {
-    /// Rounds down, as hardware does that drops bits.
+    /// Hardware that drops bits rounds down.
     Down,
     /// Rounds to the nearest, halves away from 0. Only values that are not negative are rounded in this way, so halves go up.
     Nearest,
@@ -22,25 +19,17 @@ pub enum RoundingDirection {
 /// An expression over the real numbers for a Gappa script, whose operands are other such terms.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RealTerm {
-    /// A variable of the script, by its name.
     Variable(String),
-    /// A constant.
     Number(f64),
-    /// The sum.
     Add(RealTermId, RealTermId),
-    /// The difference.
     Sub(RealTermId, RealTermId),
-    /// The product.
     Mul(RealTermId, RealTermId),
-    /// The quotient.
     Div(RealTermId, RealTermId),
     /// The operand, rounded to a multiple of 2^-`fraction`.
     Round {
-        /// The term that is rounded.
         of: RealTermId,
         /// The number of fraction bits that are kept; negative if integer bits are dropped.
         fraction: i32,
-        /// The direction in which the operand is rounded.
         direction: RoundingDirection,
     },
 }
@@ -55,11 +44,11 @@ pub struct RealTerms {
 }
 
 impl RealTerms {
-    /// Adds a term, if it is new, and returns its number. `name` becomes the name of its definition in a script, followed by the
-    /// number: for example, term 2 with the name `sum` is `sum_2`.
+    /// Adds a term, if it is new. `name` becomes the name of its definition in a script, followed by the number: for example,
+    /// term 2 with the name `sum` is `sum_2`.
     ///
-    /// The operands of sums and products are sorted, so that hardware and formula have them in the same order. Gappa compares two
-    /// products factor by factor.
+    /// The operands of sums and products are sorted, so that hardware and formula have them in the same order. Gappa compares
+    /// two products factor by factor.
     pub fn insert(&mut self, term: RealTerm, name: &str) -> RealTermId {
         let term = match term {
             RealTerm::Add(a, b) if self.is_after(a, b) => RealTerm::Add(b, a),
@@ -81,8 +70,8 @@ impl RealTerms {
         id
     }
 
-    /// Returns whether `a` comes after `b` in the order of terms. Numbers come first and variables last. All other
-    /// terms are ordered by their variables and degree.
+    /// Returns whether `a` comes after `b`. Numbers come first and variables last. All other terms are ordered by their
+    /// variables and degree.
     fn is_after(&self, a: RealTermId, b: RealTermId) -> bool {
         let kind = |id: RealTermId| match self.get(id) {
             RealTerm::Number(_) => 0,
@@ -93,7 +82,6 @@ impl RealTerms {
         order(a) > order(b)
     }
 
-    /// Returns the variables of a new term, and the degree of the term in them.
     fn shape(&self, id: RealTermId) -> (Vec<RealTermId>, u32) {
         let operands = self.operands(id);
         let mut variables: Vec<RealTermId> =
@@ -112,18 +100,15 @@ impl RealTerms {
         (variables, degree)
     }
 
-    /// Returns the number of the term that is the constant `value`.
     pub fn number(&mut self, value: f64) -> RealTermId {
         self.insert(RealTerm::Number(value), "number")
     }
 
-    /// Returns the term number `id`, which must be a number of this collection.
     pub fn get(&self, id: RealTermId) -> &RealTerm {
         &self.terms[id].0
     }
 
-    /// Returns the text of a term in the script: the name of its definition, the name of a variable, or a number. For example,
-    /// `sum_2`, `x` or `(-0.5)`.
+    /// Returns the text of a term in the script, for example `sum_2`, `x` or `(-0.5)`.
     pub fn name(&self, id: RealTermId) -> String {
         match self.get(id) {
             RealTerm::Number(value) if *value < 0.0 => format!("({})", number(*value)),
@@ -132,12 +117,10 @@ impl RealTerms {
         }
     }
 
-    /// Returns the number of terms in the collection.
     pub fn count(&self) -> usize {
         self.terms.len()
     }
 
-    /// Returns whether a term contains no rounding and is not a constant.
     pub fn is_exact(&self, id: RealTermId) -> bool {
         let of =
             |id: &RealTermId| self.is_exact(*id) || matches!(self.get(*id), RealTerm::Number(_));
@@ -151,8 +134,7 @@ impl RealTerms {
         }
     }
 
-    /// Returns the values of all terms if the variables have these values. A variable without a value, and every term that
-    /// depends on it, is NaN.
+    /// A variable without a value, and every term that depends on it, is NaN.
     pub fn evaluate(&self, variables: &HashMap<String, f64>) -> Vec<f64> {
         let mut values: Vec<f64> = Vec::with_capacity(self.terms.len());
         for (term, _) in &self.terms {
@@ -177,13 +159,12 @@ impl RealTerms {
         values
     }
 
-    /// Returns for each term of the collection whether one of `roots` depends on it, including the roots.
+    /// Returns for each term whether one of `roots` is it or depends on it.
     pub fn needed(&self, roots: &[RealTermId]) -> Vec<bool> {
         cone::needed(self.terms.len(), roots.iter().copied(), |id| self.operands(id))
     }
 
-    /// Returns the number of the term for the same expression without its roundings, and adds this term if it is new. `known`
-    /// caches the results of earlier calls.
+    /// Adds the same expression without its roundings, if it is new. `known` caches the results of earlier calls.
     pub fn unrounded(
         &mut self,
         id: RealTermId,
@@ -214,8 +195,8 @@ impl RealTerms {
         self.insert(make(a, b), "unrounded")
     }
 
-    /// Returns the lines of a Gappa script that define the terms for which `needed` is true, in order. For example, a sum and
-    /// its rounding to 4 fraction bits are `sum_2 = 0.5 + x;` and `cut_3 = fixed<-4,dn>(sum_2);`.
+    /// Returns the lines of a script that define the `needed` terms, in order. For example, a sum and its rounding to 4
+    /// fraction bits are `sum_2 = 0.5 + x;` and `cut_3 = fixed<-4,dn>(sum_2);`.
     pub fn definitions(&self, needed: &[bool]) -> String {
         let mut text = String::new();
         for (id, (term, name)) in self.terms.iter().enumerate() {
@@ -252,7 +233,7 @@ impl RealTerms {
     }
 }
 
-/// Returns a number in decimal with all its digits and without an exponent. For example, 2⁻²⁰ is `0.00000095367431640625`.
+/// Writes all digits and no exponent. For example, 2⁻²⁰ is `0.00000095367431640625`.
 pub fn number(value: f64) -> String {
     let text = format!("{value:.1100}");
     let text = text.trim_end_matches('0').trim_end_matches('.');

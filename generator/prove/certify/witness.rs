@@ -1,9 +1,8 @@
 //! Finds a point at which all hypotheses of a Gappa script hold.
 //!
-//! Such a point shows that the statement is not vacuous: hypotheses that contradict each other would prove anything. The search
-//! reads the text of the script, begins at 64 random points, and moves each step by step until no hypothesis is violated or no
-//! step helps. The hypotheses are computed in f64, with rounding errors. If no point is found, the hypotheses may still be
-//! satisfiable.
+//! Such a point shows that the statement is not vacuous: hypotheses that contradict each other would prove anything. The
+//! search begins at 64 random points, and moves each step by step while the violation becomes smaller. It computes in f64,
+//! with rounding errors. If it finds no point, the hypotheses may still be satisfiable.
 
 use std::collections::HashMap;
 
@@ -29,15 +28,15 @@ const NEVER: &str = "1 in [2,3] }";
 /// The text between hypotheses and goal.
 const IMPLIES: &str = "\n  -> ";
 
-/// Returns the script with a goal that Gappa can prove only if the hypotheses contradict each other. Returns `None` if the script
-/// has no hypotheses. For example, the goal `|square| <= 1` becomes `1 in [2,3]`.
+/// Returns the script with a goal that Gappa can prove only if the hypotheses contradict each other. For example, the goal
+/// `|square| <= 1` becomes `1 in [2,3]`. Returns `None` for a script without hypotheses.
 pub fn contradiction(script: &str) -> Option<String> {
     let (hypotheses, rest) = script.split_once(IMPLIES)?;
     let (_, hints) = rest.split_once('}')?;
     Some(format!("{hypotheses}{IMPLIES}{NEVER}{hints}"))
 }
 
-/// A variable of a script. Its values are `unit` times the integers from `low` to `high`.
+/// The values of a variable are `unit` times the integers from `low` to `high`.
 struct Variable {
     name: String,
     unit: f64,
@@ -45,7 +44,6 @@ struct Variable {
     high: i64,
 }
 
-/// The hypotheses of a script.
 struct Hypotheses {
     terms: RealTerms,
     variables: Vec<Variable>,
@@ -54,7 +52,7 @@ struct Hypotheses {
 }
 
 impl Hypotheses {
-    /// Parses a script; returns `None` if a part of its text has an unknown form.
+    /// Returns `None` if a part of the text has an unknown form.
     fn of(script: &str) -> Option<Self> {
         let (definitions, statement) = script.split_once("\n{ ")?;
         let mut terms = RealTerms::default();
@@ -102,8 +100,7 @@ impl Hypotheses {
         Some(Self { variables: variables.collect(), terms, intervals })
     }
 
-    /// Returns a measure of how far the hypotheses are from holding at a point: 0 if all hold, and infinity if a term is not a
-    /// number.
+    /// Measures how far the hypotheses are from holding at a point: 0 if all hold, and infinity if a term is not a number.
     fn violation(&self, point: &[i64]) -> f64 {
         let variables = self.variables.iter().zip(point);
         let variables = variables.map(|(it, &raw)| (it.name.clone(), raw as f64 * it.unit));
@@ -119,7 +116,7 @@ impl Hypotheses {
         self.intervals.iter().map(away).sum()
     }
 
-    /// Moves a point step by step as long as the violation becomes smaller. Returns whether all hypotheses hold at the end.
+    /// Moves a point step by step while the violation becomes smaller. Returns whether all hypotheses hold at the end.
     fn descend(&self, point: &mut [i64]) -> bool {
         let mut away = self.violation(point);
         while away > 0.0 {
@@ -144,9 +141,8 @@ impl Hypotheses {
     }
 }
 
-/// Returns a point at which all hypotheses of a Gappa script hold, as text. For example, `x = -0.5, y = 3`. The text is `every
-/// point` for a script without hypotheses. Returns `None` if the search finds no point, or if the text of the script has an
-/// unknown form.
+/// Returns a point at which all hypotheses hold, for example `x = -0.5, y = 3`, or `every point` for a script without
+/// hypotheses. Returns `None` if the search finds none, or if the script has an unknown form.
 pub fn witness(script: &str) -> Option<String> {
     if !script.contains(IMPLIES) {
         return Some("every point".to_owned());
@@ -176,8 +172,8 @@ pub fn witness(script: &str) -> Option<String> {
     None
 }
 
-/// Parses an expression of a script into `terms` and returns its term. A name has its term in `names`, or else becomes a new
-/// variable. Returns `None` if the expression has an unknown form.
+/// Parses an expression into `terms`. A name has its term in `names`, or else becomes a new variable. Returns `None` for an
+/// unknown form.
 fn expression(
     text: &str,
     terms: &mut RealTerms,

@@ -1,16 +1,14 @@
 //! Computes the results of Yosys's cells on symbolic terms instead of numbers, as Yosys documents the cells.
 //!
-//! For example, a `$add` cell with the terms a and b has the result a + b. The module knows the cells that occur in the emitted
-//! Verilog. Any other kind of cell is an error. So is a cell of more than 64 bits, unless it is a multiplexer, a reduction such
-//! as `$reduce_or`, or a logical operation such as `$logic_and`.
+//! For example, a `$add` cell with the terms a and b has the result a + b. The module knows the cells that occur in the
+//! emitted Verilog, and fails for any other. Only multiplexers, reductions and logical operations may have more than 64 bits.
 
 use anyhow::{Context, Result, bail, ensure};
 
 use super::term::{ADDRESS, VectorTerm, VectorTermId, VectorTerms};
 use glint_base::fixed::MAX_WIDTH;
 
-/// A bit that is connected to a cell in a netlist from Yosys: a wire with its number, a known constant, or an undetermined bit
-/// (`x` or `z`).
+/// A bit at a cell in a netlist from Yosys: a wire with its number, a constant, or an undetermined bit (`x` or `z`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Bit {
     Wire(usize),
@@ -24,13 +22,12 @@ pub type Connection = Vec<Bit>;
 pub struct WireValues(Vec<Option<(VectorTermId, u32)>>);
 
 impl WireValues {
-    /// Makes the values of `wires` wires. No wire has a value yet: a caller must set the inputs and registers.
+    /// No wire has a value yet: a caller must set the inputs and registers.
     pub fn new(wires: usize) -> Self {
         Self(vec![None; wires])
     }
 
-    /// Sets the values of some wires to the bits of the terms `columns`, the lowest bits first. Each term except the last has
-    /// 64 bits.
+    /// Sets some wires to the bits of the terms `columns`, the lowest first. Each term except the last has 64 bits.
     pub fn set(&mut self, bits: &Connection, columns: &[VectorTermId]) {
         for (at, bit) in bits.iter().enumerate() {
             if let Bit::Wire(wire) = *bit {
@@ -40,7 +37,7 @@ impl WireValues {
         }
     }
 
-    /// Returns the symbolic values of some wires as terms of at most 64 bits each, the lowest bits first.
+    /// Returns some wires as terms of at most 64 bits each, the lowest bits first.
     pub fn columns(&self, terms: &mut VectorTerms, bits: &Connection) -> Vec<VectorTermId> {
         let mut columns = Vec::new();
         for column in bits.chunks(MAX_WIDTH as usize) {
@@ -49,8 +46,8 @@ impl WireValues {
         columns
     }
 
-    /// Returns the value of at most 64 bits as one term. Copies of the highest bit become a sign extension. For example, the
-    /// wires 6, 7, 7, 7, lowest first, are the bits 6 and 7 with the sign extended to four bits.
+    /// Returns at most 64 bits as one term. Copies of the highest bit become a sign extension. The wires 6, 7, 7, 7, lowest
+    /// first, are the bits 6 and 7 with the sign extended to four bits.
     pub fn word(&self, terms: &mut VectorTerms, bits: &[Bit]) -> VectorTermId {
         let copies = bits.iter().rev().take_while(|bit| Some(*bit) == bits.last()).count();
         if copies > 1 && matches!(bits.last(), Some(Bit::Wire(_))) {
@@ -98,8 +95,7 @@ impl WireValues {
         (id, width as usize)
     }
 
-    /// Returns the term that contains a bit, and the position of the bit in the term. Returns `None` for a constant or unknown
-    /// bit.
+    /// Returns the term that contains a bit, and the bit's position there, unless the bit is a constant or unknown.
     fn source(&self, bit: Bit) -> Option<(VectorTermId, u32)> {
         match bit {
             Bit::Wire(wire) => self.0[wire],
@@ -107,8 +103,8 @@ impl WireValues {
         }
     }
 
-    /// Returns the term of a read from a memory that the module never writes. `at` is the address, and `words` are the
-    /// contents. A read beyond the contents gives an unknown word.
+    /// Returns a word of a memory that the module never writes. `at` is the address, and `words` are the contents. A read
+    /// beyond them gives an unknown word.
     pub fn rom(
         &self,
         terms: &mut VectorTerms,
@@ -129,8 +125,8 @@ impl WireValues {
         terms.choice(inside, word, beyond)
     }
 
-    /// Returns the symbolic result of a Yosys cell of the kind `kind`, such as `$add`, with the inputs A, B and S. `signed`
-    /// says whether A and B are signed. The result has `width` bits, as terms of at most 64 bits, the lowest bits first.
+    /// Returns the result of a Yosys cell of the kind `kind`, such as `$add`, with the inputs A, B and S. `signed` says
+    /// whether A and B are signed. The result has `width` bits, as terms of at most 64 bits, the lowest first.
     ///
     /// # Errors
     /// Fails if the kind is unknown, or if an input of a reduction or a logical operation such as `$logic_and` has no bits.
@@ -232,8 +228,8 @@ impl WireValues {
         Ok(vec![terms.resized(bit, width as u32)])
     }
 
-    /// Returns the term of some bits with `width` bits, extended by the sign if `signed`, and otherwise by zeros. High bits are
-    /// dropped if `width` is smaller. Fails for more than 64 bits.
+    /// Extends some bits to `width` bits, by the sign if `signed`, and otherwise by zeros. High bits are dropped if `width` is
+    /// smaller. Fails for more than 64 bits.
     fn extended(
         &self,
         terms: &mut VectorTerms,
@@ -249,7 +245,6 @@ impl WireValues {
         })
     }
 
-    /// Returns two operands with `width` bits each, extended as [`Self::extended`] does. Fails for more than 64 bits.
     fn both_extended(
         &self,
         terms: &mut VectorTerms,
@@ -262,7 +257,6 @@ impl WireValues {
         Ok((a, b))
     }
 
-    /// Returns a one-bit term that is 1 if any of the bits is 1. Fails if there are no bits.
     fn any_one(&self, terms: &mut VectorTerms, bits: &Connection) -> Result<VectorTermId> {
         let mut any = Vec::new();
         for column in self.columns(terms, bits) {

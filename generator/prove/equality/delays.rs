@@ -15,35 +15,30 @@ use super::term::{VectorTermId, VectorTerms};
 use glint_base::fixed::mask;
 use glint_rtl::netlist::Role;
 
-/// The largest number of clocks after which a counter returns to its first value. The module does not recognise longer counters.
+/// The module does not recognise counters with a longer period.
 const LONGEST_PERIOD: usize = 1024;
 
-/// The roles of the ports, by their names.
 pub type Roles = HashMap<String, Role>;
 
-/// The values of some registers, by their numbers in the module. The order of a `BTreeMap` makes the result the same in every
-/// run.
+/// The values of some registers, by their numbers. The order of a `BTreeMap` makes the result the same in every run.
 type RegisterValues = BTreeMap<usize, u64>;
 
-/// The counters of a pipeline's Verilog, in the clocks in which all points move.
+/// The counters, in the clocks in which all points move.
 pub struct Counters {
     /// For each slot, which is a clock of the interval from one point to the next, the values of the registers that count the
-    /// slots. The list has one entry for each clock of the interval. An entry is an empty map if the interval is 1.
+    /// slots. Without such registers, for an interval of 1, the map is empty.
     pub slots: Vec<RegisterValues>,
-    /// For each memory, each of its read ports and each slot, the number of clocks from a write to the read. The entry is
-    /// `None` if this number is not fixed.
+    /// For each memory, read port and slot, the number of clocks from a write to the read, if it is fixed.
     delays: Vec<Vec<Vec<Option<usize>>>>,
 }
 
-/// The accesses to a memory in one clock.
 struct MemoryClock {
-    /// The address at which all bits of a word are written; `None` if nothing is written.
+    /// The address at which all bits of a word are written, if any is.
     write: Option<u64>,
-    /// The address of each read port; `None` if the address is not known.
+    /// The address of each read port, if it is known.
     reads: Vec<Option<u64>>,
 }
 
-/// The constants of one clock.
 struct ClockConstants {
     /// The registers that are constant after the clock, with their values.
     registers: RegisterValues,
@@ -54,9 +49,6 @@ struct ClockConstants {
 }
 
 impl Counters {
-    /// Finds the counters of a pipeline that takes a point every `interval` clocks.
-    ///
-    /// # Errors
     /// Fails if the interval is longer than 1 and no counter decides the clocks in which the pipeline takes a point. Fails also if a
     /// memory delays its words by no fixed number of clocks, or if the module has a cell that is not understood.
     pub fn new(module: &Module, roles: &Roles, interval: usize) -> Result<Self> {
@@ -86,13 +78,13 @@ impl Counters {
         Ok(Self { slots, delays })
     }
 
-    /// Returns the number of clocks from a write to the read of the same word at a port of a memory, for a read `clock` clocks
-    /// after a point entered. Returns `None` if this number is not fixed.
+    /// Returns the number of clocks from a write to the read of the same word, if the number is fixed. The read is `clock`
+    /// clocks after a point entered.
     pub fn delay(&self, read: Read, clock: usize) -> Option<usize> {
         self.delays[read.memory][read.port][clock % self.slots.len()]
     }
 
-    /// Returns the largest number of clocks from a write to a read, for each read port of each memory.
+    /// Returns the longest delay of each read port of each memory, in clocks.
     pub fn longest_delays(&self) -> Vec<usize> {
         let mut longest = Vec::new();
         for of_slots in self.delays.iter().flatten() {
@@ -102,9 +94,8 @@ impl Counters {
     }
 }
 
-/// Returns the values of the registers that count the slots, for each slot. `reset` has the registers that are constant after a
-/// reset. Fails if the interval is longer than 1 and these registers do not make `in_ready` 1 in slot 0 and 0 in all other
-/// slots.
+/// Returns the values of the registers that count the slots, for each slot. `reset` has the registers that are constant after
+/// a reset. For an interval above 1, these registers must make `in_ready` 1 in slot 0 and 0 in all other slots.
 fn slots(
     module: &Module,
     roles: &Roles,
@@ -141,9 +132,9 @@ fn slots(
     Ok(slots)
 }
 
-/// Returns the constants of each clock until all counters have their first values again. The counters are the slot counter and
-/// `counter`, a register with its value after a reset. Returns `None` if `counter` has no constant value in a clock, or if the
-/// first values do not return within 1024 clocks. Fails if the module has an unknown cell.
+/// Returns the constants of each clock until the slot counter and `counter`, a register with its value after a reset, have
+/// their first values again. Returns `None` if `counter` has no constant value in a clock, or if this takes more than 1024
+/// clocks.
 fn course(
     module: &Module,
     roles: &Roles,
@@ -171,10 +162,10 @@ fn course(
     Ok(None)
 }
 
-/// Returns the number of clocks from the latest write of a word to its read, for each read port and each slot. `course` has the
-/// accesses in each clock of a period, which repeats. A number is `None` if it is not the same in all clocks of the slot, if
-/// the address of the read is unknown, or if nothing writes to this address. For example, with one slot, write addresses 0, 1,
-/// 2, 3 and read addresses 2, 3, 0, 1 give 2 clocks.
+/// Returns the number of clocks from the latest write of a word to its read, for each read port and each slot. `course` is a
+/// period of accesses, which repeats. A number is `None` if it varies between the clocks of the slot, if the address is
+/// unknown, or if nothing writes there. For example, with one slot, write addresses 0, 1, 2, 3 and read addresses 2, 3, 0, 1
+/// give 2 clocks.
 fn lags(course: &[&MemoryClock], reads: usize, interval: usize) -> Vec<Vec<Option<usize>>> {
     let period = course.len();
     let lag = |read: usize, now: usize| {
@@ -195,8 +186,8 @@ fn lags(course: &[&MemoryClock], reads: usize, interval: usize) -> Vec<Vec<Optio
     lags
 }
 
-/// Returns the constants of a clock: a reset if `rst_n` is 0, and otherwise a clock in which the results are taken. `known` are
-/// the values of some registers before the clock; everything else is unknown. Fails if the module has an unknown cell.
+/// Returns the constants of a clock: a reset if `rst_n` is 0, and otherwise a clock in which the results are taken. `known`
+/// are the values of some registers before the clock; everything else is unknown.
 fn constants(
     module: &Module,
     roles: &Roles,
@@ -234,8 +225,8 @@ fn constants(
     Ok(ClockConstants { registers, memories, ready })
 }
 
-/// Returns the accesses to a memory. `ports` are the terms of [`Memory::control`]. Returns `None` if it is not known which word
-/// is written, or if only some bits of it are.
+/// Returns the accesses to a memory, whose `ports` are the terms of [`Memory::control`]. Returns `None` if it is not known
+/// which word is written, or if only some bits of it are.
 fn accesses(terms: &VectorTerms, memory: &Memory, ports: &[VectorTermId]) -> Option<MemoryClock> {
     let (addresses, enables) = ports.split_at(1 + memory.reads.len());
     let all_are = |wanted: fn(u32) -> u64| {

@@ -1,9 +1,8 @@
 //! Gives the SMT solver arithmetic facts about the products and memory words in its question.
 //!
-//! The solver treats a product and the read of a memory as uninterpreted functions and knows nothing about them. The facts say,
-//! for example, that a product with a factor 0 is 0, that a product is the sum of the products of a factor's parts, or that a
-//! memory word lies within the bounds of all words. Every fact is true for all values, so an unnecessary fact cannot make a
-//! proof wrong.
+//! The solver treats a product and the read of a memory as uninterpreted functions and knows nothing about them. One fact says
+//! that a product with a factor 0 is 0. Another says that a memory word lies within the bounds of all words. Every fact is
+//! true for all values, so an unnecessary fact cannot make a proof wrong.
 
 use std::collections::{HashMap, HashSet};
 
@@ -12,15 +11,15 @@ use super::term::{VectorTerm, VectorTermId, VectorTerms};
 use glint_base::fixed::{MAX_WIDTH, mask};
 use glint_base::interval::{self, Interval};
 
-/// The largest number of bits of a factor whose product is written out as a sum of rows, one for each bit.
+/// A product with a factor of at most this number of bits is written out as a sum of rows, one for each bit.
 const ROWS: u32 = 8;
 
-/// The largest number of words of a memory whose contents are written out word by word.
+/// The contents of a memory of at most this number of words are written out word by word.
 const WORDS: usize = 16;
 
-/// Returns arithmetic facts about the products and memory words on which the terms `roots` depend. Each fact is a term of one
-/// bit that is always 1. If `parts` is set, the facts also say that a product is the sum of the products of a factor's parts.
-/// These facts add new products.
+/// Returns facts about the products and memory words on which the terms `roots` depend. Each fact is a term of one bit that is
+/// always 1. If `parts` is set, the facts also say that a product is the sum of the products of a factor's parts, which are
+/// new products.
 pub fn about(
     terms: &mut VectorTerms,
     roots: &[VectorTermId],
@@ -84,8 +83,8 @@ fn by_one_or_none(
     })
 }
 
-/// Finds products that a design computes as a sum of partial products, among the terms on which `roots` depend. Returns each
-/// product with the term of its sum. The map is empty if no product is computed in this way.
+/// Finds products that a design computes as a sum of partial products, each with the term of its sum. The search covers the
+/// terms on which `roots` depend.
 pub fn divided(
     terms: &mut VectorTerms,
     roots: impl IntoIterator<Item = VectorTermId>,
@@ -108,7 +107,7 @@ pub fn divided(
 }
 
 /// Returns the narrower term that `factor` extends, and whether the extension copies the sign bit (`true`) or adds zeros
-/// (`false`). Returns `None` if `factor` is no extension.
+/// (`false`).
 pub fn extended(terms: &VectorTerms, factor: VectorTermId) -> Option<(VectorTermId, bool)> {
     match *terms.term(factor) {
         VectorTerm::SignExtend(bits) => Some((bits, true)),
@@ -117,17 +116,16 @@ pub fn extended(terms: &VectorTerms, factor: VectorTermId) -> Option<(VectorTerm
     }
 }
 
-/// A product, and a sum of partial products that equals it.
 struct ProductSum {
     product: VectorTermId,
     sum: VectorTermId,
-    /// Whether the terms already contain the product of the lower part, so the design computes the product in these parts.
+    /// Whether the design computes the product in these parts: the terms already contain the product of the lower part.
     there: bool,
 }
 
-/// Returns a sum of partial products if `factor` is the upper bits of a larger term, and `None` otherwise. The larger term
-/// times `other` is the product of `factor` and `other`, shifted, plus the product of the lower bits and `other`. For example,
-/// if u is the bits from 4 up of w, then w·x is 16·(u·x) plus the lowest 4 bits of w times x.
+/// Returns a sum of partial products if `factor` is the upper bits of a larger term. The larger term times `other` is the
+/// product of `factor` and `other`, shifted, plus the product of the lower bits and `other`. For example, if u is the bits
+/// from 4 up of w, then w·x is 16·(u·x) plus the lowest 4 bits of w times x.
 fn in_parts(
     terms: &mut VectorTerms,
     factor: VectorTermId,
@@ -162,9 +160,8 @@ fn in_parts(
     Some(ProductSum { product, sum, there })
 }
 
-/// Returns the square of `u·2^r + l` as a sum, if the terms contain the product of `l` and `u·2^(r+1) + l`, and `None`
-/// otherwise. The sum is this product plus the square of u, shifted by 2r. For example, 13² with u = 3, l = 1 and r = 2 is 1·25
-/// plus 9·16.
+/// Returns the square of `u·2^r + l` as a sum, if the terms contain the product of `l` and `u·2^(r+1) + l`. The sum is this
+/// product plus the square of u, shifted by 2r. For example, 13² with u = 3, l = 1 and r = 2 is 1·25 plus 9·16.
 fn square_in_parts(
     terms: &mut VectorTerms,
     factor: VectorTermId,
@@ -198,9 +195,8 @@ fn square_in_parts(
     Some(ProductSum { product, sum, there: true })
 }
 
-/// Returns the larger term whose upper bits are `bits`, and the number of its bits below `bits`. Returns `None` if `bits` is no
-/// slice above bit 0 of a larger term. For example, if `bits` is bits 4 to 7 of a term, the result is the term's bits 0 to 7,
-/// and 4.
+/// Returns the larger term whose upper bits are `bits`, and the number of its bits below `bits`. For example, if `bits` is
+/// bits 4 to 7 of a term, the result is the term's bits 0 to 7, and 4.
 fn whole(terms: &mut VectorTerms, bits: VectorTermId) -> Option<(VectorTermId, u32)> {
     match *terms.term(bits) {
         VectorTerm::Slice { of, low } if low > 0 => {
@@ -215,8 +211,8 @@ fn whole(terms: &mut VectorTerms, bits: VectorTermId) -> Option<(VectorTermId, u
     }
 }
 
-/// Returns whether the terms contain the first partial product of `bits` and `other`: `other` if the lowest bit of `bits` is 1,
-/// and otherwise 0. If so, the design multiplies `bits` by `other` with adders.
+/// Returns whether the terms contain the first partial product of `bits` and `other`: `other` if the lowest bit of `bits` is
+/// 1, and otherwise 0. If so, the design multiplies `bits` by `other` with adders.
 fn has_row(terms: &mut VectorTerms, bits: VectorTermId, other: VectorTermId) -> bool {
     let narrow = match *terms.term(other) {
         VectorTerm::SignExtend(narrow) => narrow,
@@ -229,7 +225,7 @@ fn has_row(terms: &mut VectorTerms, bits: VectorTermId, other: VectorTermId) -> 
         || terms.has(&VectorTerm::And(narrow, all), width)
 }
 
-/// Returns the product of the few bits `bits` and the 64-bit term `other`, as a sum of rows, one for each bit.
+/// Returns the product of `bits` and the 64-bit term `other` as a sum of rows, one for each bit.
 fn rows(terms: &mut VectorTerms, bits: VectorTermId, other: VectorTermId) -> VectorTermId {
     let zero = terms.constant(0, MAX_WIDTH);
     let mut sum = zero;
@@ -242,7 +238,7 @@ fn rows(terms: &mut VectorTerms, bits: VectorTermId, other: VectorTermId) -> Vec
     sum
 }
 
-/// Shifts a term left by `by` bits, with zeros below. The result has 64 bits.
+/// The result has 64 bits.
 pub fn shifted(terms: &mut VectorTerms, id: VectorTermId, by: u32) -> VectorTermId {
     if by == 0 {
         return id;
@@ -251,9 +247,9 @@ pub fn shifted(terms: &mut VectorTerms, id: VectorTermId, by: u32) -> VectorTerm
     terms.make(VectorTerm::Join(kept, zeros), MAX_WIDTH)
 }
 
-/// Returns the interval that contains a factor of 64 bits, a two's complement number, because of the width of the term that the
-/// factor extends. For example, a term of 8 bits with zeros above it is at most 255. The ranges of a design can be wider: a
-/// multiplier that several products share has the ranges of all its factors.
+/// Returns the interval of a factor of 64 bits that follows from the width of the term that it extends. For example, a term of
+/// 8 bits with zeros above it is at most 255. The ranges of a design can be wider: a multiplier that several products share
+/// has the ranges of all its factors.
 fn range_by_width(terms: &VectorTerms, factor: VectorTermId) -> Interval {
     match extended(terms, factor) {
         Some((bits, true)) => {
@@ -268,9 +264,8 @@ fn range_by_width(terms: &VectorTerms, factor: VectorTermId) -> Interval {
     }
 }
 
-/// Returns the fact that a product lies in the product of its factors' ranges if both factors lie in their ranges. For example,
-/// factors within 0 to 3 and 0 to 5 have a product within 0 to 15. Returns `None` if an end of a range does not fit into 64
-/// bits.
+/// Returns the fact that a product lies in the product of its factors' ranges if both factors lie in their ranges. The ends
+/// must fit into 64 bits.
 fn within(terms: &mut VectorTerms, product: &Product) -> Option<VectorTermId> {
     let [a, b] = product.factors;
     let [x, y] = product.ranges;
@@ -284,8 +279,8 @@ fn within(terms: &mut VectorTerms, product: &Product) -> Option<VectorTermId> {
     Some(terms.make(VectorTerm::Or(not, conclusion), 1))
 }
 
-/// Returns a one-bit term that is 1 if `value`, a two's complement number of 64 bits, lies in an interval. Returns `None` if
-/// the ends of the interval do not fit into 64 bits.
+/// Returns a one-bit term that is 1 if `value`, a two's complement number of 64 bits, lies in an interval. The ends must fit
+/// into 64 bits.
 fn between(terms: &mut VectorTerms, value: VectorTermId, range: Interval) -> Option<VectorTermId> {
     let low = i64::try_from(range.0).ok()?;
     let high = i64::try_from(range.1).ok()?;
@@ -297,8 +292,8 @@ fn between(terms: &mut VectorTerms, value: VectorTermId, range: Interval) -> Opt
     Some(terms.not(outside))
 }
 
-/// Returns facts about the value of a memory word. For a memory of at most 16 words, they give the value at each address. For a
-/// larger one, they name the bits that are 0 in all words, and the interval that contains all words.
+/// For a small memory, the facts about the word give its value at each address. For a large one, they give the bits that are 0
+/// in all words, and the interval that contains all words.
 fn contents(
     terms: &mut VectorTerms,
     word: VectorTermId,

@@ -42,55 +42,46 @@ pub use text::{TextProof, TextVerdict, compare_text};
 /// The number of random points at which both designs are compared before anything is proved.
 const TRIALS: usize = 400;
 
-/// The largest number of clocks for which the sequential core is executed symbolically. If a computation takes more clocks,
-/// [`compare`] fails.
+/// If a computation of the sequential core takes more clocks, [`compare`] fails.
 const MOST_CLOCKS: usize = 8192;
 
-/// The verdict on whether a pipeline computes the same as its sequential core.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// Every output is the same for every point.
     Equal(EqualityProof),
-    /// An output differs for some point, which is stated.
+    /// An output differs for the stated point.
     Different(OutputDifference),
     /// The solver does not decide the question, and no point with a different output was found.
     Open(Open),
 }
 
-/// The reason why the solver does not decide a question.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Open {
-    /// The solver answers `unknown`. Or it answers with a counterexample, but no simulated point shows a difference: the
-    /// counterexample assumes values of products and memory words that no point has.
+    /// The solver answers `unknown`. Or it answers with a counterexample that no simulated point confirms: the counterexample
+    /// assumes values of products and memory words that no point has.
     Unknown,
-    /// The solver reached its time limit.
     Limit,
 }
 
-/// The size of a proof that a pipeline equals its sequential core: the numbers of outputs, checkpoints, paths, products and
-/// questions.
+/// The size of a proof that a pipeline equals its sequential core.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct EqualityProof {
-    /// The number of outputs that are proved equal.
     pub outputs: usize,
     /// The number of checkpoints that are proved equal, over all paths through the microprogram.
     pub registers: usize,
-    /// The number of paths through the microprogram that the operands can select. For example, a jump that depends on an operand
-    /// makes two paths.
+    /// The number of paths through the microprogram that the operands can select. For example, a jump that depends on an
+    /// operand makes two paths.
     pub ways: usize,
-    /// The number of products that are uninterpreted functions for the solver.
     pub products: usize,
-    /// The number of questions to the solver. Other equalities need no question, because both sides are the same term.
+    /// The number of questions to the solver. Other equalities need none, because both sides are the same term.
     pub questions: usize,
 }
 
-/// A point for which the cores compute different outputs. For example, as text: "`red_out` is 0x1f in the pipeline and
-/// 0x20 in the sequential core for cos_gamma=0x3ff".
+/// A point for which the cores compute different outputs. For example, as text: "`red_out` is 0x1f in the pipeline and 0x20 in
+/// the sequential core for cos_gamma=0x3ff".
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OutputDifference {
     /// The bit patterns of the operands, by name.
     pub operands: Vec<(String, u64)>,
-    /// The name of the output that differs.
     pub output: String,
     /// The bit pattern that the sequential core computes.
     pub sequential: u64,
@@ -112,9 +103,9 @@ impl fmt::Display for OutputDifference {
     }
 }
 
-/// Proves that a pipeline computes the same outputs as its sequential core, or finds a point for which an output differs, or
-/// leaves the question open if the solver does not decide it. The designs are simulated at 400 random points before the solver
-/// is asked. `limit` is the time limit of all answers of the solver together.
+/// Proves that a pipeline computes the same outputs as its sequential core, or finds a point for which an output differs. The
+/// designs are simulated at 400 random points before the solver is asked. `limit` is the time limit of all answers of the
+/// solver together.
 ///
 /// # Errors
 /// Fails if `pipeline` is no pipeline, if the designs have different operands, or if the core lacks an output of the pipeline.
@@ -134,9 +125,8 @@ pub fn compare(
     PipelineComparison::new(&pair, solver, limit)?.run()
 }
 
-/// Simulates both designs at 400 random points, and returns the first difference, or `None` if all outputs are equal at these
-/// points. Fails if a design cannot be simulated to a result. If `near`, the bit patterns of one point's operands, is given,
-/// each operand of a random point takes its value in `near` with a probability of one half.
+/// Simulates both designs at 400 random points, and returns the first difference. If `near`, the bit patterns of one point's
+/// operands, is given, each operand takes its value there with a probability of one half.
 fn tried(pair: &DesignPair<'_>, near: Option<&[u64]>) -> Result<Option<OutputDifference>> {
     let mut random = ChaCha8Rng::seed_from_u64(1);
     for _ in 0..TRIALS {
@@ -154,8 +144,8 @@ fn tried(pair: &DesignPair<'_>, near: Option<&[u64]>) -> Result<Option<OutputDif
     Ok(None)
 }
 
-/// Returns a random bit pattern. One in four is any pattern of 64 bits. The others are a power of two up to 2^23, plus or minus
-/// a random number, because the value 1.0 of an operand is a power of two, too.
+/// One pattern in four has any 64 bits. The others are a power of two up to 2^23, plus or minus a random number, because the
+/// value 1.0 of an operand is a power of two, too.
 fn drawn(random: &mut ChaCha8Rng) -> u64 {
     let bits = random.next_u64();
     let power = 1u64 << (random.next_u32() % 24);
@@ -167,8 +157,8 @@ fn drawn(random: &mut ChaCha8Rng) -> u64 {
     }
 }
 
-/// Returns the first output that differs between the designs at a point, or `None` if all are equal. `operands` are bit
-/// patterns; bits above the width of an operand are dropped. Fails if a design cannot be simulated to a result.
+/// Returns the first output that differs at a point. `operands` are bit patterns; bits above the width of an operand are
+/// dropped.
 fn differs(pair: &DesignPair<'_>, operands: &[u64]) -> Result<Option<OutputDifference>> {
     let mut masked: Vec<u64> = Vec::new();
     for (name, bits) in pair.operands.iter().zip(operands) {
@@ -192,12 +182,12 @@ fn differs(pair: &DesignPair<'_>, operands: &[u64]) -> Result<Option<OutputDiffe
     Ok(None)
 }
 
-/// The state of the sequential core on one path through the microprogram, up to a clock of the symbolic execution.
+/// The sequential core on one path through the microprogram.
 struct MicroprogramPath {
     /// The one-bit terms that decided the path at its jumps, each with the value that leads along this path.
     conditions: Vec<(VectorTermId, bool)>,
     state: SymbolicState,
-    /// For each microinstruction, the number of times that it was executed.
+    /// For each microinstruction, the number of its executions.
     visits: Vec<usize>,
     clocks: usize,
 }
@@ -212,12 +202,11 @@ struct PipelineComparison<'p> {
     divided: HashMap<VectorTermId, VectorTermId>,
     /// The products that the pipeline computes, as a whole or in parts, in ascending order.
     parts: Vec<VectorTermId>,
-    /// The terms of the operands of the point, which are unknowns.
+    /// The operands of the point, which are unknowns.
     operands: Vec<VectorTermId>,
     proof: EqualityProof,
 }
 
-/// The answer to the question whether two terms are equal.
 enum EqualityAnswer {
     Equal,
     Different(OutputDifference),
@@ -266,8 +255,8 @@ impl<'p> PipelineComparison<'p> {
         Ok(Verdict::Equal(self.proof))
     }
 
-    /// Returns the term of every net of the pipeline in each clock, as an entry for each clock with a term for each net. Entry
-    /// 0 is the clock in which the pipeline takes the point. Fails if the pipeline does not show the results after its latency.
+    /// Returns the term of every net of the pipeline in each clock. Entry 0 is the clock in which the pipeline takes the
+    /// point.
     fn pipeline(&mut self) -> Result<Vec<Vec<VectorTermId>>> {
         let pair = self.pair;
         let execution = Execution::new(&mut self.terms, pair.pipeline);
@@ -332,7 +321,7 @@ impl<'p> PipelineComparison<'p> {
         )
     }
 
-    /// Returns the path of the core after the clock in which it takes `start` and all operands.
+    /// Begins the path of the core with the clock in which it takes `start` and all operands.
     fn start(&mut self, core: &Execution<'_>) -> MicroprogramPath {
         let mut state = core.power_up(&mut self.terms);
         for point in [false, true] {
@@ -353,10 +342,9 @@ impl<'p> PipelineComparison<'p> {
         MicroprogramPath { conditions: Vec::new(), state, visits, clocks: 0 }
     }
 
-    /// Executes the microprogram along one path, until the results are shown or a jump depends on operands. If the results are
-    /// shown, the function compares them. At such a jump, it adds the paths that continue to `ways`. For example, a loop whose
-    /// trip count depends on an operand makes a path for each trip count. Fails if the core shows no result within 8192 clocks,
-    /// or if operands decide about `valid` within a microinstruction.
+    /// Executes the microprogram along one path, until the function can compare the results, or until a jump depends on
+    /// operands. At such a jump, it adds the paths that continue to `ways`. For example, a loop whose trip count depends on an
+    /// operand makes a path for each trip count.
     fn follow(
         &mut self,
         core: &Execution<'_>,
@@ -398,9 +386,9 @@ impl<'p> PipelineComparison<'p> {
         bail!("the sequential core shows no result")
     }
 
-    /// Splits a path at a register of the sequencer whose value depends on operands, and adds both continuations to `ways`. A
-    /// continuation that the solver proves impossible is left out. Returns always `Equal`: the continuations are compared
-    /// later. Fails if the value is neither one bit nor a choice between two values.
+    /// Splits a path at a register of the sequencer whose value depends on operands. Adds both continuations to `ways`, unless
+    /// the solver proves one impossible. Returns always `Equal`: the continuations are compared later. The value must be one
+    /// bit or a choice between two values.
     fn fork(
         &mut self,
         way: MicroprogramPath,
@@ -436,10 +424,9 @@ impl<'p> PipelineComparison<'p> {
         holding
     }
 
-    /// Proves the checkpoints of microinstruction number `address`. A checkpoint states that a register of the core equals a
-    /// net of the pipeline when this microinstruction begins. Each register that is proved equal takes the pipeline's term. A
-    /// checkpoint that the solver does not decide is skipped. Returns `Different` for a real difference in an output, and
-    /// otherwise `Equal`, which does not say that every checkpoint holds. Fails if the solver cannot be run.
+    /// Proves the checkpoints of microinstruction number `address`: a register of the core equals a net of the pipeline when
+    /// this microinstruction begins. Each register that is proved equal takes the pipeline's term. Others are skipped. Returns
+    /// `Different` for a real difference in an output, and otherwise `Equal`, which does not say that every checkpoint holds.
     fn lemmas(
         &mut self,
         core: &Execution<'_>,
@@ -492,15 +479,13 @@ impl<'p> PipelineComparison<'p> {
         Ok(EqualityAnswer::Equal)
     }
 
-    /// Returns the terms of the pipeline's outputs in the clock in which the results of the point are shown.
     fn results_of(&self, stages: &[Vec<VectorTermId>]) -> Vec<VectorTermId> {
         let last = &stages[self.pair.latency];
         self.pair.outputs.iter().map(|&(_, net, _)| last[net.index()]).collect()
     }
 
-    /// Finds the products that the pipeline computes in parts, and stores the sum of the parts of each in `divided`. If a net
-    /// of the pipeline provably has the low bits of such a sum, the term of this net replaces these low bits. Fails if the
-    /// solver cannot be run.
+    /// Finds the products that the pipeline computes in parts, and stores their sums in `divided`. If a net of the pipeline
+    /// provably has the low bits of such a sum, its term replaces these low bits.
     fn divide(&mut self, stages: &[Vec<VectorTermId>]) -> Result<()> {
         let mut roots = self.results_of(stages);
         if let Some(pipeline) = &self.pair.pipeline.pipeline {
@@ -554,7 +539,7 @@ impl<'p> PipelineComparison<'p> {
 
     /// Asks the solver whether the one-bit terms `wanted` can all be 1. The first question has the sums in `divided` in place
     /// of products. If its answer is not "never", a second question has the original products and all facts about partial
-    /// products. Fails if the solver cannot be run.
+    /// products.
     fn ask(&mut self, wanted: Vec<VectorTermId>) -> Result<SolverAnswer> {
         self.divide_by_lowest(&wanted)?;
         let mut divided = wanted.clone();

@@ -25,8 +25,7 @@ enum What {
     Read(Read),
 }
 
-/// A read port of a memory in a flat Verilog module: the index of the memory in [`Module::memories`], and the number of the
-/// port.
+/// A read port: the index of the memory in [`Module::memories`], and the number of the port.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Read {
     pub memory: usize,
@@ -44,9 +43,8 @@ struct ModuleRegister {
     output: Connection,
 }
 
-/// A memory that a flat Verilog module writes, such as the memory of a delay line.
+/// A memory that the module writes, such as the memory of a delay line.
 pub struct Memory {
-    /// The read ports of the memory.
     pub reads: Vec<Read>,
     width: usize,
     addresses: Vec<Connection>,
@@ -59,7 +57,6 @@ struct Write {
     enable: Connection,
 }
 
-/// A flat Verilog module, as Yosys has read it.
 pub struct Module {
     inputs: Vec<(String, Connection)>,
     outputs: Vec<(String, Connection)>,
@@ -70,8 +67,7 @@ pub struct Module {
     wires: usize,
 }
 
-/// The symbolic values of all registers of a flat Verilog module. Each register has a list of terms of at most 64 bits, the
-/// lowest bits first.
+/// The symbolic values of all registers: terms of at most 64 bits, the lowest bits first.
 pub type RegisterContents = Vec<Vec<VectorTermId>>;
 
 fn bits(value: &Value) -> Result<Connection> {
@@ -89,8 +85,7 @@ fn bits(value: &Value) -> Result<Connection> {
     Ok(bits)
 }
 
-/// Returns a parameter of a cell as a number. Yosys writes parameters in binary. For example, `00000101` is 5. Fails if the
-/// parameter is missing or is no number.
+/// Yosys writes the parameters of a cell in binary. For example, `00000101` is 5.
 fn parameter(cell: &Value, name: &str) -> Result<usize> {
     let value = &cell["parameters"][name];
     if let Some(text) = value.as_str()
@@ -102,12 +97,11 @@ fn parameter(cell: &Value, name: &str) -> Result<usize> {
     Ok(number as usize)
 }
 
-/// Returns the bits at a port of a cell. Fails if the cell lacks the port.
 fn connection(cell: &Value, port: &str) -> Result<Connection> {
     bits(&cell["connections"][port])
 }
 
-/// Returns the bits at a port of a cell; no bits if the cell lacks the port. Fails if the list of bits is malformed.
+/// Returns no bits if the cell lacks the port.
 fn optional_connection(cell: &Value, port: &str) -> Result<Connection> {
     match &cell["connections"][port] {
         Value::Null => Ok(Connection::new()),
@@ -115,15 +109,12 @@ fn optional_connection(cell: &Value, port: &str) -> Result<Connection> {
     }
 }
 
-/// Returns the bits of port number `port`. A memory lists the bits of all its ports side by side, `width` bits for each.
+/// A memory lists the bits of all its ports side by side, `width` bits for each.
 fn port_bits(side_by_side: &Connection, port: usize, width: usize) -> Connection {
     side_by_side[port * width..(port + 1) * width].to_vec()
 }
 
 impl Module {
-    /// Parses a module from Yosys's JSON.
-    ///
-    /// # Errors
     /// Fails if the netlist is malformed or has no input `clk`, or if a register or memory does not change at the rising edge
     /// of `clk` only. Fails also if a memory has clocked read ports, several write ports or a first address other than 0, if a
     /// memory that is never written has undetermined or too wide words, or if the cells form a combinational loop.
@@ -245,7 +236,6 @@ impl Module {
         Ok(())
     }
 
-    /// Returns all connections of ports, registers, cells and memories.
     fn connections(&self) -> Vec<&Connection> {
         let mut connections = Vec::new();
         for register in &self.registers {
@@ -265,7 +255,7 @@ impl Module {
         connections
     }
 
-    /// Sorts the cells so that each comes after the cells whose output it reads. Fails if there is a combinational loop.
+    /// Sorts the cells so that each comes after the cells whose output it reads. Fails for a combinational loop.
     fn order(&mut self) -> Result<()> {
         let mut wires = 0;
         for bit in self.connections().into_iter().flatten() {
@@ -316,13 +306,13 @@ impl Module {
         Ok(())
     }
 
-    /// Returns the contents of the registers at power-up. All of them are unknown, so the proof holds for every initial state.
+    /// All registers are unknown at power-up, so the proof holds for every initial state.
     pub fn power_up(&self, terms: &mut VectorTerms) -> RegisterContents {
         self.registers.iter().map(|it| unknown(terms, it.output.len())).collect()
     }
 
-    /// Returns the value of every wire of the module in one clock, given the inputs, the registers and the words at the read
-    /// ports of memories.
+    /// Returns the value of every wire in one clock, given the inputs, the registers and the words at the read ports of
+    /// memories.
     ///
     /// # Errors
     /// Fails if an input port is wider than 64 bits, or if [`WireValues::cell`] fails for a cell.
@@ -358,12 +348,11 @@ impl Module {
         Ok(values)
     }
 
-    /// Returns the values of the registers after a rising edge of the clock.
     pub fn edge(&self, terms: &mut VectorTerms, values: &WireValues) -> RegisterContents {
         self.registers.iter().map(|it| values.columns(terms, &it.data)).collect()
     }
 
-    /// Returns the symbolic values of the module's outputs, by the names of the ports.
+    /// Returns the outputs by the names of the ports.
     pub fn shown(
         &self,
         terms: &mut VectorTerms,
@@ -377,8 +366,8 @@ impl Module {
     }
 }
 
-/// Returns the index of the first cell that drives an input of `cell` and has no position in the order yet, or `None` if all
-/// have one. A cell without a position has the position 0.
+/// Returns the index of the first cell that drives an input of `cell` and has no position in the order yet, which is position
+/// 0.
 fn unplaced_driver(cell: &ModuleCell, driver: &[Option<usize>], place: &[usize]) -> Option<usize> {
     for bit in cell.inputs.iter().flatten() {
         if let Bit::Wire(wire) = *bit
@@ -392,12 +381,12 @@ fn unplaced_driver(cell: &ModuleCell, driver: &[Option<usize>], place: &[usize])
 }
 
 impl Memory {
-    /// Returns a new unknown word of the memory's width, for a read whose result is not known.
+    /// Returns a new unknown word, for a read whose result is not known.
     pub fn any(&self, terms: &mut VectorTerms) -> Vec<VectorTermId> {
         unknown(terms, self.width)
     }
 
-    /// Returns the data at the write port of the memory, as terms of at most 64 bits, the lowest bits first.
+    /// Returns the data at the write port, as terms of at most 64 bits, the lowest bits first.
     pub fn written(&self, terms: &mut VectorTerms, values: &WireValues) -> Vec<VectorTermId> {
         values.columns(terms, &self.write.data)
     }
@@ -415,7 +404,7 @@ impl Memory {
     }
 }
 
-/// Returns new unknowns with `width` bits in total, the lowest bits first, each of at most 64 bits.
+/// Returns unknowns with `width` bits in total, the lowest bits first, each of at most 64 bits.
 fn unknown(terms: &mut VectorTerms, width: usize) -> Vec<VectorTermId> {
     let mut columns = Vec::new();
     for lowest in (0..width).step_by(MAX_WIDTH as usize) {
@@ -426,8 +415,7 @@ fn unknown(terms: &mut VectorTerms, width: usize) -> Vec<VectorTermId> {
 }
 
 /// Returns the contents of a memory that is never written. The last digits of the parameter `INIT` are word 0. For example,
-/// `1101` with words of 2 bits has word 0 = 1 and word 1 = 3. Fails if a word is wider than 64 bits or has undetermined bits,
-/// or if the number of words is wrong.
+/// `1101` with words of 2 bits has word 0 = 1 and word 1 = 3.
 fn words(cell: &Value, width: usize) -> Result<Vec<u64>> {
     let contents = cell["parameters"]["INIT"].as_str().unwrap_or_default();
     ensure!(width <= MAX_WIDTH as usize, "the memory words have more than 64 bits");

@@ -1,7 +1,6 @@
 //! Simulates a pipeline and its sequential core for one point (one set of operands), with numbers instead of symbolic terms.
 //!
-//! [`DesignPair`] pairs the operands and outputs of both designs by name, and returns the outputs of each. The parent module
-//! draws the points and compares the outputs. It does so before it asks the SMT solver.
+//! The parent module draws the points and compares the outputs before it asks the SMT solver.
 
 use anyhow::{Context, Result, bail};
 
@@ -12,7 +11,6 @@ use glint_rtl::netlist::{Design, Interpreter, NetId, Role};
 pub struct DesignPair<'a> {
     pub sequential: &'a Design,
     pub pipeline: &'a Design,
-    /// The names of the operands that both designs have.
     pub operands: Vec<String>,
     /// The name of each output of the pipeline, with its net in the pipeline and in the core.
     pub outputs: Vec<(String, NetId, NetId)>,
@@ -21,9 +19,6 @@ pub struct DesignPair<'a> {
 }
 
 impl<'a> DesignPair<'a> {
-    /// Pairs the ports of both designs by their names.
-    ///
-    /// # Errors
     /// Fails if `pipeline` is no pipeline, if the designs have different operands, or if the core lacks an output of the
     /// pipeline.
     pub fn new(sequential: &'a Design, pipeline: &'a Design) -> Result<Self> {
@@ -66,9 +61,8 @@ impl<'a> DesignPair<'a> {
         })
     }
 
-    /// Simulates both designs for one point. `operands` are the bit patterns of the operands, in the order of the field
-    /// `operands`. Returns the bit patterns of the outputs, in the order of the field `outputs`: first of the sequential core,
-    /// then of the pipeline. For example, `[[31, 7], [31, 7]]` are two outputs that are equal.
+    /// Simulates both designs for one point, with the bit patterns of the field `operands`. Returns the bit patterns of the
+    /// field `outputs`: first of the sequential core, then of the pipeline.
     ///
     /// # Errors
     /// Fails if the sequential core shows no result within 8192 clocks, or if a design has a combinational loop.
@@ -107,9 +101,8 @@ impl<'a> DesignPair<'a> {
         Ok(self.outputs.iter().map(|&(_, net, _)| core.value(net)).collect())
     }
 
-    /// Returns the values of a design's inputs in one clock, in the order of the ports. `now` is the value of `start`,
-    /// `in_valid` and the strobes: 1 in the clock that takes the point. `out_ready` is always 1, and an input without a known
-    /// role is 0.
+    /// Returns the values of a design's inputs in one clock. `now` is the value of `start`, `in_valid` and the strobes: 1 in
+    /// the clock that takes the point. `out_ready` is always 1, and an input without a known role is 0.
     fn inputs(&self, design: &Design, operands: &[u64], rst_n: u64, now: u64) -> Vec<u64> {
         let mut inputs = Vec::new();
         for port in design.inputs() {

@@ -18,26 +18,23 @@ use glint_tools::{LimitReached, Tool};
 
 /// The solver's answer to the question whether some terms can all be 1.
 pub enum SolverAnswer {
-    /// The terms are never all 1.
     Unsatisfiable,
     /// The terms are all 1 for these values of the unknowns. The values of products and memory words behind them may be
     /// impossible in hardware, because the solver treats them as uninterpreted functions.
     Satisfiable(Vec<(VectorTermId, u64)>),
-    /// The solver does not decide the question, for this reason.
     Undecided(Open),
 }
 
-/// An SMT solver, with a directory for its files, and with the end of the time that all its answers together may take.
+/// An SMT solver, with a directory for its files. All its answers together may take until `end`.
 pub struct Solver<'a> {
     tool: &'a Tool,
     end: Instant,
     pub dir: Directory,
-    /// The number of questions so far.
     pub asked: usize,
 }
 
 impl<'a> Solver<'a> {
-    /// Makes a directory for the solver's files. `limit` is the time limit of all answers together.
+    /// `limit` is the time limit of all answers together.
     ///
     /// # Errors
     /// Fails if no temporary directory can be made.
@@ -46,9 +43,9 @@ impl<'a> Solver<'a> {
         Ok(Self { tool, end: Instant::now() + limit, dir, asked: 0 })
     }
 
-    /// Asks the SMT solver whether all `wanted` terms, of one bit each, can be 1 at once. The question contains arithmetic
-    /// facts about the products; if `parts` is set, also the facts about their partial products. The answer is
-    /// [`SolverAnswer::Undecided`] if the solver says `unknown` or the time is over.
+    /// Asks whether all `wanted` terms, of one bit each, can be 1 at once. The question contains arithmetic facts about the
+    /// products; if `parts` is set, also the facts about their partial products. The answer is [`SolverAnswer::Undecided`] if
+    /// the solver says `unknown` or the time is over.
     ///
     /// # Errors
     /// Fails if the solver cannot be run, or if its output is not `sat`, `unsat` or `unknown`.
@@ -85,8 +82,8 @@ fn name(id: VectorTermId) -> String {
     format!("t{}", id.number())
 }
 
-/// Returns the question as SMT-LIB 2, in the logic `QF_UFBV`: whether all `facts` and all `wanted` terms can be 1. The solver
-/// also prints the values of the unknowns.
+/// Returns the question in the logic `QF_UFBV`: whether all `facts` and all `wanted` terms can be 1. The solver also prints
+/// the values of the unknowns.
 fn script(terms: &VectorTerms, wanted: &[VectorTermId], facts: &[VectorTermId]) -> String {
     let cone = terms.cone(wanted.iter().chain(facts).copied());
     let mut text = String::from(
@@ -166,8 +163,7 @@ fn expression(terms: &VectorTerms, id: VectorTermId) -> String {
     }
 }
 
-/// Returns the values of the unknowns in the solver's output. For example, `((t1 #x0f) (t2 #b1))` gives 15 to term 1, and 1 to
-/// term 2.
+/// Reads the values of the unknowns. For example, `((t1 #x0f) (t2 #b1))` gives 15 to term 1, and 1 to term 2.
 fn values(terms: &VectorTerms, output: &str) -> Vec<(VectorTermId, u64)> {
     let mut words = output.split(|c: char| c.is_whitespace() || c == '(' || c == ')');
     let mut values = Vec::new();

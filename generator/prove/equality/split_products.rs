@@ -14,17 +14,15 @@ use glint_base::fixed::MAX_WIDTH;
 /// The number of sets of random values at which terms are compared.
 const SAMPLES: usize = 24;
 
-/// The values of all terms at 24 sets of random values of the unknowns. Terms with the same values may be equal, and the solver
-/// decides.
+/// The values of all terms at 24 sets of random values of the unknowns. Terms with the same values may be equal.
 pub struct Candidates {
     values: Vec<HashMap<VectorTermId, u64>>,
-    /// For each list of values, the first net that has them, after the net is extended to 64 bits by zeros or by its sign bit.
+    /// For each list of values, the first net that has them, after its extension to 64 bits by zeros or by its sign bit.
     nets: HashMap<Vec<u64>, VectorTermId>,
 }
 
 impl Candidates {
-    /// Evaluates the terms `nets` and `others`, and everything on which they depend. Only `nets` can be returned by
-    /// [`Self::of`].
+    /// Evaluates the terms `nets` and `others`, and everything on which they depend. Only `nets` can be candidates.
     pub fn new<'i>(
         terms: &VectorTerms,
         nets: &'i [VectorTermId],
@@ -45,15 +43,14 @@ impl Candidates {
         Self { values, nets: known }
     }
 
-    /// Returns a net that has the same values as a term of 64 bits, after the net is extended to 64 bits. Returns `None` if no
-    /// net has them. For example, a net of 20 bits may match after its sign is extended.
+    /// Returns a net that, extended to 64 bits, has the same values as a term of 64 bits.
     pub fn of(&self, id: VectorTermId) -> Option<VectorTermId> {
         let key: Vec<u64> = self.values.iter().map(|values| values[&id]).collect();
         self.nets.get(&key).copied()
     }
 }
 
-/// Returns whether two terms have the same width, and the same values at 24 sets of random values of the unknowns.
+/// Compares the widths, and the values at 24 sets of random values of the unknowns.
 pub fn agree(terms: &VectorTerms, one: VectorTermId, other: VectorTermId) -> bool {
     let cone = terms.cone([one, other]);
     terms.width(one) == terms.width(other)

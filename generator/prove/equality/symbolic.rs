@@ -1,23 +1,22 @@
 //! Executes a netlist clock by clock on symbolic terms: every net has an expression of unknowns in place of a number.
 //!
-//! For example, a net that adds the operands a and b has the term a + b. The caller chooses the terms of the inputs, constants
-//! or unknowns, and calls `settle` and `edge` once for each clock. The module decides nothing; the parent module compares the
-//! terms.
+//! For example, a net that adds the operands a and b has the term a + b. The caller chooses the terms of the inputs, and calls
+//! `settle` and `edge` once for each clock. The parent module compares the terms.
 
 use super::term::{ADDRESS, VectorTerm, VectorTermId, VectorTerms};
 use glint_base::fixed::MAX_WIDTH;
 use glint_base::interval::Interval;
 use glint_rtl::netlist::{Design, Driver, NetId, Op, Role};
 
-/// A product of two factors of 64 bits, and the intervals of raw values that the design states for the factors. The solver may
-/// conclude a range of the product only after it has proved that both factors lie in these intervals.
+/// A product of two factors of 64 bits, with the intervals that the design states for the factors. The solver may conclude a
+/// range of the product only after it has proved that both factors lie in these intervals.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Product {
     pub factors: [VectorTermId; 2],
     pub ranges: [Interval; 2],
 }
 
-/// The symbolic contents of a design's registers and synchronous ROM outputs between two clocks, as terms.
+/// The contents of a design's registers and synchronous ROM outputs between two clocks.
 #[derive(Clone)]
 pub struct SymbolicState {
     pub registers: Vec<VectorTermId>,
@@ -25,7 +24,6 @@ pub struct SymbolicState {
 }
 
 impl SymbolicState {
-    /// Replaces the one-bit term `condition` by the constant `value` in all terms of the state.
     pub fn assume(&mut self, terms: &mut VectorTerms, condition: VectorTermId, value: bool) {
         let mut all = [self.registers.as_slice(), &self.words].concat();
         terms.assuming(condition, value, &mut all);
@@ -53,7 +51,7 @@ impl<'a> Execution<'a> {
         }
     }
 
-    /// Returns the state at power-up, in which every register may have any value.
+    /// Every register may have any value at power-up.
     pub fn power_up(&self, terms: &mut VectorTerms) -> SymbolicState {
         let mut state = SymbolicState { registers: Vec::new(), words: Vec::new() };
         for register in &self.design.registers {
@@ -65,8 +63,8 @@ impl<'a> Execution<'a> {
         state
     }
 
-    /// Returns the term of every net, at the index of the net, for the given state. `input` gives the term of each input port.
-    /// Products that are new are added to `products`.
+    /// Returns the term of every net, at the index of the net. `input` gives the term of each input port. New products are
+    /// added to `products`.
     pub fn settle(
         &self,
         terms: &mut VectorTerms,
@@ -98,7 +96,7 @@ impl<'a> Execution<'a> {
         values
     }
 
-    /// Returns the state after a rising edge of the clock. `state` and `values`, the terms of all nets, are before the edge.
+    /// `state` and `values`, the terms of all nets, are before the rising edge.
     pub fn edge(
         &self,
         terms: &mut VectorTerms,
@@ -141,7 +139,7 @@ impl<'a> Execution<'a> {
         terms.make(VectorTerm::Word { memory: self.memories[rom], address }, width)
     }
 
-    /// Returns the result of a cell as [`Op`] documents it.
+    /// Computes the result of a cell as [`Op`] documents it.
     fn cell(
         &self,
         terms: &mut VectorTerms,
@@ -221,7 +219,7 @@ impl<'a> Execution<'a> {
         }
     }
 
-    /// Returns a net extended to `width` bits: by its sign if its format is signed, and otherwise by zeros.
+    /// Extends a net by its sign if its format is signed, and otherwise by zeros.
     fn extended(
         &self,
         terms: &mut VectorTerms,

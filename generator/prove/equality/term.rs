@@ -8,13 +8,11 @@ use std::collections::HashMap;
 use glint_base::cone;
 use glint_base::fixed::{MAX_WIDTH, mask};
 
-/// The number by which a [`VectorTerms`] identifies one of its terms. A term is a bit-vector expression: the value of a net when
-/// the operands are unknown.
+/// The number by which a [`VectorTerms`] identifies one of its terms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct VectorTermId(u32);
 
 impl VectorTermId {
-    /// Returns the number of the term in its collection.
     pub fn number(self) -> u32 {
         self.0
     }
@@ -30,23 +28,21 @@ pub enum VectorTerm {
     And(VectorTermId, VectorTermId),
     Or(VectorTermId, VectorTermId),
     Xor(VectorTermId, VectorTermId),
-    /// Sum modulo 2^width.
+    /// The sum modulo 2^width.
     Add(VectorTermId, VectorTermId),
-    /// Difference modulo 2^width.
+    /// The difference modulo 2^width.
     Sub(VectorTermId, VectorTermId),
-    /// Product modulo 2^64 of 64 bits.
+    /// The product of 64 bits, modulo 2^64.
     Product(VectorTermId, VectorTermId),
-    /// A bit that is 1 if two terms of the same width are equal.
+    /// One bit, which is 1 if two terms of the same width are equal.
     Equal(VectorTermId, VectorTermId),
-    /// A bit that is 1 if the left operand is less than the right operand, as unsigned numbers. Both have the same width.
+    /// One bit, which is 1 if the left operand is less, as unsigned numbers of the same width.
     Less(VectorTermId, VectorTermId),
-    /// A bit that is 1 if the left operand is less than the right operand, as two's complement numbers. Both have the same
-    /// width.
+    /// One bit, which is 1 if the left operand is less, as two's complement numbers of the same width.
     SignedLess(VectorTermId, VectorTermId),
-    /// A choice: if the first operand, which has one bit, is 1, the value of the second operand, and otherwise the value of the
-    /// third operand.
+    /// The second operand if the first operand, which has one bit, is 1, and otherwise the third.
     Choice(VectorTermId, VectorTermId, VectorTermId),
-    /// Bits of a term from `low` up, as many as the result has.
+    /// The bits of a term from `low` up, as many as the result has.
     Slice {
         of: VectorTermId,
         low: u32,
@@ -55,8 +51,8 @@ pub enum VectorTerm {
     Join(VectorTermId, VectorTermId),
     /// A narrower term with copies of its top bit above it.
     SignExtend(VectorTermId),
-    /// A word of a memory: `memory` is an index into [`VectorTerms::memories`]. The word is 0 for an address beyond the
-    /// contents. The address has [`ADDRESS`] bits.
+    /// A word of a memory, by its index in [`VectorTerms::memories`]. The word is 0 for an address beyond the contents. The
+    /// address has [`ADDRESS`] bits.
     Word {
         memory: usize,
         address: VectorTermId,
@@ -66,20 +62,19 @@ pub enum VectorTerm {
 /// The number of bits of a memory address.
 pub const ADDRESS: u32 = 32;
 
-/// A collection of terms. The collection stores every term once, after the term's operands.
+/// Stores every term once, after its operands.
 #[derive(Default)]
 pub struct VectorTerms {
     nodes: Vec<(VectorTerm, u32)>,
     known: HashMap<(VectorTerm, u32), VectorTermId>,
     unknowns: u32,
-    /// The contents of the memories. Equal contents are stored once.
+    /// Equal contents are stored once.
     pub memories: Vec<Vec<u64>>,
     /// For each memory and address, the unknown word that a read beyond the contents gives.
     beyond: HashMap<(usize, VectorTermId), VectorTermId>,
 }
 
 impl VectorTerm {
-    /// Returns the operands of the term, in the order in which the variant lists them.
     fn operands_mut(&mut self) -> Vec<&mut VectorTermId> {
         match self {
             Self::Unknown(_) | Self::Constant(_) => Vec::new(),
@@ -99,13 +94,12 @@ impl VectorTerm {
         }
     }
 
-    /// Returns the operands of the term, in the order in which the variant lists them.
     pub fn operands(&self) -> Vec<VectorTermId> {
         self.clone().operands_mut().into_iter().map(|id| *id).collect()
     }
 }
 
-/// Returns a bit pattern of `width` bits as a two's complement number. For example, 0b1110 of 4 bits is −2.
+/// Reads a bit pattern as a two's complement number: 0b1110 of 4 bits is −2.
 fn signed(bits: u64, width: u32) -> i64 {
     let drop = MAX_WIDTH - width;
     (bits << drop) as i64 >> drop
@@ -120,7 +114,6 @@ impl VectorTerms {
         self.nodes[id.0 as usize].1
     }
 
-    /// Returns the id of term number `number`, or `None` if there are fewer terms.
     pub fn numbered(&self, number: u32) -> Option<VectorTermId> {
         ((number as usize) < self.nodes.len()).then_some(VectorTermId(number))
     }
@@ -140,7 +133,7 @@ impl VectorTerms {
         (0..live.len()).filter(|&at| live[at]).map(|at| VectorTermId(at as u32)).collect()
     }
 
-    /// Returns the value of each term in `cone`. `unknown` gives the value of each unknown, by its number.
+    /// `unknown` gives the value of each unknown, by its number.
     pub fn values(
         &self,
         cone: &[VectorTermId],
@@ -158,7 +151,6 @@ impl VectorTerms {
         values
     }
 
-    /// Makes a new unknown with `width` bits.
     pub fn unknown(&mut self, width: u32) -> VectorTermId {
         self.unknowns += 1;
         self.insert(VectorTerm::Unknown(self.unknowns - 1), width)
@@ -168,7 +160,7 @@ impl VectorTerms {
         self.insert(VectorTerm::Constant(bits & mask(width)), width)
     }
 
-    /// Returns the number of a memory with these contents. Two memories with equal contents have the same number.
+    /// Returns the number of a memory; equal contents have the same number.
     pub fn memory(&mut self, words: &[u64]) -> usize {
         if let Some(at) = self.memories.iter().position(|other| other == words) {
             return at;
@@ -177,8 +169,7 @@ impl VectorTerms {
         self.memories.len() - 1
     }
 
-    /// Returns the term of `width` bits for a read at an address beyond the contents of a memory. The term is an unknown, and
-    /// it is the same for every read of this memory at the same address.
+    /// Returns the unknown that every read of a memory at an address beyond its contents gives.
     pub fn beyond(&mut self, memory: usize, address: VectorTermId, width: u32) -> VectorTermId {
         if let Some(&word) = self.beyond.get(&(memory, address)) {
             return word;
@@ -188,8 +179,8 @@ impl VectorTerms {
         word
     }
 
-    /// Changes a term to the width `width`, by zeros above it or by cutting high bits off. For example, the constant 0b101
-    /// becomes 0b0101 at a width of 4, and 0b01 at a width of 2.
+    /// Puts zeros above a term, or cuts high bits off. For example, the constant 0b101 becomes 0b0101 at a width of 4, and
+    /// 0b01 at a width of 2.
     pub fn resized(&mut self, id: VectorTermId, width: u32) -> VectorTermId {
         let own = self.width(id);
         if width <= own {
@@ -199,7 +190,7 @@ impl VectorTerms {
         self.make(VectorTerm::Join(zeros, id), width)
     }
 
-    /// Extends a term to the width `width` with copies of its sign bit. For example, 0b101 becomes 0b1101 at a width of 4.
+    /// Extends a term with copies of its sign bit. For example, 0b101 becomes 0b1101 at a width of 4.
     pub fn sign_extended(&mut self, id: VectorTermId, width: u32) -> VectorTermId {
         if self.width(id) == width { id } else { self.make(VectorTerm::SignExtend(id), width) }
     }
@@ -235,20 +226,19 @@ impl VectorTerms {
         self.make(VectorTerm::Choice(condition, then, otherwise), self.width(then))
     }
 
-    /// Returns whether the collection already contains this term with the width `width`.
     pub fn has(&self, term: &VectorTerm, width: u32) -> bool {
         self.known.contains_key(&(ordered(term.clone()), width))
     }
 
-    /// Replaces `condition`, a one-bit term, by the constant `value` in all of `terms`. The symbolic execution calls this
-    /// function on a path that exists only if the condition has this value.
+    /// Replaces `condition`, a one-bit term, by the constant `value` in all of `terms`, on a path that exists only if the
+    /// condition has this value.
     pub fn assuming(&mut self, condition: VectorTermId, value: bool, terms: &mut [VectorTermId]) {
         let constant = self.constant(value.into(), 1);
         self.replace(&HashMap::from([(condition, constant)]), terms);
     }
 
-    /// Replaces the terms that are keys of `by` by their values, everywhere in the expressions `terms`. The function does not
-    /// search the replacements themselves.
+    /// Replaces the keys of `by` by their values, everywhere in the expressions `terms`, but not in the replacements
+    /// themselves.
     pub fn replace(
         &mut self,
         by: &HashMap<VectorTermId, VectorTermId>,
@@ -269,8 +259,8 @@ impl VectorTerms {
         terms.iter_mut().for_each(|term| *term = new[term]);
     }
 
-    /// Returns the id of a term, after simplification. Operations on constants become constants. Terms that simple rules show
-    /// to be equal have the same id. For example, a + 0 is a.
+    /// Adds a term after simplification. Operations on constants become constants, and terms that simple rules show to be
+    /// equal have the same id: a + 0 is a.
     pub fn make(&mut self, term: VectorTerm, width: u32) -> VectorTermId {
         let constants: Option<HashMap<VectorTermId, u64>> =
             term.operands().into_iter().map(|id| Some((id, self.constant_of(id)?))).collect();
@@ -324,7 +314,6 @@ impl VectorTerms {
         bits & mask(width)
     }
 
-    /// Returns a simpler term with the same value, or `None` if no rule applies.
     fn simpler(&mut self, term: &VectorTerm, width: u32) -> Option<VectorTermId> {
         let ones = mask(width);
         match *term {
@@ -427,9 +416,8 @@ impl VectorTerms {
         }
     }
 
-    /// Returns a simpler form of `op(a, b)`, a sum or a difference, if the lowest bits of `b` are known to be 0. These bits of
-    /// the result are the bits of `a`, so only the upper bits are added or subtracted. Returns `None` if no bits or all bits of
-    /// `b` are known to be 0.
+    /// Simplifies `op(a, b)`, a sum or a difference, if the lowest bits of `b` are known to be 0. These bits of the result are
+    /// the bits of `a`, so only the upper bits are added or subtracted.
     fn passed_by(
         &mut self,
         a: VectorTermId,
@@ -448,7 +436,6 @@ impl VectorTerms {
         Some(self.make(VectorTerm::Join(upper, lower), width))
     }
 
-    /// Returns the number of lowest bits of a term that are known to be 0.
     fn zeros(&self, id: VectorTermId) -> u32 {
         match *self.term(id) {
             VectorTerm::Constant(bits) => bits.trailing_zeros().min(self.width(id)),
@@ -555,7 +542,6 @@ fn ordered(mut term: VectorTerm) -> VectorTerm {
     term
 }
 
-/// Returns the term with each operand replaced by the result of `of`.
 fn renamed(term: &VectorTerm, mut of: impl FnMut(VectorTermId) -> VectorTermId) -> VectorTerm {
     let mut term = term.clone();
     term.operands_mut().into_iter().for_each(|id| *id = of(*id));

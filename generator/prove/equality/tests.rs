@@ -8,7 +8,7 @@ use super::symbolic::Product;
 use super::term::{ADDRESS, VectorTerm, VectorTermId, VectorTerms};
 use glint_base::fixed::mask;
 
-/// Returns values for 64 unknowns. Half of them are random, and the others are 0 or all ones.
+/// Half of the values are random, and the others are 0 or all ones.
 fn unknowns(random: &mut ChaCha8Rng) -> Vec<u64> {
     let of = |random: &mut ChaCha8Rng| match random.next_u32() % 4 {
         0 => 0,
@@ -18,7 +18,6 @@ fn unknowns(random: &mut ChaCha8Rng) -> Vec<u64> {
     (0..64).map(|_| of(random)).collect()
 }
 
-/// Returns a bit pattern of `width` bits as a two's complement number.
 fn signed(bits: u64, width: u32) -> i64 {
     (bits << (64 - width)) as i64 >> (64 - width)
 }

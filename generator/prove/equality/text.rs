@@ -3,10 +3,10 @@
 //! memories, except the slot counter.
 //!
 //! Yosys has read the Verilog, and the module executes netlist and Verilog on symbolic terms, with unknown registers and
-//! memories at the beginning. [`Counters`] finds the slot counter, which counts the clocks between two points, and proves that
-//! every memory is a delay line. The module proves that a clock in which the pipeline waits for `out_ready` changes nothing,
-//! and then compares the clocks from a point to its results. A register of the Verilog that equals a net takes the net's term,
-//! so a question concerns little more than one clock.
+//! memories at the beginning. [`Counters`] finds the slot counter, and proves that every memory is a delay line. The module
+//! proves that a clock in which the pipeline waits for `out_ready` changes nothing, and then compares the clocks from a point
+//! to its results. A register of the Verilog that equals a net takes the net's term, so a question concerns little more than
+//! one clock.
 
 use std::collections::{HashMap, HashSet};
 use std::time::Duration;
@@ -25,39 +25,31 @@ use super::term::{VectorTerm, VectorTermId, VectorTerms};
 use glint_rtl::netlist::{Design, Role};
 use glint_tools::Tool;
 
-/// The verdict on whether the emitted Verilog of a pipeline equals its netlist.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum TextVerdict {
-    /// Every output is the same for every point.
     Equal(TextProof),
-    /// An output of the Verilog differs from the netlist, or a clock in which the pipeline waits changes a register or a memory
-    /// of the Verilog. The string states the difference and the values of the inputs.
+    /// An output of the Verilog differs from the netlist, or a clock in which the pipeline waits changes a register or a
+    /// memory of the Verilog. The string states the difference and the values of the inputs.
     Different(String),
-    /// The solver does not decide the question.
     Open(Open),
-    /// The Verilog contains something that this module cannot interpret, or one of its memories is no delay line. The field says
-    /// which.
+    /// The Verilog contains something that this module cannot interpret, or one of its memories is no delay line.
     Unread(String),
 }
 
-/// The size of a proof that the emitted Verilog of a pipeline equals its netlist: the numbers of outputs, registers and
-/// questions, and the delays of the memories.
+/// The size of a proof that the emitted Verilog of a pipeline equals its netlist.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct TextProof {
-    /// The number of outputs that are proved equal.
     pub outputs: usize,
     /// The number of Verilog registers that are proved equal to a net of the netlist, counted for every clock of a point.
     pub registers: usize,
-    /// For each read port of each memory that the module writes, the largest number of clocks from a write to a read.
+    /// For each read port of each written memory, the largest number of clocks from a write to a read.
     pub delays: Vec<usize>,
-    /// The number of questions to the solver. Other equalities need no question, because both sides are the same term.
+    /// The number of questions to the solver. Other equalities need none, because both sides are the same term.
     pub questions: usize,
 }
 
-/// Proves that the emitted Verilog of a pipeline equals the pipeline's netlist, or finds a difference. The verdict is
-/// [`TextVerdict::Open`] if the solver does not decide, and [`TextVerdict::Unread`] if the Verilog has a form that Glint does
-/// not understand. `text` is the JSON of [`glint_tools::elaborate`] for this Verilog. `limit` is the time limit of all answers
-/// of the solver together.
+/// Proves that the emitted Verilog of a pipeline equals the pipeline's netlist, or finds a difference. `text` is the JSON of
+/// [`glint_tools::elaborate`] for this Verilog. `limit` is the time limit of all answers of the solver together.
 ///
 /// # Errors
 /// Fails if the design is no pipeline, if the Verilog lacks an output of the netlist or has an output of another width, or if
@@ -105,9 +97,7 @@ pub fn compare_text(
 
 /// The reason why a comparison ends before every output is compared.
 enum EarlyEnd {
-    /// The verdict is known.
     Verdict(TextVerdict),
-    /// The comparison cannot be made.
     Error(anyhow::Error),
 }
 
@@ -140,8 +130,8 @@ struct TextComparison<'p> {
 }
 
 /// Returns the term of an input in clock number `clock`; the point enters in clock 0. The handshake is fixed: no reset,
-/// `out_ready` is 1, and `in_valid` is 1 in clock 0. Every other input is an unknown, and it is the same for the same `name`
-/// and `clock`.
+/// `out_ready` is 1, and `in_valid` is 1 in clock 0. Every other input is an unknown, the same for the same `name` and
+/// `clock`.
 fn input(
     terms: &mut VectorTerms,
     inputs: &mut HashMap<(String, usize), VectorTermId>,
@@ -158,12 +148,8 @@ fn input(
 }
 
 impl TextComparison<'_> {
-    /// Proves, for every value of the slot counter, that a clock in which the pipeline waits changes no register and no memory.
-    /// The slot counter counts the clocks from one point to the next. A pipeline without `out_ready` never waits, so that
-    /// nothing is proved for it.
-    ///
-    /// # Errors
-    /// Returns [`EarlyEnd`] if a clock does not have this property, if the solver does not decide, or if the proof cannot be made.
+    /// Proves, for every value of the slot counter, that a clock in which the pipeline waits changes no register and no
+    /// memory. A pipeline without `out_ready` never waits.
     fn stays(&mut self) -> Result<(), EarlyEnd> {
         let has = |role| self.roles.values().any(|it| *it == role);
         if has(Role::OutReady) {
@@ -174,7 +160,7 @@ impl TextComparison<'_> {
         Ok(())
     }
 
-    /// Returns the registers of the Verilog: constants in the slot counter, and unknowns in all others.
+    /// Returns constants in the slot counter, and unknowns in all other registers.
     fn registers_in_slot(&mut self, slot: usize) -> RegisterContents {
         let mut held = self.module.power_up(&mut self.terms);
         for (&register, &bits) in &self.counters.slots[slot] {
@@ -185,9 +171,8 @@ impl TextComparison<'_> {
     }
 
     /// Proves that a clock in the slot either moves all points or changes nothing. A clock that moves no point must change no
-    /// register and no memory. A clock that moves the points must do the same as a clock with `out_ready` = 1. With an interval
-    /// of 1, the points move if `in_ready` is 1. With a longer interval, they move if the slot counter counts. Ends early if
-    /// the solver does not prove this, or cannot be run.
+    /// register and no memory. A clock that moves the points must do the same as a clock with `out_ready` = 1. With an
+    /// interval of 1, the points move if `in_ready` is 1. With a longer interval, they move if the slot counter counts.
     fn stays_in_slot(&mut self, slot: usize) -> Result<(), EarlyEnd> {
         let module = self.module;
         let held = self.registers_in_slot(slot);
@@ -286,8 +271,7 @@ impl TextComparison<'_> {
         }
     }
 
-    /// Proves that the outputs of netlist and Verilog are the same in the clock in which the results of a point are shown. Ends
-    /// early if the solver does not prove this, or cannot be run.
+    /// Proves that netlist and Verilog have the same outputs in the clock in which the results of a point are shown.
     fn follows_a_point(&mut self) -> Result<(), EarlyEnd> {
         let nets = self.netlist()?;
         let module = self.module;
@@ -318,8 +302,8 @@ impl TextComparison<'_> {
         Ok(())
     }
 
-    /// Returns the term of every net of the netlist in each clock, from the clock in which the point enters to the one with its
-    /// results. The slot counter begins with 0. Fails if the netlist does not take the point in this slot.
+    /// Returns the term of every net of the netlist in each clock. The point enters in the first clock, and the last clock has
+    /// its results. The slot counter begins with 0; the netlist must take the point in this slot.
     fn netlist(&mut self) -> Result<Vec<Vec<VectorTermId>>> {
         let design = self.design;
         let execution = Execution::new(&mut self.terms, design);
@@ -352,8 +336,8 @@ impl TextComparison<'_> {
         Ok(nets)
     }
 
-    /// Fills `unknown_registers` for the present clock: an unknown for the term of every register of the netlist, unless the
-    /// term is a constant or an unknown already. `nets` are the terms of the nets in this clock.
+    /// Fills `unknown_registers` for the present clock, except for terms that are constants or unknowns already. `nets` are
+    /// the terms of the nets in this clock.
     fn forget_registers(&mut self, nets: &[VectorTermId]) {
         self.unknown_registers.clear();
         for register in &self.design.registers {
@@ -368,7 +352,7 @@ impl TextComparison<'_> {
     }
 
     /// Replaces the terms in registers of the Verilog by terms of nets that the solver proves equal. `nets` are the terms of
-    /// the netlist's nets in the same clock. A register without an equal net keeps its term. Fails if the solver cannot be run.
+    /// the netlist's nets in the same clock. A register without an equal net keeps its term.
     fn register(&mut self, held: &mut RegisterContents, nets: &[VectorTermId]) -> Result<()> {
         let known: HashSet<VectorTermId> = nets.iter().copied().collect();
         let cone = self.terms.cone(held.iter().flatten().chain(nets).copied());
@@ -422,11 +406,8 @@ impl TextComparison<'_> {
         Ok(())
     }
 
-    /// Proves that two terms are equal. With a `condition`, they need to be equal only if its bit has its value. For example, a
-    /// register must keep its value if `in_ready` is 0. `what` names the terms in a message.
-    ///
-    /// # Errors
-    /// Returns [`EarlyEnd`] if the widths differ, if a difference is found, or if the solver does not decide.
+    /// Proves that two terms are equal, or, with a `condition`, if its bit has its value. For example, a register must keep
+    /// its value if `in_ready` is 0. `what` names the terms in a message.
     fn must_equal(
         &mut self,
         condition: Option<(VectorTermId, bool)>,
@@ -468,7 +449,7 @@ impl TextComparison<'_> {
     /// Asks the solver whether the one-bit terms `wanted` can all be 1. The first question has unknowns in place of the
     /// registers, so that it concerns the logic of one clock alone. If these terms cannot all be 1 for any values of the
     /// registers, they cannot be 1 for the values that the registers have. The second question has these values. The third has
-    /// also the facts about partial products. Fails if the solver cannot be run.
+    /// also the facts about partial products.
     fn ask(&mut self, wanted: &[VectorTermId]) -> Result<SolverAnswer> {
         let mut of_one_clock = wanted.to_vec();
         self.terms.replace(&self.unknown_registers, &mut of_one_clock);
@@ -485,8 +466,7 @@ impl TextComparison<'_> {
     }
 
     /// Finds values of the unknowns for which all `wanted` terms are 1, and describes in words the two terms that then differ.
-    /// The function tries 24 sets of random values, and the values `found` by the solver. Returns `None` if some `wanted` term
-    /// is 0 for each of them.
+    /// The function tries 24 sets of random values, and the values `found` by the solver.
     fn difference(
         &self,
         wanted: &[VectorTermId],

@@ -2,8 +2,7 @@
 //! factors.
 //!
 //! A pipeline treats the highest bit of a factor separately if it is a sign, or if it can be set only when all other bits are
-//! 0. The core's product is then the pipeline's product plus the other factor times the highest bits. The core may contain the
-//! low bits as different terms; the solver then decides whether the terms are equal.
+//! 0. The core's product is then the pipeline's product plus the other factor times the highest bits.
 
 use anyhow::Result;
 
@@ -14,8 +13,8 @@ use super::split_products::agree;
 use super::term::{VectorTerm, VectorTermId};
 use glint_base::fixed::MAX_WIDTH;
 
-/// How a factor of the core follows from a factor of the pipeline: both are the same, or the pipeline's factor is the lowest
-/// bits of the core's factor, as many as the number says.
+/// How a factor of the core follows from a factor of the pipeline. Both are the same, or the pipeline's factor is this number
+/// of lowest bits of the core's factor.
 #[derive(Clone, Copy)]
 enum Factor {
     Same,
@@ -23,8 +22,8 @@ enum Factor {
 }
 
 impl PipelineComparison<'_> {
-    /// Finds, for each product on which `wanted` depends, a product of the pipeline from which it follows. If there is one,
-    /// stores in `divided` how the product follows from it. Fails if the solver cannot be run.
+    /// Stores in `divided`, for each product on which `wanted` depends, how it follows from a product of the pipeline, if one
+    /// is found.
     pub(super) fn divide_by_lowest(&mut self, wanted: &[VectorTermId]) -> Result<()> {
         for id in self.terms.cone(wanted.iter().copied()) {
             let VectorTerm::Product(a, b) = *self.terms.term(id) else { continue };
@@ -42,7 +41,7 @@ impl PipelineComparison<'_> {
     }
 
     /// Stores in `divided` how the product a·b follows from the pipeline's product c·d, if a follows from c and b from d.
-    /// Returns whether both do. Fails if the solver cannot be run.
+    /// Returns whether both do.
     fn by_parts(&mut self, [a, b]: [VectorTermId; 2], [c, d]: [VectorTermId; 2]) -> Result<bool> {
         let (Some(first), Some(second)) = (self.made(a, c)?, self.made(b, d)?) else {
             return Ok(false);
@@ -52,8 +51,7 @@ impl PipelineComparison<'_> {
         Ok(true)
     }
 
-    /// Returns how `factor` follows from `of`, a factor of the pipeline, or `None` if the solver does not prove that it does.
-    /// Fails if the solver cannot be run.
+    /// Returns how `factor` follows from `of`, a factor of the pipeline, if the solver proves it.
     fn made(&mut self, factor: VectorTermId, of: VectorTermId) -> Result<Option<Factor>> {
         if self.same(factor, of)? {
             return Ok(Some(Factor::Same));
@@ -64,8 +62,7 @@ impl PipelineComparison<'_> {
         Ok(self.same(low, bits)?.then_some(Factor::Lowest(width)))
     }
 
-    /// Returns whether the solver proves that two terms are equal for all operands. Terms that differ at random values are not
-    /// asked about. Fails if the solver cannot be run.
+    /// Returns whether the solver proves that two terms are equal. It is not asked about terms that differ at random values.
     fn same(&mut self, one: VectorTermId, other: VectorTermId) -> Result<bool> {
         if one == other || !agree(&self.terms, one, other) {
             return Ok(one == other);
@@ -77,9 +74,9 @@ impl PipelineComparison<'_> {
         Ok(matches!(said, SolverAnswer::Unsatisfiable))
     }
 
-    /// Stores in `divided` how the product of `factor` and `other` follows from the product of `part` and `other`. Either both
-    /// are equal, or they differ by the product of `other` and the bits of `factor` above `part`. If only the highest bit is
-    /// above, this is a product by 0, 1 or −1.
+    /// Stores how the product of `factor` and `other` follows from the product of `part` and `other`. Either both are equal,
+    /// or they differ by the product of `other` and the bits of `factor` above `part`. If only the highest bit is above, this
+    /// is a product by 0, 1 or −1.
     fn note(
         &mut self,
         factor: VectorTermId,

@@ -1,8 +1,7 @@
-//! Records at which positions of a test the simulated hardware reads each ROM word, up to six positions for a word, with the
-//! operands.
+//! Records at which positions of a test the simulated hardware reads each ROM word, with the operands.
 //!
-//! Mutation testing plants faults in ROM words. A fault in a word can only show after a read of the word, so the first check of
-//! the fault runs only the recorded parts of the test.
+//! A fault in a ROM word can only show after a read of the word. The first check of the fault therefore runs only the recorded
+//! parts of the test.
 
 use anyhow::Result;
 
@@ -14,29 +13,25 @@ use glint_rtl::sim::Simulator;
 /// The largest number of positions that are recorded for each word.
 const PLACES: usize = 6;
 
-/// Raw values of operands, by name.
 pub(super) type OperandValues = Vec<(String, i64)>;
 
-/// A position in a test: the stimulus of one simulation (a stream), and the number of results that came before the position.
-/// For example, seed 1 and 40 points are the position in the stream with seed 1 after its first 40 results.
+/// A position in a test. For example, seed 1 and 40 points are the position in the stream with seed 1 after its first 40
+/// results.
 #[derive(Clone)]
 pub(super) struct TestPlace {
-    /// The seed of the stream.
     pub(super) seed: u64,
     /// The number of results of the stream before the position.
     pub(super) points: u64,
-    /// The bit patterns in the operand registers at this position.
+    /// The bit patterns in the operand registers.
     operands: Vec<u64>,
 }
 
-/// For each ROM and each of its words, the first positions in a test at which the simulated hardware reads it; at most six.
+/// For each ROM and each of its words, the first positions in a test at which the simulated hardware reads it.
 pub(super) struct Coverage {
     places: Vec<Vec<Vec<TestPlace>>>,
-    /// The outputs of the operand registers.
     operands: Vec<NetId>,
 }
 
-/// Records the positions at which one stream reads each ROM word.
 struct PlaceWatch<'a> {
     seed: u64,
     /// For each ROM, the net of its address, and the address in the latest clock.
@@ -51,7 +46,7 @@ impl<'a> PlaceWatch<'a> {
         Self { seed, addresses, operands, places: no_places(design) }
     }
 
-    /// Records the words at new addresses in the present clock. `points` is the number of results so far.
+    /// `points` is the number of results so far.
     fn note(&mut self, points: u64, simulator: &Simulator) {
         for ((address, latest), places) in self.addresses.iter_mut().zip(&mut self.places) {
             let word = simulator.value(*address);
@@ -69,13 +64,12 @@ impl<'a> PlaceWatch<'a> {
     }
 }
 
-/// Returns an empty list of positions for each word of each ROM.
 fn no_places(design: &Design) -> Vec<Vec<Vec<TestPlace>>> {
     design.roms.iter().map(|rom| vec![Vec::new(); rom.words.len()]).collect()
 }
 
 impl Coverage {
-    /// Runs a test of `points` results on the fault-free design, and records the positions at which it reads each ROM word.
+    /// Runs a test of `points` results on the fault-free design.
     ///
     /// # Errors
     /// Fails if the design cannot be simulated.
@@ -102,13 +96,11 @@ impl Coverage {
         Ok(Self { places: all, operands })
     }
 
-    /// Returns the positions at which the test reads a ROM word; empty if the test never reads it.
     pub(super) fn places(&self, rom: RomId, word: usize) -> &[TestPlace] {
         &self.places[rom.index()][word]
     }
 
-    /// Returns, for each position at which the test reads a ROM word, the operands that were in the operand registers, as raw
-    /// values by name.
+    /// Returns the raw values in the operand registers at each position at which the test reads a ROM word.
     pub(super) fn operands(
         &self,
         design: &Design,
@@ -129,8 +121,7 @@ impl Coverage {
     }
 }
 
-/// Returns the name of the operand whose value a register holds, if it loads a port or an operand buffer, and `None` otherwise.
-/// For example, the operand register of `cos_gamma` gives the name of the port, `cos_gamma`.
+/// Returns the name of the operand whose value a register holds, if it loads a port or an operand buffer.
 pub(super) fn operand_of<'d>(design: &'d Design, register: &NetlistRegister) -> Option<&'d str> {
     let taken = cone::reached(register.data, |net| match &design.net(net).driver {
         Driver::Op(op) => op.operands(),

@@ -16,28 +16,23 @@ use glint_rtl::netlist::{Design, Driver, Net, NetId, Op, RegId, Role, RomId};
 const ALL_WORDS: usize = 32;
 const ALL_BITS: usize = 1024;
 
-/// The numbers of pairs of words, and of bits, that are drawn for larger ROMs. In addition, at most about `NEIGHBOURS` pairs of
+/// The numbers of pairs of words, and of bits, that are drawn for larger ROMs. In addition, about `NEIGHBOURS` pairs of
 /// neighbouring words are swapped.
 const SAMPLE: usize = 200;
 const SAMPLED_BITS: usize = 200;
 const NEIGHBOURS: usize = 256;
 
-/// A fault of one bit in a netlist: stuck at 0, stuck at 1, or inverted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BitChange {
-    /// The bit is always 0.
     Stuck0,
-    /// The bit is always 1.
     Stuck1,
-    /// The bit is inverted.
     Inverted,
 }
 
 impl BitChange {
-    /// All changes of a bit: stuck at 0, stuck at 1, and inverted.
     pub const ALL: [Self; 3] = [Self::Stuck0, Self::Stuck1, Self::Inverted];
 
-    /// Returns `bits` with this change at bit number `bit`. For example, bit 0 of 0b1010 inverted gives 0b1011.
+    /// Changes bit number `bit`. For example, bit 0 of 0b1010 inverted gives 0b1011.
     pub fn applied(self, bits: u64, bit: u32) -> u64 {
         match self {
             Self::Stuck0 => bits & !(1 << bit),
@@ -50,38 +45,32 @@ impl BitChange {
 /// The place of a fault in a netlist, and the change at this place.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Site {
-    /// A bit of a net.
     Bit(NetId, u32, BitChange),
-    /// Another driver for a net. The net is not the output of a register or memory.
+    /// Another driver for a net, which is not the output of a register or memory.
     Driver(NetId, Driver),
-    /// A register with another enable: it loads its data always (`true`) or never (`false`).
+    /// A register that loads its data always (`true`) or never (`false`).
     Enable(RegId, bool),
     /// A register that the reset does not affect.
     Reset(RegId),
-    /// A ROM with other words at some addresses.
     Words(RomId, Vec<(usize, u64)>),
 }
 
-/// A fault in a netlist: one change at one place, with a name. For example, bit 3 of the net `adder15` stuck at 0.
+/// One change at one place, for example bit 3 of the net `adder15` stuck at 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NetlistFault {
-    /// The name of the fault, which no other fault of the design has. The name is made of names in the design:
-    /// `adder15[3]:stuck-at-0`. A fault of a ROM names the word: `coefficient@1005[2]` is a bit of word 1005, and
-    /// `coefficient@1004,1005` swaps two words.
+    /// A unique name, made of names in the design: `adder15[3]:stuck-at-0`. A fault of a ROM names the word:
+    /// `coefficient@1005[2]` is a bit of word 1005, and `coefficient@1004,1005` swaps two words.
     pub id: String,
-    /// The kind of the fault, such as a stuck bit.
     pub kind: FaultKind,
-    /// The place of the fault in the netlist, and the change there.
     pub site: Site,
 }
 
-/// A list of faults that can be planted in a netlist, each in a mutant of its own. For large ROMs the list has a sample of the
-/// possible faults.
+/// The faults that can be planted in a netlist, each in a mutant of its own. For large ROMs this is a sample.
 #[derive(Clone, Debug, Default)]
 pub struct Faults(Vec<NetlistFault>);
 
 impl Faults {
-    /// Lists all faults of a netlist. For large ROMs it lists a sample, which is always the same.
+    /// The sample for large ROMs is always the same.
     pub fn of(design: &Design) -> Self {
         let mut faults = Self::default();
         // Two nets are left out: the reset, which the environment drives, and the control word, because its fields are nets
@@ -108,8 +97,7 @@ impl Faults {
         faults
     }
 
-    /// Keeps at most `most` faults, spread evenly over the list. For example, 4 of 10 faults are the third, the fifth, the eighth
-    /// and the tenth.
+    /// Keeps at most `most` faults, spread evenly over the list.
     pub fn thin(&mut self, most: usize) {
         let all = self.0.len();
         let mut at = 0;
@@ -119,22 +107,18 @@ impl Faults {
         });
     }
 
-    /// Returns the faults one after another, in an order that is the same in every run.
     pub fn iter(&self) -> impl Iterator<Item = &NetlistFault> {
         self.0.iter()
     }
 
-    /// Returns the number of faults.
     pub fn len(&self) -> usize {
         self.0.len()
     }
 
-    /// Returns whether there are no faults.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
-    /// Returns the fault with this id, or `None` if there is no such fault.
     pub fn find(&self, id: &str) -> Option<&NetlistFault> {
         self.0.iter().find(|fault| fault.id == id)
     }
@@ -143,8 +127,8 @@ impl Faults {
         self.0.push(NetlistFault { id, kind, site });
     }
 
-    /// Adds three faults for each bit of a net. Constants, renamed nets and undriven nets have no such faults. For example, a
-    /// net `adder15` of 4 bits has 12 such faults, from `adder15[0]:stuck-at-0` to `adder15[3]:inverted`.
+    /// Adds three faults for each bit of a net, unless it is a constant, renamed or undriven. For example, a net `adder15` of
+    /// 4 bits has 12 such faults, from `adder15[0]:stuck-at-0` to `adder15[3]:inverted`.
     fn bits(&mut self, id: NetId, net: &Net) {
         if matches!(net.driver, Driver::Constant(_) | Driver::Undriven | Driver::Op(Op::Relabel(_)))
         {
@@ -231,8 +215,7 @@ impl Faults {
     }
 }
 
-/// Returns pairs of addresses whose words differ: all pairs of a small ROM, and neighbours and a sample of a large one. For
-/// example, a ROM of the words 7, 7 and 9 has the pairs (0, 2) and (1, 2).
+/// Returns pairs of addresses whose words differ: all pairs of a small ROM, and neighbours and a sample of a large one.
 fn pairs(words: &[u64], random: &mut Random) -> BTreeSet<(usize, usize)> {
     let mut pairs = BTreeSet::new();
     if words.len() <= ALL_WORDS {
@@ -250,8 +233,7 @@ fn pairs(words: &[u64], random: &mut Random) -> BTreeSet<(usize, usize)> {
     pairs
 }
 
-/// Returns the field of the control ROM's words that contains a bit, and the number of the bit in the field. For example, the
-/// result is `difference_load[0]` for the field `difference_load` of one bit.
+/// Names the field of the control ROM's words that contains a bit, and the bit in it, for example `difference_load[0]`.
 fn field_bit(design: &Design, bit: u32) -> String {
     let fields = design.control.fields.iter().zip(design.field_positions());
     let mut holding =

@@ -14,15 +14,14 @@ use regex::Regex;
 
 use glint_tools::Tool;
 
-/// The name of the file with the faulty module, in the same directory as the fault-free file.
+/// The file with the faulty module, in the same directory as the fault-free file.
 pub(super) const MUTANT: &str = "glint_mutant.v";
 
-/// The name of the file with the names of the nets that may differ, one in each line. [`STATUS`] is the file with Yosys's final
-/// answer.
+/// The file with the nets that may differ, one in each line, and the file with Yosys's final answer.
 const FREE: &str = "glint_free.txt";
 const STATUS: &str = "glint_status.txt";
 
-/// The largest number of attempts. Each attempt lets more nets differ.
+/// Each attempt lets more nets differ.
 const ROUNDS: usize = 4;
 
 /// A line of Yosys's answer about a net for which the equality is not proved.
@@ -37,13 +36,12 @@ fn pattern(text: &str) -> Regex {
 }
 
 /// Returns whether Yosys proves that every port and register of the module `name` carries the same values in the fault-free
-/// module and in the mutant, for all inputs. If the proof fails or takes more than `limit`, it returns false. For example, a
-/// wire `above_2` may differ, and the register `intervals` must not.
+/// module and in the mutant, for all inputs. Wires may differ. A proof that takes more than `limit` fails.
 ///
 /// The proof is temporal induction from a state in which both modules agree. Yosys first merges cells with the same inputs,
 /// including multipliers and ROMs. The first attempt proves all nets with the same name equal, which makes the proof short.
-/// Nets that differ are left out of the next attempt. The files of both modules are in `directory`: `gold` are the fault-free
-/// files, and in `gate` one file is [`MUTANT`].
+/// Nets that differ are left out of the next attempt. `gold` are the fault-free files in `directory`, and in `gate` one file
+/// is [`MUTANT`].
 ///
 /// # Errors
 /// Fails if Yosys is missing, or if a file cannot be read or written.

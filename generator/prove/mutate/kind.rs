@@ -1,12 +1,9 @@
 //! Lists the kinds of faults that mutation testing plants in a netlist, and their names in tables.
-//!
-//! The modules `fault` and `operators` make the faults themselves.
 
 use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-/// Defines the enum of the kinds of faults, in the order of the list, each with its name in tables.
 macro_rules! kinds {
     ($($(#[$doc:meta])* $kind:ident = $name:literal,)*) => {
         /// The kind of a planted fault, such as a stuck bit. Tables of mutation tests count the faults by kind.

@@ -1,14 +1,13 @@
 //! Lists the faults that replace a whole cell by another cell: another operator, swapped operands or mux inputs, a mux stuck at
 //! one input, a sum without its carry or its rounding bit, or a slice one bit too low or too high.
 //!
-//! Faults of single bits, constants, registers and ROMs are listed in `fault`.
+//! The module `fault` lists the faults of single bits, constants, registers and ROMs.
 
 use super::kind::FaultKind;
 use glint_rtl::netlist::{Design, Driver, NetId, Op};
 
-/// Returns the faulty cells that can replace the cell `op`, the driver of net `id`. Each has a name and a kind of fault. For
-/// example, `a & b` gives the fault `or`, which is `a | b`. The list is empty for a cell without such faults, such as a
-/// product.
+/// Returns the faulty cells that can replace `op`, the driver of net `id`. For example, `a & b` gives the fault `or`, which is
+/// `a | b`. A cell such as a product has none.
 pub(super) fn of(design: &Design, id: NetId, op: &Op) -> Vec<(String, FaultKind, Op)> {
     let width = design.width(id);
     match op {
@@ -41,8 +40,8 @@ fn swapped(op: Op) -> (String, FaultKind, Op) {
     ("operands-swapped".to_owned(), FaultKind::Operands, op)
 }
 
-/// Returns the faults of a mux: two inputs that are different nets change places, or the mux always passes on the same input.
-/// For example, a mux of two different inputs has the faults `inputs-0-1-swapped`, `input-0-always` and `input-1-always`.
+/// Swaps two inputs that are different nets, or always passes on the same input. For example, a mux of two different inputs
+/// has the faults `inputs-0-1-swapped`, `input-0-always` and `input-1-always`.
 fn mux(design: &Design, select: NetId, inputs: &[NetId]) -> Vec<(String, FaultKind, Op)> {
     let mut faults = Vec::new();
     for b in 0..inputs.len() {
@@ -69,8 +68,8 @@ fn mux(design: &Design, select: NetId, inputs: &[NetId]) -> Vec<(String, FaultKi
     faults
 }
 
-/// Returns the faults of a sum: a difference in its place, the sum without its carry, or the sum without the bit that rounds.
-/// For example, `a + b + carry` becomes `a - b` in the fault `sub` and `a + b` in the fault `no-carry`.
+/// Makes a difference of the sum, or leaves out its carry or the bit that rounds. For example, `a + b + carry` becomes `a - b`
+/// in the fault `sub` and `a + b` in the fault `no-carry`.
 fn add(design: &Design, a: NetId, b: NetId, carry: Option<NetId>) -> Vec<(String, FaultKind, Op)> {
     let mut faults = vec![operator("sub", Op::Sub(a, b))];
     if carry.is_some() {
@@ -86,8 +85,7 @@ fn add(design: &Design, a: NetId, b: NetId, carry: Option<NetId>) -> Vec<(String
     faults
 }
 
-/// Returns the faults of a slice: it takes the bits one position lower or higher, if the net of `have` bits has them. For
-/// example, bits 2 to 5 of a net become bits 1 to 4 or bits 3 to 6.
+/// Takes the bits one position lower or higher, if the net of `have` bits has them.
 fn slice(of: NetId, low: u32, width: u32, have: u32) -> Vec<(String, FaultKind, Op)> {
     let mut faults = Vec::new();
     let mut shifted = |name: &str, low| {

@@ -1,8 +1,7 @@
 //! Compares a mutant (a design with one fault) with the golden model while some operands keep fixed values.
 //!
-//! Random operands would rarely read a faulty ROM word. A caller therefore fixes the operands that lead to the word. The module
-//! draws the other operands at random ([`drawn`], [`alone`]), or tries all values of the others, except that colours keep their
-//! largest value ([`all`]).
+//! Random operands would rarely read a faulty ROM word. A caller therefore fixes the operands that lead to the word. The
+//! module draws the other operands at random ([`drawn`], [`alone`]), or tries all their values ([`all`]).
 
 use anyhow::Result;
 
@@ -25,12 +24,11 @@ const SEED: u64 = 3;
 /// tried.
 pub(super) const MOST_BITS: u32 = 22;
 
-/// If no operand is fixed: the largest number of operand bits for which all values are tried, once for each faulty word.
+/// The same number if no operand is fixed; the values are then tried once for each faulty word.
 pub(super) const NARROW: u32 = 16;
 
-/// Returns the operand that addresses a ROM directly, with the raw value that selects a word. For example, for word 5 of a ROM
-/// that the operand `exponent` addresses, it returns `exponent` with the raw value 5. Returns `None` if the address is
-/// computed.
+/// Returns the operand that addresses a ROM directly, with the raw value that selects a word. For example, the ROM whose
+/// address is the operand `exponent` gives `exponent` and 5 for word 5.
 pub(super) fn addressing(core: &Core, rom: RomId, word: usize) -> Option<OperandValues> {
     let design = &core.design;
     let net = design.net(design.rom(rom).address);
@@ -41,8 +39,8 @@ pub(super) fn addressing(core: &Core, rom: RomId, word: usize) -> Option<Operand
     Some(vec![(operand_of(design, register)?.to_owned(), word as i64)])
 }
 
-/// Compares a mutant with the golden model for 131 072 random points, in which the operands `held` nearly always keep their
-/// values. Returns the first difference, or `None` if there is no difference.
+/// Returns the first difference between a mutant and the golden model for 131 072 random points. In these, the operands `held`
+/// nearly always keep their values.
 ///
 /// # Errors
 /// Fails if the mutant cannot be simulated.
@@ -56,8 +54,7 @@ pub(super) fn drawn(
     Ok(mismatch.map(|mismatch| SignalDifference { held, mismatch }))
 }
 
-/// Compares a mutant with the golden model for 64 points in which the operands `held` nearly always keep their values; the
-/// others are random. Returns the first difference, or `None` if there is no difference.
+/// Does the same as [`drawn`] for 64 points.
 ///
 /// # Errors
 /// Fails if the mutant cannot be simulated.
@@ -71,20 +68,18 @@ pub(super) fn alone(
     Ok(mismatch.map(|mismatch| SignalDifference { held, mismatch }))
 }
 
-/// The result of comparing a mutant with the golden model for all values of the operands that determine `f` and have no fixed
-/// value.
+/// The result of [`all`].
 pub(super) enum Tried {
-    /// Nothing was tried: the operands have too many values, or the device computes lines of points.
+    /// The operands have too many values, or the device computes lines of points.
     Nothing,
-    /// The mutant was tried with all values, and no register and no output differs on any clock.
+    /// No register and no output differs for any value.
     All,
-    /// The mutant differs from the golden model in a register or an output for these operands.
+    /// A register or an output differs for these operands.
     Differs(OperandValues),
 }
 
-/// Compares a mutant with the golden model for all values of the operands that determine `f`, if these have at most `most_bits`
-/// bits together. The operands `held` keep their raw values, and each colour operand has its largest value. Returns
-/// [`Tried::Nothing`] if the operands have more bits, or if the device computes lines of points.
+/// Compares a mutant with the golden model for all values of the operands that determine `f`, if these have at most
+/// `most_bits` bits together. The operands `held` keep their raw values, and each colour operand has its largest value.
 ///
 /// # Errors
 /// Fails if the mutant cannot be simulated.

@@ -1,4 +1,4 @@
-//! Makes a mutant, which is a copy of a netlist with one fault. The copy can be simulated and emitted as any other netlist.
+//! Makes a mutant: a copy of a netlist with one fault, which can be simulated and emitted as any other netlist.
 
 use std::borrow::Cow;
 
@@ -7,10 +7,8 @@ use glint_rtl::netlist::microcode;
 use glint_rtl::netlist::{Design, Driver, Net, NetId, Op, RegId, RomId};
 
 impl NetlistFault {
-    /// Returns a copy of the design in which this fault is planted.
-    ///
-    /// The copy can be simulated and emitted. Its nets keep the intervals of the fault-free design, which their values in the
-    /// copy may leave.
+    /// Returns a copy of the design in which this fault is planted. Its nets keep the intervals of the fault-free design,
+    /// which their values in the copy may leave.
     pub fn planted(&self, design: &Design) -> Design {
         let mut mutant = design.clone();
         match &self.site {
@@ -25,7 +23,7 @@ impl NetlistFault {
     }
 }
 
-/// Returns a copy of the design without the comments on nets and ROMs. This copy is cheaper to copy for each fault.
+/// Drops the comments on nets and ROMs, so that a copy for each fault is cheap.
 pub(super) fn bare(design: &Design) -> Design {
     let mut bare = design.clone();
     for rom in &mut bare.roms {
@@ -38,8 +36,8 @@ pub(super) fn bare(design: &Design) -> Design {
     bare
 }
 
-/// Adds a net with the format of `like`, and returns it. Its name is the name of `like` with `suffix`. For example, the suffix
-/// `sound` names the net `product_sound` after `product`, and `product_sound_` if that name is taken.
+/// Adds a net with the format of `like`. For example, the suffix `sound` names the net `product_sound` after `product`, and
+/// `product_sound_` if that name is taken.
 fn add(design: &mut Design, like: NetId, suffix: &str, driver: Driver) -> NetId {
     let mut name = Cow::from(format!("{}_{suffix}", design.net(like).name));
     while design.find(&name).is_some() {
@@ -50,8 +48,8 @@ fn add(design: &mut Design, like: NetId, suffix: &str, driver: Driver) -> NetId 
     design.add_net(Net { name, driver, block: None, doc, named: false, ..like })
 }
 
-/// Adds a constant, and returns the driver for a net that has the value of `sound` with the fault `how` in one bit. For
-/// example, a bit stuck at 1 is an OR with a constant.
+/// Returns the driver of a net that has the value of `sound` with the fault `how` in one bit. For example, a bit stuck at 1 is
+/// an OR with a constant.
 fn at_fault(design: &mut Design, sound: NetId, bit: u32, how: BitChange) -> Driver {
     let ones = match how {
         BitChange::Stuck0 => glint_base::fixed::mask(design.width(sound)) & !(1 << bit),
@@ -65,8 +63,6 @@ fn at_fault(design: &mut Design, sound: NetId, bit: u32, how: BitChange) -> Driv
     })
 }
 
-/// Plants a fault in bit `bit` of a net. For a register, the fault is in its data and its reset value; for an input port, it is
-/// in the value that the design reads from the port; for any other net, it is in the net itself.
 fn plant_bit(design: &mut Design, net: NetId, bit: u32, how: BitChange) {
     match design.net(net).driver.clone() {
         // The checks compare the register's output, so the fault is in the value that the register takes.
@@ -100,8 +96,7 @@ fn plant_bit(design: &mut Design, net: NetId, bit: u32, how: BitChange) {
     }
 }
 
-/// Makes every cell, register input, register enable, ROM address and ROM enable that reads the net `from` read the net `to`,
-/// except the cells that drive the nets in `except`.
+/// Makes everything that reads the net `from` read the net `to`, except the cells that drive the nets in `except`.
 fn redirect(design: &mut Design, from: NetId, to: NetId, except: &[NetId]) {
     let redirect = |net: &mut NetId| {
         if *net == from {
@@ -125,7 +120,6 @@ fn redirect(design: &mut Design, from: NetId, to: NetId, except: &[NetId]) {
     }
 }
 
-/// Makes a register keep its value: its data input becomes its own output.
 fn never(design: &mut Design, id: RegId) {
     let register = &mut design.registers[id.index()];
     register.data = Some(register.q);

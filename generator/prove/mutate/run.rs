@@ -2,9 +2,9 @@
 //! or undecided.
 //!
 //! For each fault, the module tries in turn a short test, the proofs, the default test and a last check, and ends with the
-//! first that decides. The last check of a fault in a table is directed tests. The last check of any other fault in a pipeline
-//! is a search for a point at which the mutant differs. Any other fault in a sequential core has no last check. For a fault
-//! that is not proved equivalent, the module also finds whether the shipped bench notices the fault.
+//! first that decides. For a fault in a table, the last check is directed tests. For any other fault in a pipeline, it is a
+//! search for a point at which the mutant differs. For a fault that is not proved equivalent, the module also finds whether
+//! the shipped bench notices it.
 
 use std::sync::OnceLock;
 
@@ -24,17 +24,16 @@ use glint_core::observation::Vectors;
 use glint_golden::Model;
 use glint_rtl::netlist::{Design, RomId};
 
-/// The number of points of the short test, which runs first. These points are the first points of the default test's first
-/// stream, so a difference in them is a difference in the default test.
+/// The number of points of the short test, which are the first points of the default test's first stream. A difference in them
+/// is therefore a difference in the default test.
 const FIRST_POINTS: u64 = 256;
 
-/// The number of results of a longer test, and its seed. The longer test is searched for reads of words that the default test
-/// does not read.
+/// A longer test that may read words which the default test does not read.
 const BEYOND_POINTS: u64 = 1_000_000;
 const BEYOND_SEED: u64 = 2;
 
-/// Plants each of the faults in turn, runs the checks on the mutant (the design with the fault), and returns the verdicts, in
-/// the order of `faults`. The function calls `progress` after each fault.
+/// Plants each of the faults in turn, checks the mutant (the design with the fault), and returns the verdicts in the order of
+/// `faults`. The function calls `progress` after each fault.
 ///
 /// # Errors
 /// Fails if a mutant cannot be simulated, or if golden model and fault-free simulation disagree. The message may have the id of
@@ -71,8 +70,7 @@ pub fn run<'f>(
         .collect()
 }
 
-/// The shared data of the checks of all faults of a configuration: the fault-free design, the golden model, and prepared
-/// searches and proofs.
+/// The state that the checks of all faults of a configuration share.
 struct Bench<'a> {
     core: &'a Core,
     sound: Design,
@@ -81,11 +79,10 @@ struct Bench<'a> {
     prover: Option<Prover<'a>>,
     /// The positions at which the default test reads each ROM word.
     tested: Coverage,
-    /// The positions at which a longer test reads each ROM word, computed when they are first used.
+    /// The same for a longer test, computed when they are first used.
     beyond: OnceLock<Coverage>,
-    /// The vectors of the test bench that Glint ships with the core.
     shipped: Vectors,
-    /// The number of stages of a pipeline, and so the largest number of points in it; 0 for a sequential core.
+    /// The largest number of points in a pipeline, its stages; 0 for a sequential core.
     latency: u64,
 }
 
@@ -99,7 +96,6 @@ impl Bench<'_> {
         Ok(FaultResult { fault: fault.clone(), verdict, shipped })
     }
 
-    /// Returns the verdict of the first check or proof that decides. Fails if the mutant cannot be simulated.
     fn verdict(&self, fault: &NetlistFault, mutant: &Design) -> Result<MutantVerdict> {
         if let Some(mismatch) = self.first_look(mutant, &fault.site)? {
             return Ok(caught(mismatch));
@@ -122,8 +118,7 @@ impl Bench<'_> {
     }
 
     /// Searches for a point at which the mutant of a pipeline differs from the fault-free pipeline, and confirms it with the
-    /// golden model. Without such a point, or for a sequential core, the verdict is `Undecided`. Fails if the mutant cannot be
-    /// simulated.
+    /// golden model. Otherwise the verdict is `Undecided`.
     fn searched(&self, mutant: &Design) -> Result<MutantVerdict> {
         let Some(beside) = &self.beside else {
             return Ok(MutantVerdict::Undecided);
@@ -134,9 +129,8 @@ impl Bench<'_> {
             .map_or(MutantVerdict::Undecided, |it| MutantVerdict::Caught(Detector::Directed, it)))
     }
 
-    /// Returns the first difference in a short part of the default test, or `None` if there is no difference. If words of a
-    /// table are faulty, the part consists of the streams that read these words, because the fault can show only there. Fails
-    /// if the mutant cannot be simulated.
+    /// Returns the first difference in a short part of the default test. If words of a table are faulty, the part consists of
+    /// the streams that read these words, because the fault can show only there.
     fn first_look(&self, mutant: &Design, site: &Site) -> Result<Option<Mismatch>> {
         let looks = match self.words(site) {
             Some(_) => self.places(site),
@@ -145,8 +139,7 @@ impl Bench<'_> {
         self.shown(mutant, looks)
     }
 
-    /// Returns the first difference in some streams, or `None` if there is no difference. Each stream is a seed and the number
-    /// of results to compare. Fails if the mutant cannot be simulated.
+    /// Returns the first difference in some streams. Each is a seed and the number of results to compare.
     fn shown(&self, mutant: &Design, streams: Vec<(u64, u64)>) -> Result<Option<Mismatch>> {
         for (seed, points) in streams {
             let mismatch = self.lockstep(mutant, seed)?.run_alone(points)?.mismatch;
@@ -157,9 +150,9 @@ impl Bench<'_> {
         Ok(None)
     }
 
-    /// Runs a mutant whose faulty table words are read only for a few operands, with these operands fixed. The function then
-    /// tries all operands if they have few enough bits. If no combination differs for any of the words, the verdict is
-    /// `Equivalent`. Fails if the mutant cannot be simulated.
+    /// Runs a mutant whose faulty table words are read only for a few operands, with these operands fixed. Then it runs the
+    /// mutant with all operands if they have few enough bits. If no combination differs for any of the words, the verdict is
+    /// `Equivalent`.
     fn directed(
         &self,
         mutant: &Design,
@@ -205,9 +198,8 @@ impl Bench<'_> {
         })
     }
 
-    /// Returns the control operands of computations that read a word, one list of raw values by name for each. The computations
-    /// are part of the default test, or of a longer test if the default test does not read the word. Fails if the longer test
-    /// cannot be run.
+    /// Returns the control operands of computations that read a word, as raw values by name. The computations are part of the
+    /// default test, or of a longer test if the default test does not read the word.
     fn readings(&self, rom: RomId, word: usize) -> Result<Vec<OperandValues>> {
         let design = &self.sound;
         let mut readings: Vec<OperandValues> = self.tested.operands(design, rom, word).collect();
@@ -223,8 +215,7 @@ impl Bench<'_> {
     }
 
     /// Returns the first difference in the streams of a longer test that read a word, if the default test does not read it.
-    /// Returns `None` for a sequential core, whose operand registers give directed operands for the word instead. Fails if the
-    /// mutant cannot be simulated.
+    /// For a sequential core there is none, because its operand registers give directed operands for the word instead.
     fn beyond_shows(&self, mutant: &Design, rom: RomId, word: usize) -> Result<Option<Mismatch>> {
         if self.latency == 0 || !self.tested.places(rom, word).is_empty() {
             return Ok(None);
@@ -244,8 +235,7 @@ impl Bench<'_> {
         Lockstep::new(mutant, self.model.boxed_clone(), contract, seed)
     }
 
-    /// Returns the table and its faulty words, each with its address, if the fault is in a table. Returns `None` for any other
-    /// fault, also for a fault in the control ROM.
+    /// Returns the table and its faulty words, each with its address, if the fault is in a table and not in the control ROM.
     fn words<'s>(&self, site: &'s Site) -> Option<(RomId, &'s [(usize, u64)])> {
         match site {
             Site::Words(rom, words) if *rom != self.sound.control.rom => Some((*rom, words)),
@@ -253,8 +243,7 @@ impl Bench<'_> {
         }
     }
 
-    /// Returns the streams in which the default test reads the faulty words, as `ends` does. The list is empty if the fault is
-    /// not in a table, or if the test never reads the words.
+    /// Returns the streams in which the default test reads the faulty words, as `ends` does.
     fn places(&self, site: &Site) -> Vec<(u64, u64)> {
         let Some((rom, words)) = self.words(site) else {
             return Vec::new();
@@ -272,7 +261,6 @@ impl Bench<'_> {
     }
 }
 
-/// Returns the verdict on a fault that the default test notices.
 fn caught(mismatch: Mismatch) -> MutantVerdict {
     let held = Vec::new();
     MutantVerdict::Caught(Detector::Cosim, SignalDifference { held, mismatch })

@@ -1,7 +1,7 @@
 //! Counts the verdicts on the faults of a run, and decides whether the run passes.
 //!
 //! [`Score`] counts faults in the netlist; it passes if at most 1 % of them are undecided. [`TextScore`] counts faults in the
-//! emitted Verilog. The goals for the shipped bench are constants here, and callers compare the counts with them.
+//! emitted Verilog. Callers compare the counts with the goals here.
 
 use std::collections::BTreeMap;
 
@@ -14,42 +14,35 @@ use super::verilog::{ShippedBench, TextFault, TextFaultResult, TextMutantVerdict
 /// The largest share of the faults of a configuration that may be undecided.
 pub const TOLERATED: f64 = 0.01;
 
-/// The share of the faults in the Verilog that the shipped bench should notice by itself, among the faults that it or
-/// a longer bench notices.
+/// The share of the faults in the Verilog that the shipped bench should notice, among the faults that it or a longer bench
+/// notices.
 pub const GOAL_TEXT: f64 = 0.98;
 
-/// The share of inverted bits, in the upper half of table words, that the shipped bench should notice. The share counts only
-/// inversions that some check notices, so words that are never read do not count.
+/// The share of inverted bits, in the upper half of table words, that the shipped bench should notice. Only inversions that
+/// some check notices count, so words that are never read do not count.
 pub const GOAL_MEMORY: f64 = 0.95;
 
-/// The share of some planted faults that a check notices, such as "98 of 100 noticed".
+/// A share of faults, for example "98 of 100 noticed".
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Share {
-    /// The number of faults that are noticed.
     pub noticed: usize,
-    /// The number of all faults that are considered.
     pub of: usize,
 }
 
 impl Share {
-    /// Returns the share as a number. For example, 3 noticed of 4 give 0.75, and 0 of 0 give 1.
+    /// Returns a number from 0 to 1: 3 noticed of 4 give 0.75, and 0 of 0 give 1.
     pub fn value(self) -> f64 {
         if self.of == 0 { 1.0 } else { self.noticed as f64 / self.of as f64 }
     }
 }
 
-/// The numbers of planted faults with each verdict.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Tally {
-    /// The number of faults that were planted.
     pub planted: usize,
     /// For each check, the number of faults that it noticed first.
     pub caught: BTreeMap<Detector, usize>,
-    /// For each kind of proof, the number of faults that it proved equivalent.
     pub equivalent: BTreeMap<How, usize>,
-    /// The number of faults that no check noticed and no proof showed to be equivalent.
     pub undecided: usize,
-    /// The number of faults that the shipped bench notices.
     pub shipped: usize,
     /// The number of faults that the shipped bench does not notice although another check does.
     pub missed: usize,
@@ -67,23 +60,20 @@ impl Tally {
         }
     }
 
-    /// Returns the number of faults that some check noticed.
     pub fn all_caught(&self) -> usize {
         self.caught.values().sum()
     }
 
-    /// Returns the number of faults that were proved equivalent.
     pub fn all_equivalent(&self) -> usize {
         self.equivalent.values().sum()
     }
 
-    /// Returns the share of undecided faults. For example, 76 undecided faults of 10 457 are a share of 0.0073, which
-    /// [`TOLERATED`] allows.
+    /// Returns a number from 0 to 1: 76 undecided faults of 10 457 give 0.0073, which [`TOLERATED`] allows.
     pub fn share_undecided(&self) -> f64 {
         if self.planted == 0 { 0.0 } else { self.undecided as f64 / self.planted as f64 }
     }
 
-    /// Returns the share of the faults that the shipped bench notices, among the faults that any check notices.
+    /// Counts only faults that any check notices.
     pub fn of_shipped(&self) -> Share {
         Share { noticed: self.shipped, of: self.shipped + self.missed }
     }
@@ -92,16 +82,12 @@ impl Tally {
 /// The numbers of faults in the netlist of one configuration, or of one part of it, by verdict and by kind.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Score {
-    /// The numbers for all faults together.
     pub all: Tally,
-    /// The numbers for each kind of fault.
     pub kinds: BTreeMap<FaultKind, Tally>,
-    /// The ids of the undecided faults.
     pub undecided: Vec<String>,
 }
 
 impl Score {
-    /// Counts the verdicts on the faults `found`.
     pub fn of(found: &[FaultResult]) -> Self {
         let mut score = Self::default();
         for one in found {
@@ -115,13 +101,12 @@ impl Score {
         score
     }
 
-    /// Returns whether the share of undecided faults is at most [`TOLERATED`].
     pub fn holds(&self) -> bool {
         self.all.share_undecided() <= TOLERATED
     }
 
-    /// Returns the share of inverted bits, in the upper half of ROM words, that the shipped bench notices, among the inversions
-    /// that any check notices. Returns `None` if no such fault was planted, for example in a design without ROMs.
+    /// Returns the share of inverted bits, in the upper half of ROM words, that the shipped bench notices, among the
+    /// inversions that any check notices. A design without ROMs has none.
     pub fn of_memory(&self) -> Option<Share> {
         self.kinds.get(&FaultKind::RomHighBit).map(Tally::of_shipped)
     }
@@ -130,24 +115,21 @@ impl Score {
 /// The numbers of faults in the emitted Verilog of one configuration, by verdict.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TextScore {
-    /// The number of faults that were planted.
     pub planted: usize,
     /// The number of faults that a compiler or linter refuses or warns of.
     pub lint: usize,
     /// The number of other faults that a test bench notices.
     pub bench: usize,
-    /// The number of faults that are proved equivalent.
     pub equivalent: usize,
-    /// The ids of the faults that nothing decides.
     pub undecided: Vec<String>,
-    /// The share of the faults that the shipped bench notices, among the faults that it or a longer bench notices.
+    /// The share that the shipped bench notices, among the faults that it or a longer bench notices.
     pub shipped: Share,
-    /// The ids of the faults that the shipped bench does not notice although a longer bench does.
+    /// The ids of the faults that a longer bench notices, but the shipped bench does not.
     pub missed: Vec<String>,
 }
 
 impl TextScore {
-    /// Counts the verdicts `found` on the faults `faults`, which are in the same order.
+    /// `found` has the verdicts in the order of `faults`.
     pub fn of(faults: &[TextFault], found: &[TextFaultResult]) -> Self {
         let mut score = Self::default();
         for (fault, found) in faults.iter().zip(found) {

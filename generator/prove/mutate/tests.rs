@@ -14,8 +14,8 @@ use glint_core::registry::Registry;
 use glint_rtl::dsl::fixture::design;
 use glint_rtl::dsl::step;
 
-/// Returns the number n for tests that plant only every n-th fault. With `GLINT_TESTS=all`, n is smaller. n must not be a
-/// multiple of three, because each bit has three faults.
+/// Tests plant only every n-th fault; with `GLINT_TESTS=all`, n is smaller. n must not be a multiple of three, because each
+/// bit has three faults.
 fn every() -> usize {
     if std::env::var("GLINT_TESTS").is_ok_and(|tests| tests == "all") { 29 } else { 211 }
 }
@@ -34,7 +34,6 @@ fn faults_that_read_other_nets_are_no_proof_and_no_panic() {
 /// The number of points with which most faults show.
 const POINTS: u64 = 200;
 
-/// Returns the path of a file in the repository.
 fn at(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(path)
 }
@@ -101,7 +100,6 @@ fn what_is_never_reached_is_never_noticed() {
     assert_eq!(unreached.iter().filter(stuck).count(), 0);
 }
 
-/// Returns the verdict on a fault.
 fn verdict(core: &Core, id: &str) -> MutantVerdict {
     let faults = Faults::of(&core.design);
     let fault = faults.iter().find(|fault| fault.id == id);

@@ -1,7 +1,5 @@
-//! Finds faults that the default test cannot notice because its stimulus never exercises them, for example a ROM word that it
-//! never reads.
-//!
-//! It recognises stuck bits of registers and faults in ROM words. Any other fault may be unexercised, too.
+//! Finds faults that the default test cannot notice because its stimulus never exercises them: stuck bits of registers, and
+//! faults in ROM words. Any other fault may be unexercised, too.
 
 use anyhow::Result;
 
@@ -28,9 +26,8 @@ impl BitWatch<'_> {
     }
 }
 
-/// Returns the faults that the default test cannot notice, because it never exercises them. For example, a register bit is stuck
-/// at the value that it always has in the test, or the test never reads a ROM word. The function does not decide other faults,
-/// such as swapped inputs of a mux.
+/// Returns the faults that the default test never exercises. For example, a register bit is stuck at the value that it always
+/// has in the test, or the test never reads a ROM word.
 ///
 /// # Errors
 /// Fails if the design cannot be simulated.
@@ -63,8 +60,7 @@ pub fn unreached<'f>(core: &Core, faults: &[&'f NetlistFault]) -> Result<Vec<&'f
     Ok(unreached)
 }
 
-/// Returns whether a bit of a net was `value`, 0 or 1, at some time in a stream. The result is true for a net that was not
-/// watched.
+/// Returns whether a bit of a net was `value` at some time in a stream. The result is true for a net that was not watched.
 fn has_had(nets: &[NetId], streams: &[BitWatch], net: NetId, value: usize, bit: u32) -> bool {
     let Some(at) = nets.iter().position(|&other| other == net) else {
         return true;

@@ -24,85 +24,73 @@ use glint_tools::{BuiltBench, Tool, VerilogSimulator, Waveform};
 /// The number of results of the longer bench, which runs if the shipped bench notices nothing.
 const POINTS: u64 = 10_000;
 
-/// The time limit of Yosys for the proof that a fault changes nothing. Proofs that succeed take some seconds, so they succeed
-/// even on a busy machine.
+/// The time limit of Yosys for the proof that a fault changes nothing. Proofs that succeed take some seconds, so the limit is
+/// enough even on a busy machine.
 const PROOF_LIMIT: Duration = Duration::from_secs(120);
 
 /// A fault in the text of the emitted Verilog. For example, `4'd9` becomes `4'd8`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TextFault {
-    /// The name of the fault: the file, the line number, the kind of fault, and a number among the faults of this kind in the
-    /// line. For example, `blinn_datapath.v:127:operator:1` is the first wrong operator in line 127.
+    /// The file, the line number, the kind of fault, and a number among the faults of this kind in the line. For example,
+    /// `blinn_datapath.v:127:operator:1` is the first wrong operator in line 127.
     pub id: String,
-    /// The name of the kind of fault, such as `operator`.
+    /// The kind of fault, such as `operator`.
     pub kind: &'static str,
     file: usize,
-    /// The number of the line, counted from 0. `text` is its new text.
+    /// The number of the line, from 0, and its new text.
     line: usize,
     text: String,
 }
 
-/// The verdict on a fault in the Verilog.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum TextMutantVerdict {
     /// Icarus Verilog or Verilator refuses the text or warns of it.
     Lint,
-    /// A test bench fails.
     Bench,
-    /// Yosys proves that the faulty module behaves as the fault-free module.
     Equivalent,
-    /// No check notices the fault, and no proof shows it to be equivalent.
     Undecided,
 }
 
-/// Whether the shipped bench alone notices a fault in the Verilog.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum ShippedBench {
     /// Icarus Verilog cannot build the shipped bench with the fault.
     Refused,
     /// The shipped bench fails, so it notices the fault.
     Noticed,
-    /// The shipped bench passes, but a longer bench fails.
     Missed,
     /// The shipped bench and a longer bench pass. If the fault changes an output, it does so seldom.
     Silent,
 }
 
-/// The verdicts on a fault in the Verilog.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TextFaultResult {
-    /// The verdict of all checks together.
     pub verdict: TextMutantVerdict,
-    /// The verdict of the shipped bench alone.
     pub shipped: ShippedBench,
 }
 
-/// The tools that check faults.
 const TOOLS: [&str; 4] = ["iverilog", "vvp", "verilator", "yosys"];
 
 /// The Verilog files of a configuration in which faults are planted, and the test benches and proofs that may notice the faults.
 pub struct VerilogText {
     files: Vec<OutputFile>,
-    /// The longer bench and its vectors, which replace the shipped ones. All its points are random. Golden model and built-in
-    /// simulator agree on the vectors of both benches.
+    /// The longer bench, all of whose points are random, and its vectors. They replace the shipped ones.
     longer: Vec<OutputFile>,
-    /// The name of the core.
     core: String,
     is_pipeline: bool,
     /// The indices in `files` of the files in which faults are planted.
     modules: Vec<usize>,
 }
 
-/// A kind of fault: the function `with` returns the text that replaces a match of `pattern`. If the replacement equals the
-/// original text, there is no fault. For example, the kind `constant` replaces `4'd9` by `4'd8`.
+/// A kind of fault: `with` returns the text that replaces a match of `pattern`. If it is the original text, there is no fault.
+/// For example, the kind `constant` replaces `4'd9` by `4'd8`.
 struct TextOperator {
     kind: &'static str,
     pattern: Regex,
     with: fn(&regex::Captures<'_>) -> String,
 }
 
-/// All kinds of faults. [`in_line`] applies them to the part of a line that is code, but not to declarations of memories.
+/// [`in_line`] applies these kinds to the part of a line that is code, but not to declarations of memories.
 static OPERATORS: LazyLock<Vec<TextOperator>> = LazyLock::new(|| {
     let operator = |kind, pattern, with| TextOperator {
         kind,
@@ -204,7 +192,6 @@ impl VerilogText {
         Ok(Self::new(core, &files, &read, &wrappers))
     }
 
-    /// Collects the files of the kinds `read`. Faults are planted in the files of the kinds `planted`.
     fn new(core: &Core, files: &OutputFiles, read: &[FileKind], planted: &[FileKind]) -> Self {
         let mut text = Self {
             files: Vec::new(),
@@ -222,13 +209,12 @@ impl VerilogText {
         text
     }
 
-    /// Returns the fault-free files: the Verilog of the modules, and their benches and vectors. [`VerilogText::of_wrappers`]
-    /// also has the proofs of the wrappers.
+    /// Returns the fault-free files: the Verilog of the modules, their benches and vectors, and the proofs of wrappers.
     pub fn files(&self) -> &[OutputFile] {
         &self.files
     }
 
-    /// Returns the same files as [`VerilogText::files`], with the fault planted in one of the Verilog files.
+    /// Returns [`VerilogText::files`] with the fault planted in one of them.
     pub fn planted(&self, fault: &TextFault) -> Vec<OutputFile> {
         let mut text = String::new();
         for (number, line) in self.files[fault.file].contents.lines().enumerate() {
@@ -240,13 +226,13 @@ impl VerilogText {
         files
     }
 
-    /// Returns the name of the module of the core's shipped bench, or an empty text without a bench.
+    /// Returns an empty text without a bench.
     fn bench(&self) -> &str {
         let bench = self.files.iter().find(|file| file.kind == FileKind::Bench);
         bench.map_or("", OutputFile::main_module)
     }
 
-    /// Returns every fault that can be planted, in the order of the text.
+    /// Returns the faults in the order of the text.
     pub fn faults(&self) -> Vec<TextFault> {
         let mut faults = Vec::new();
         for &file in &self.modules {
@@ -267,8 +253,8 @@ impl VerilogText {
         faults
     }
 
-    /// Plants each of the faults in turn, and returns the verdicts on it, in the order of `faults`. `limit` is the time limit
-    /// of each run of a tool. The function calls `progress` after each fault.
+    /// Plants each of the faults in turn, and returns the verdicts in the order of `faults`. `limit` is the time limit of each
+    /// run of a tool. The function calls `progress` after each fault.
     ///
     /// # Errors
     /// Fails if Verilator is missing, does not start, or does not end within `limit`; or if Yosys is missing. A missing Icarus
@@ -300,7 +286,7 @@ impl VerilogText {
         let (shipped, bench) = self.benches(&files, limit)?;
         let verdict = match (shipped, bench) {
             _ if is_linted => TextMutantVerdict::Lint,
-            // A text that Icarus does not build is noticed in the same way as by lint.
+            // Lint would refuse a text that Icarus does not build, too.
             (ShippedBench::Refused, _) => TextMutantVerdict::Lint,
             (ShippedBench::Silent, Some(bench)) => {
                 if self.proves(&files, fault.file, bench.directory(), limit)? {
@@ -314,8 +300,7 @@ impl VerilogText {
         Ok(TextFaultResult { verdict, shipped })
     }
 
-    /// Returns whether Verilator's lint refuses the modules or warns of them. Fails if Verilator does not start or does not end
-    /// within `limit`.
+    /// Returns whether Verilator's lint refuses the modules or warns of them.
     fn is_linted(&self, files: &[OutputFile], verilator: &Tool, limit: Duration) -> Result<bool> {
         let dir = Directory::new().context("cannot make a temporary directory")?;
         for file in files {
@@ -331,7 +316,7 @@ impl VerilogText {
     }
 
     /// Returns the verdict of the benches on a mutant. If both benches pass, it also returns the built shipped bench, whose
-    /// directory has all files; otherwise `None`. Fails if Icarus Verilog cannot build the longer bench.
+    /// directory has all files.
     fn benches(
         &self,
         mutant: &[OutputFile],
@@ -364,8 +349,7 @@ impl VerilogText {
     }
 
     /// Returns whether Yosys proves that the module in file number `file` behaves as it does without the fault. The directory
-    /// `dir` must contain all files. If the core is a pipeline, the module is the whole pipeline with its multiplier. Fails if
-    /// Yosys is missing.
+    /// `dir` must contain all files. For a pipeline, the whole pipeline with its multiplier is proved.
     fn proves(
         &self,
         mutant: &[OutputFile],
@@ -394,8 +378,8 @@ impl VerilogText {
     }
 }
 
-/// Adds the faults of one line to `faults`. `whole` is the line, `code` the part of it before a comment, `line` its number from
-/// 0, and `file` the index of the file.
+/// Adds the faults of one line. `whole` is the line, `code` the part of it before a comment, `line` its number from 0, and
+/// `file` the index of the file.
 fn in_line(
     name: &str,
     file: usize,

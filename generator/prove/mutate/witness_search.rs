@@ -1,9 +1,9 @@
 //! Searches for a combination of operands at which a mutant of a pipeline (the pipeline with one fault) gives a wrong value.
 //!
 //! Some hardware exists in a pipeline but not in its sequential core, such as the parts of a split product. A fault there may
-//! show only if a carry runs through all bits that are later dropped, which random points rarely cause. The search simulates
-//! pipeline and mutant together. The search keeps points that make registers differ in the latest stage so far, and changes one
-//! of their operands at a time. A search without a result proves nothing.
+//! show only if a carry runs through all bits that are later dropped, which random points rarely cause. The search keeps
+//! points that make registers differ in the latest stage so far, and changes one of their operands at a time. A search without
+//! a result proves nothing.
 
 use std::sync::Arc;
 
@@ -16,14 +16,14 @@ use glint_golden::{Contract, Operand};
 use glint_rtl::netlist::{Design, NetId, Pipeline, Role};
 use glint_rtl::sim::{CompiledDesign, Machine};
 
-/// The number of points that enter the pipelines in the same clock, in simulations that run in parallel.
+/// The number of points that enter the pipelines in the same clock, each in a simulation of its own.
 const LANES: usize = 64;
 
 /// The number of clocks of a search.
 const CLOCKS: usize = 1 << 16;
 
-/// The number of calls of `confirm` after which the search ends although none has confirmed a point. The golden model predicts
-/// a checkpoint only for points that execute its microinstruction, so some differences are not confirmed.
+/// The search ends after so many calls of `confirm` without a confirmed point. The golden model predicts a checkpoint only for
+/// points that execute its microinstruction, so some differences are not confirmed.
 const TRIES: usize = 32;
 
 /// The largest number of points that are kept and changed further.
@@ -31,22 +31,21 @@ const KEPT: usize = 32;
 
 const SEED: u64 = 4;
 
-/// A fault-free pipeline, prepared for searching points at which mutants differ from it.
+/// A fault-free pipeline, prepared for the search for points at which mutants differ from it.
 pub(super) struct PointSearch {
     sound: Arc<CompiledDesign>,
-    /// The number of inputs. `high` has the indices of the inputs that are 1 after a clock of reset (reset, `in_valid`,
-    /// `out_ready`), so that a point enters and leaves whenever it can.
+    /// `high` has the indices of the inputs that are 1 after a clock of reset (reset, `in_valid`, `out_ready`), so that a
+    /// point enters and leaves whenever it can.
     inputs: usize,
     high: Vec<usize>,
     /// The operands of the contract, each with its index among the inputs.
     operands: Vec<(usize, Operand)>,
-    /// The nets of the stages, from the operands to the results.
+    /// The stages from the operands to the results.
     stages: Vec<StageNets>,
     /// The number of clocks from one point to the next.
     interval: usize,
 }
 
-/// The nets of a stage that are compared.
 #[derive(Clone, Default)]
 struct StageNets {
     registers: Vec<NetId>,
@@ -54,11 +53,10 @@ struct StageNets {
     predicted: Vec<NetId>,
 }
 
-/// Raw values of the operands.
 type RawPoint = Vec<i64>;
 
 impl PointSearch {
-    /// Prepares the search: finds the ports of the operands, and the registers and checkpoints of each stage.
+    /// Finds the ports of the operands, and the registers and checkpoints of each stage.
     ///
     /// # Errors
     /// Fails if the pipeline lacks an operand of the contract, or if it cannot be simulated.
@@ -99,8 +97,8 @@ impl PointSearch {
     }
 
     /// Searches for a point at which a mutant differs in a value that the golden model predicts, and calls `confirm` with its
-    /// operands, by name as raw values. Returns the first result of `confirm` that is not `None`. Returns `None` if the search
-    /// finds no such point in 65 536 clocks, or if `confirm` returns `None` 32 times.
+    /// operands, by name as raw values. Returns the first result of `confirm` that is not `None`. The search ends after 65 536
+    /// clocks, or if `confirm` returns `None` 32 times.
     ///
     /// # Errors
     /// Fails if `confirm` fails, or if the mutant cannot be simulated.
@@ -155,7 +153,6 @@ impl PointSearch {
         Ok(None)
     }
 
-    /// Draws a new point, or takes a kept point and changes the value of one operand.
     fn draw(&self, random: &mut Random, kept: &DeepestPoints, point: &mut RawPoint) {
         let parent = kept.any(random).filter(|_| !random.once_in(4));
         point.clear();
@@ -179,8 +176,8 @@ impl PointSearch {
     }
 }
 
-/// Returns a random raw value of an operand: mostly one of its domain, sometimes one with a single bit set, and sometimes any
-/// value of the format. A single bit shows faults that make this bit stuck.
+/// Returns mostly a value of the operand's domain, sometimes one with a single bit set, and sometimes any value of the format.
+/// A single bit shows faults that make this bit stuck.
 fn value(random: &mut Random, operand: &Operand) -> i64 {
     let format = operand.format;
     match random.below(8) {
@@ -190,13 +187,11 @@ fn value(random: &mut Random, operand: &Operand) -> i64 {
     }
 }
 
-/// Returns a raw value with one bit inverted. For example, 0 in an unsigned format of 8 bits becomes a power of two up
-/// to 128.
+/// Inverts one bit. For example, 0 in an unsigned format of 8 bits becomes a power of two up to 128.
 fn flipped(random: &mut Random, Operand { format, .. }: &Operand, raw: i64) -> i64 {
     format.raw(raw as u64 ^ 1 << random.below(format.width().into())) as i64
 }
 
-/// Returns the lanes in which one of the nets differs between the fault-free pipeline and the mutant.
 fn differing<'m>(
     sound: &Machine<LANES>,
     mutant: &'m Machine<LANES>,

@@ -1,8 +1,8 @@
 //! Measures a core in standard cells of 0.18 µm before layout, with Yosys for the area and OpenSTA for the delay.
 //!
-//! Yosys buffers nets with a large fan-out and sizes the cells. By default, the cell library is from Oklahoma State University,
-//! in the typical corner, as Debian's package `qflow-tech-osu018` has it. The number of gates is the area of all cells, divided
-//! by the area of the cell NAND2X1.
+//! Yosys buffers nets with a large fan-out and sizes the cells. By default, the cell library is from Oklahoma State
+//! University, in the typical corner, as Debian's package `qflow-tech-osu018` has it. The number of gates is the area of all
+//! cells, divided by the area of the cell NAND2X1.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -25,16 +25,13 @@ const STATISTICS: &str = "cells.txt";
 const GATE: &str = "NAND2X1";
 const CONSTRAINTS: &str = "cells.constr";
 
-/// A file that describes standard cells in the format Liberty, with its contents.
+/// A file of standard cells in the format Liberty, with its contents.
 pub struct CellLibrary {
     path: PathBuf,
     text: String,
 }
 
 impl CellLibrary {
-    /// Reads a cell library.
-    ///
-    /// # Errors
     /// Fails if the library is missing or cannot be read. If it is missing, the message says how to install it.
     pub fn read(path: &Path) -> Result<Self> {
         if !path.is_file() {
@@ -55,8 +52,7 @@ impl CellLibrary {
     }
 }
 
-/// Measures the area of a core alone, and the longest path of the core in its harness. Calls `done` after synthesis and after
-/// timing.
+/// Measures the area of a core alone, and its longest path in its harness. Calls `done` after synthesis and after timing.
 ///
 /// # Errors
 /// Fails if a tool fails, takes too long or does not report a figure, or if the library has no area of the cell NAND2X1.
@@ -101,7 +97,7 @@ pub fn measure(
     Ok(Figures::new(Target::Osu018, DEVICE, area).with_runs(vec![(1000.0 / period, path)]))
 }
 
-/// Returns the area of the cell [`GATE`] in the text of a cell library, in µm². Returns `None` if the text does not state it.
+/// Returns the area of the cell [`GATE`] in a cell library, in µm².
 fn gate(liberty: &str) -> Option<f64> {
     let (_, cell) = liberty.split_once(&format!("cell ({GATE})"))?;
     let (_, area) = cell.split_once("area :")?;
@@ -109,8 +105,7 @@ fn gate(liberty: &str) -> Option<f64> {
 }
 
 /// Returns the area of the cells in µm² and in gates, and the number of flip-flops, from the text of Yosys's `stat`. `gate` is
-/// the area of a gate in µm². For example, the line `Chip area for module 'rsqrt': 24000.0` gives 24 000 µm². Returns `None` if
-/// no such line exists.
+/// the area of a gate in µm². For example, the line `Chip area for module 'rsqrt': 24000.0` gives 24 000 µm².
 fn area(statistics: &str, gate: f64) -> Option<Area> {
     let total = statistics.lines().find_map(|line| {
         let (before, area) = line.split_once(": ")?;
@@ -128,7 +123,7 @@ fn area(statistics: &str, gate: f64) -> Option<Area> {
     })
 }
 
-/// Returns the shortest period in nanoseconds, and the longest path. Fails if OpenSTA fails, takes too long or states no path.
+/// Returns the shortest period in nanoseconds, and the longest path.
 fn timing(
     sta: &Tool,
     subject: &SynthesisSubject,
@@ -156,8 +151,8 @@ fn timing(
     Ok((PERIOD - slack, steps(netlist, &said)))
 }
 
-/// Returns the points of the longest path in OpenSTA's report, each with its name in the description and its time in
-/// nanoseconds. The last point is the register at the end of the path. Nets that the description does not name are left out.
+/// Returns the points of the longest path in OpenSTA's report, with times in nanoseconds. The last point is the register at
+/// the end of the path. Nets that the description does not name are left out.
 fn steps(netlist: &Netlist, said: &str) -> Vec<PathPoint> {
     let mut points = Vec::new();
     let mut time = 0.0;

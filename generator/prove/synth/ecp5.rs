@@ -2,7 +2,7 @@
 //! multipliers.
 //!
 //! nextpnr-ecp5 knows the delays of block RAMs, and of multipliers that have no register or only a register at the output. The
-//! measurement fails if a multiplier has other registers inside. The module `nextpnr` runs the measurement.
+//! measurement fails if a multiplier has other registers inside.
 
 use anyhow::Result;
 use serde_json::Value;
@@ -26,9 +26,8 @@ fn prepare(_workspace: &Workspace, netlist: &Netlist) -> Result<()> {
     })
 }
 
-/// Returns whether nextpnr-ecp5 times a multiplier whose parameter `parameter` has the value `value`. A multiplier may have a
-/// register at its output, but no other registers. For example, `REG_OUTPUT_CLK` may be a clock, and `REG_INPUTA_CLK` must be
-/// `NONE`.
+/// Returns whether nextpnr-ecp5 times a multiplier whose parameter `parameter` has this value. Only the output may have a
+/// register: `REG_OUTPUT_CLK` may be a clock, and `REG_INPUTA_CLK` must be `NONE`.
 fn is_timed(parameter: &str, value: &Value) -> bool {
     let clocked = parameter.starts_with("REG_") && parameter.ends_with("_CLK");
     !clocked || parameter == "REG_OUTPUT_CLK" || value == "NONE"

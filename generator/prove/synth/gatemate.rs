@@ -1,7 +1,7 @@
-//! Defines how nextpnr-himbaechel measures a core on the FPGA family GateMate: the requested frequency, and no further options.
+//! Defines how nextpnr-himbaechel measures a core on the FPGA family GateMate.
 //!
 //! Products are arrays of logic cells. nextpnr-himbaechel knows the delays of logic cells and of block RAMs, so the module
-//! checks no cell. The module `nextpnr` runs the measurement.
+//! checks no cell.
 
 use super::nextpnr::Recipe;
 use glint_show::figures::Target;

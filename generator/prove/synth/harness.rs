@@ -14,19 +14,14 @@ pub const TOP: &str = "glint_harness";
 /// The name of the core's instance in the harness module.
 pub const CORE: &str = "core";
 
-/// The bits of a port in the shift register that feeds all inputs or captures all outputs, from `low` to `high`, both
-/// inclusive. For example, ports of 1, 8 and 12 bits have bit 0, bits 1 to 8 and bits 9 to 20.
+/// The bits `low` to `high` of a port in the shift register that feeds all inputs or captures all outputs. For example, ports
+/// of 1, 8 and 12 bits have bit 0, bits 1 to 8 and bits 9 to 20.
 struct Slice<'a> {
     port: &'a str,
     high: u32,
     low: u32,
 }
 
-/// Returns the Verilog of the harness. A shift register feeds all inputs of the core. Each output is captured in a register and
-/// then shifted out, so that the harness has four pins, whatever the ports of the core.
-///
-/// # Errors
-/// Fails if the template fails.
 pub fn harness(design: &Design) -> Result<String> {
     let (inputs, fed) = slices(design, design.inputs());
     let (outputs, captured) = slices(design, design.outputs());

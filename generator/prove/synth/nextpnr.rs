@@ -17,20 +17,19 @@ use glint_tools::Tool;
 
 /// The settings with which nextpnr measures a core on an FPGA family.
 pub struct Recipe {
-    /// The target that is measured.
     pub target: Target,
-    /// The speed grade, in words, or an empty text. For example, `speed grade 6`.
+    /// The speed grade in words, for example `speed grade 6`; may be empty.
     pub speed: &'static str,
-    /// Further options of nextpnr; the chip and the frequency have options of their own.
+    /// Further options; the chip and the frequency have options of their own.
     pub options: &'static str,
-    /// The frequency that nextpnr is asked for, in MHz. No core may reach this frequency, so that the placer tries hardest.
+    /// The frequency in MHz that nextpnr is asked for. No core may reach it, so that the placer tries hardest.
     pub goal: u32,
     /// Checks that nextpnr times every cell of the netlist, and prepares the files that nextpnr reads.
     pub prepare: fn(&Workspace, &Netlist) -> Result<()>,
 }
 
-/// Measures the area of a core alone, and the frequency of the core in its harness for each seed, as a recipe says. The
-/// function calls `done` after synthesis and after each seed.
+/// Measures the area of a core alone, and its frequency in its harness for each seed. The function calls `done` after
+/// synthesis and after each seed.
 ///
 /// # Errors
 /// Fails if a tool fails, takes too long or reports no frequency, or if the recipe's `prepare` fails.
@@ -58,8 +57,7 @@ pub fn measure(
     routed(figures, subject, done, |seed| route(recipe, nextpnr, &workspace, &netlist, chip, seed))
 }
 
-/// Places, routes and times the core with one seed. Returns the frequency in MHz and the longest path. Fails if nextpnr fails,
-/// takes too long, or reports no frequency.
+/// Returns the frequency in MHz and the longest path for one seed.
 fn route(
     recipe: &Recipe,
     nextpnr: &Tool,
@@ -88,9 +86,8 @@ fn route(
     Ok((frequency, steps(netlist, &report, &format!("posedge {clock}"))))
 }
 
-/// Returns the points of the longest path between two registers, each with its name in the description and its time in
-/// nanoseconds. `clock` is the clock edge in the report, such as `posedge clk`. The list is empty if the report has no such
-/// path.
+/// Returns the points of the longest path between two registers, with times in nanoseconds. `clock` is the clock edge in the
+/// report, such as `posedge clk`.
 fn steps(netlist: &Netlist, report: &Value, clock: &str) -> Vec<PathPoint> {
     let paths = report["critical_paths"].as_array().into_iter().flatten();
     let path = paths.into_iter().find(|path| path["from"] == clock && path["to"] == clock);

@@ -2,8 +2,7 @@
 //! preparation of its input files.
 //!
 //! nextpnr-nexus knows the delay of every kind of cell, so the module checks no cell. The preparation writes the locations of
-//! the pins. The preparation also disconnects the grounded carry input of the first cell of a carry chain, which nextpnr-nexus
-//! 0.11 refuses.
+//! the pins, and disconnects a grounded carry input that nextpnr-nexus 0.11 refuses.
 
 use std::collections::BTreeSet;
 
@@ -24,8 +23,7 @@ pub const RECIPE: Recipe = Recipe {
     prepare,
 };
 
-/// The locations of the four pins of the harness, which nextpnr-nexus demands: a clock pin, and three others of the package
-/// CABGA400.
+/// nextpnr-nexus demands the locations of the four pins: a clock pin, and three others of the package CABGA400.
 const PINS: &str = "ldc_set_location -site {L5} [get_ports clk]\n\
                     ldc_set_location -site {N14} [get_ports in]\n\
                     ldc_set_location -site {G14} [get_ports take]\n\

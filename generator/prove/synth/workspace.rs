@@ -17,16 +17,12 @@ pub struct Workspace<'a> {
     subject: &'a SynthesisSubject<'a>,
 }
 
-/// The name of the Verilog file with the harness, a module with registers around the core. Yosys does not read it when it
-/// synthesises the core alone.
+/// The Verilog file with the harness. Yosys does not read it when it synthesises the core alone.
 pub const HARNESS: &str = "glint_harness.v";
-/// The name of the file with the netlist after synthesis, as JSON.
+/// The netlist after synthesis.
 pub const NETLIST: &str = "harness.json";
 
 impl<'a> Workspace<'a> {
-    /// Writes the Verilog of the core and of its harness into a new temporary directory.
-    ///
-    /// # Errors
     /// Fails if a file cannot be written.
     pub fn new(yosys: &'a Tool, subject: &'a SynthesisSubject<'a>) -> Result<Self> {
         let sources = YosysSources::new(yosys, subject.files, subject.limit)?;
@@ -34,8 +30,8 @@ impl<'a> Workspace<'a> {
         Ok(Self { sources, subject })
     }
 
-    /// Runs nextpnr on the netlist in the file [`NETLIST`], with a seed. `options` are the options of the FPGA family,
-    /// separated by single spaces. For example, they begin with `--up5k --package sg48` for iCE40.
+    /// Runs nextpnr on the netlist in the file [`NETLIST`]. `options` are the options of the FPGA family, separated by single
+    /// spaces: for iCE40 they begin with `--up5k --package sg48`.
     ///
     /// # Errors
     /// Fails if nextpnr fails or takes too long.
@@ -46,8 +42,8 @@ impl<'a> Workspace<'a> {
         Ok(())
     }
 
-    /// Synthesises the core alone, and the core in its harness. Returns the area of the core alone and the netlist of the core
-    /// in its harness, and leaves this netlist in the file [`NETLIST`].
+    /// Synthesises the core alone for its area, and the core in its harness for the netlist, which is also left in the file
+    /// [`NETLIST`].
     ///
     /// # Errors
     /// Fails if Yosys fails or takes too long, if Yosys does not know the family of `target`, or if its output lacks the area
@@ -68,9 +64,6 @@ impl<'a> Workspace<'a> {
         Ok((synthesis::usage(&self.sources, top, family)?, self.netlist()?))
     }
 
-    /// Parses the netlist in the file [`NETLIST`].
-    ///
-    /// # Errors
     /// Fails if the file is missing, or if it has no nets and cells of the harness.
     pub fn netlist(&self) -> Result<Netlist> {
         Netlist::new(self.subject.design, &self.sources.json(NETLIST)?)

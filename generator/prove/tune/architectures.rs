@@ -1,8 +1,8 @@
-//! Builds a configuration in each of its architectures and estimates the cost: the sequential core, and pipelines with
-//! different intervals, which are the numbers of clocks from one point to the next, at most 64.
+//! Builds a configuration in each of its architectures and estimates the cost. These are the sequential core, and pipelines
+//! with at most 64 clocks from one point to the next.
 //!
-//! Nothing is synthesised. A pipeline of a sequential configuration is scheduled for the target, at the default clock or, if
-//! that is out of reach, at the fastest clock that can be reached.
+//! A pipeline of a sequential configuration is scheduled for the target, at the default clock or, if that is out of reach, at
+//! the fastest clock that can be reached.
 
 use anyhow::{Context, Result};
 use rayon::prelude::*;
@@ -15,18 +15,14 @@ use glint_core::registry::OpenedConfig;
 use glint_rtl::netlist::{Design, Driver, Op};
 use glint_show::evidence::comparison::{EXPONENT, clocks_per_point};
 
-/// A configuration in one architecture, with its estimated cost.
 pub struct Architecture {
-    /// The core.
     pub core: Core,
     /// The number of clocks from one point to the next in a pipeline; `None` for a sequential core.
     pub interval: Option<u32>,
-    /// The number of clocks from one point to the next. For a sequential core that computes lines of points, it may be a
-    /// fraction.
+    /// The number of clocks from one point to the next. It may be a fraction for a sequential core that computes lines of
+    /// points.
     pub clocks_per_point: f64,
-    /// The number of multipliers in the netlist.
     pub multipliers: usize,
-    /// The estimated cost.
     pub cost: Cost,
 }
 
@@ -45,7 +41,7 @@ impl Architecture {
         self.cost.mhz / self.clocks_per_point
     }
 
-    /// Returns the architecture in words: for example, `sequential`, or `pipeline, interval 8`.
+    /// Names the architecture: for example, `sequential`, or `pipeline, interval 8`.
     pub fn words(&self) -> String {
         match self.interval {
             None => "sequential".to_owned(),
@@ -53,14 +49,13 @@ impl Architecture {
         }
     }
 
-    /// Returns the keys that make this pipeline, or `None` for a sequential core. For example, `architecture = "pipelined",
-    /// pipeline.interval = 8`.
+    /// Returns the keys that make this pipeline, for example `architecture = "pipelined", pipeline.interval = 8`.
     pub fn keys(&self) -> Option<String> {
         let interval = self.interval?;
         Some(format!("architecture = \"pipelined\", pipeline.interval = {interval}"))
     }
 
-    /// Returns the estimated DSP blocks and rate in words: for example, `1 DSP block, 18.1 million points a second`.
+    /// Returns a text such as `1 DSP block, 18.1 million points a second`.
     pub fn figures(&self) -> String {
         let blocks = match self.cost.dsps {
             1 => "1 DSP block".to_owned(),
@@ -69,8 +64,7 @@ impl Architecture {
         format!("{blocks}, {:.1} million points a second", self.rate())
     }
 
-    /// Returns whether this architecture has at least the rate of `other` and at most as many DSP blocks, and is better in the
-    /// rate or in the number of DSP blocks.
+    /// Returns whether this architecture is at least as good as `other` in rate and DSP blocks, and better in one of them.
     pub fn dominates(&self, other: &Self) -> bool {
         let (rate, dsps) = (self.rate(), self.cost.dsps);
         let is_as_good = rate >= other.rate() && dsps <= other.cost.dsps;
@@ -78,15 +72,12 @@ impl Architecture {
     }
 }
 
-/// Returns the number of multipliers in a netlist. A shared multiplier counts once.
+/// A shared multiplier counts once.
 fn multipliers(design: &Design) -> usize {
     let products = design.nets.iter().filter(|net| matches!(net.driver, Driver::Op(Op::Mul(..))));
     products.count()
 }
 
-/// Returns a configuration as a sequential core on a target.
-///
-/// # Errors
 /// Fails if the configuration makes no core.
 pub fn sequential(base: &OpenedConfig, target: Target) -> Result<Architecture> {
     let mut config = base.config.clone();
@@ -95,8 +86,7 @@ pub fn sequential(base: &OpenedConfig, target: Target) -> Result<Architecture> {
     Architecture::new(Core::build(base.with_config(config)?)?, target)
 }
 
-/// Returns a configuration as a pipeline with the longest interval that can be built, at most the clocks of its sequential core
-/// and at most 64. `sequential` is the configuration as a sequential core. Returns `None` if the device cannot be a pipeline.
+/// Returns the pipeline with the longest interval that can be built, at most the clocks of its sequential core and at most 64.
 /// For example, `cosine-power` has an interval of 8, the clocks of its sequential core.
 pub fn longest_interval(sequential: &Architecture, target: Target) -> Option<Architecture> {
     let base = &sequential.core.opened;
@@ -106,15 +96,13 @@ pub fn longest_interval(sequential: &Architecture, target: Target) -> Option<Arc
 /// The largest value of `pipeline.interval`.
 const LONGEST: u32 = 64;
 
-/// Returns the intervals that are tried for a pipeline: from 1 to the clocks of its sequential core, at most [`LONGEST`].
 fn intervals(sequential: &Architecture) -> std::ops::RangeInclusive<u32> {
     let clocks = sequential.clocks_per_point.ceil() as u32;
     1..=clocks.min(LONGEST)
 }
 
 /// Returns a configuration as a pipeline with an interval. If the configuration is sequential, the pipeline is scheduled for
-/// the target. If such a pipeline cannot reach the default clock, it is scheduled for the fastest clock that it can reach.
-/// Fails if the device cannot be a pipeline with this interval.
+/// the target, at the default clock or the fastest clock that it can reach.
 fn pipeline(base: &OpenedConfig, target: Target, interval: u32) -> Result<Architecture> {
     let mut config = base.config.clone();
     config.set("architecture", Value::Text("pipelined".to_owned()));
@@ -131,10 +119,9 @@ fn pipeline(base: &OpenedConfig, target: Target, interval: u32) -> Result<Archit
     Architecture::new(core, target)
 }
 
-/// Returns the sequential core of a configuration, and then its pipelines from the longest interval to 1. The function leaves
-/// out a pipeline if a pipeline with a shorter interval has no more multipliers. A pipeline with the interval `kept` is never
-/// left out. For example, `cosine-power` has the intervals 8, 4, 3, 2 and 1: with 5, 6 and 7 it needs two multipliers, as with
-/// 4.
+/// Returns the sequential core of a configuration, and then its pipelines from the longest interval to 1. A pipeline is left
+/// out if a shorter interval needs no more multipliers, unless its interval is `kept`. For example, `cosine-power` has the
+/// intervals 8, 4, 3, 2 and 1: with 5, 6 and 7 it needs two multipliers, as with 4.
 ///
 /// # Errors
 /// Fails if the configuration makes no sequential core, or no pipeline. The message then has the reason for the shortest

@@ -1,11 +1,10 @@
 //! Searches for the configuration of a device with the smallest estimated cost whose error is at most a limit that the user
 //! gives. The search is local, so a cheaper configuration may exist.
 //!
-//! The error is the proved bound of the accuracy contract, so the answer of [`tune`] holds for every operand of the domain. The
-//! cost is estimated from the netlist ([`model`]), without synthesis. The search changes only keys that change neither a port
-//! nor the formula (`space`). If the user states a rate or a largest number of DSP blocks, it also tries pipelines. Keys that
-//! add microinstructions, and so clocks, are changed only in these two cases, if DSP blocks are minimised, or if no other
-//! configuration fits the chip.
+//! The error is the proved bound of the accuracy contract, so the answer of [`tune`] holds for every operand of the domain.
+//! The cost is estimated from the netlist ([`model`]). The search changes only keys that change neither a port nor the formula
+//! (`space`). It changes keys that add microinstructions, and so clocks, only if the user states a rate or a largest number of
+//! DSP blocks. It also changes them to minimise DSP blocks, or if no other configuration fits the chip.
 
 pub mod architectures;
 pub mod model;
@@ -27,19 +26,16 @@ use space::SearchSpace;
 
 use crate::synth::Target;
 
-/// The unit in which the user of `glint tune` states the largest error: the reflectance f of a highlight, or an output's last
-/// bit.
+/// The unit of the largest error that the user of `glint tune` states.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ErrorUnit {
     /// The reflectance f, from 0 to 1: an error is a difference of f.
     F,
-    /// The weight of an output's least significant bit.
     Output,
 }
 
 impl ErrorUnit {
-    /// Returns a configuration's error bound in this unit.
     pub fn of(self, bounds: &Bounds) -> f64 {
         match self {
             Self::F => bounds.f,
@@ -57,12 +53,10 @@ impl fmt::Display for ErrorUnit {
     }
 }
 
-/// The cost of a core that `glint tune` minimises.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Objective {
-    /// The area: look-up tables, where a DSP block or a block RAM counts for as many look-up tables as the chip has for each.
+    /// Look-up tables, where a DSP block or a block RAM counts for as many as the chip has for each.
     Area,
-    /// Look-up tables.
     Luts,
     /// The number of DSP blocks, and among equal numbers the area.
     Dsps,
@@ -70,39 +64,34 @@ pub enum Objective {
     Memory,
 }
 
-/// The goal of `glint tune`: the limits that the user states, and the cost that the search minimises.
+/// The limits that the user states, and the cost that the search minimises.
 #[derive(Clone, Debug)]
 pub struct TuningGoal {
-    /// The largest error bound that a configuration may have.
     pub error: f64,
-    /// The unit in which `error` is stated.
     pub unit: ErrorUnit,
     /// The FPGA family for which costs are estimated.
     pub target: Target,
-    /// The cost that the search minimises, such as the number of look-up tables.
     pub objective: Objective,
-    /// The lowest acceptable clock frequency in MHz, by the estimate; `None` allows every clock.
+    /// The lowest acceptable clock frequency in MHz, by the estimate.
     pub clock: Option<f64>,
-    /// The lowest acceptable rate in million points a second, by the estimate of the clock; `None` allows every rate.
+    /// The lowest acceptable rate in million points a second, by the estimate of the clock.
     pub rate: Option<f64>,
-    /// The largest acceptable number of DSP blocks; `None` sets no limit.
     pub most_dsps: Option<u64>,
 }
 
-/// The longest interval, in clocks, that is tried for a pipeline. No sequential core of the catalogue takes more clocks for a
-/// point.
+/// The longest interval that is tried, in clocks. No sequential core of the catalogue takes more clocks for a point.
 const LONGEST: i64 = 64;
 
-/// The keys that decide the rate of a pipeline. The answer lists them as keys that the search has changed.
+/// The keys that decide the rate of a pipeline. The answer lists them among the keys that the search has changed.
 const ARCHITECTURE: [&str; 2] = ["architecture", "pipeline.interval"];
 
 /// Searches for the configuration with the smallest cost that meets `goal`. The search is local, so a smaller configuration may
 /// exist.
 ///
-/// `base` has the keys that are part of the user's question. The search changes the other keys, except the keys in `fixed`. The
-/// search also tries pipelines if the goal has a rate or a limit of DSP blocks, and the target is an FPGA family. The search
-/// tries no pipeline if `fixed` contains `pipeline.interval`, or contains `architecture` and `base` is sequential. Such a
-/// pipeline accepts a point (a set of operands) as seldom as the goal allows, so that several products can share a multiplier.
+/// `base` has the keys that are part of the user's question. The search changes the other keys, except the keys in `fixed`. It
+/// also tries pipelines if the goal has a rate or a limit of DSP blocks, and the target is an FPGA family. Such a pipeline
+/// accepts a point (a set of operands) as seldom as the goal allows, so that several products can share a multiplier. The
+/// search tries no pipeline if `fixed` contains `pipeline.interval`, or contains `architecture` and `base` is sequential.
 /// `progress` is called with the number of configurations that were evaluated.
 ///
 /// # Errors
@@ -148,9 +137,7 @@ pub fn tune(
 }
 
 /// Returns the pipelines that [`tune`] tries, the longest interval first. For example, a clock of 50 MHz and a rate of 10
-/// million points a second allow the intervals 5, 4, 3, 2 and 1. The list is empty if the goal has neither a rate nor a limit
-/// of DSP blocks, if the target is no FPGA family, or if the rate exceeds the clock. The list is also empty if `fixed` contains
-/// `pipeline.interval`, or contains `architecture` and `base` is sequential.
+/// million points a second allow the intervals 5, 4, 3, 2 and 1.
 fn pipelines(device: &Device, base: &Config, fixed: &[&str], goal: &TuningGoal) -> Vec<Config> {
     let Some(family) = goal.target.family() else { return Vec::new() };
     if goal.rate.is_none() && goal.most_dsps.is_none() {
@@ -185,8 +172,7 @@ fn pipelines(device: &Device, base: &Config, fixed: &[&str], goal: &TuningGoal) 
     pipelines
 }
 
-/// Searches as [`tune`] does, in the architecture of `base` alone. Fails if `base` makes no design, or if the search does not
-/// meet the goal.
+/// Searches as [`tune`] does, in the architecture of `base` alone.
 fn of_architecture(
     device: &Device,
     base: &Config,
@@ -210,8 +196,8 @@ fn of_architecture(
     Ok(if fits(&shared) { shared } else { answer })
 }
 
-/// Tries all combinations of the `values` of keys, and returns the configuration with the smallest cost that meets the goal, or
-/// `None` if no combination does. Use it for tests of the search, and for small spaces.
+/// Tries all combinations of the `values` of keys, and returns the configuration with the smallest cost that meets the goal.
+/// Use it for tests of the search, and for small spaces.
 ///
 /// # Errors
 /// Fails if `base` makes no design, or if a key does not exist.

@@ -2,8 +2,7 @@
 //!
 //! DSP blocks and block RAMs follow from the bit widths. LUTs are a weighted sum of [`Features`] of the netlist;
 //! `benches/tune/fit` fits the weights to records of `glint synth`. The frequency follows from the longest path between
-//! registers. The delays of its cells are in [`Timing`](glint_base::target::Timing): they were measured or estimated for each
-//! FPGA family, and the scheduler of pipelines uses them too.
+//! registers, with the delays of [`Timing`](glint_base::target::Timing), which the scheduler of pipelines uses too.
 
 use std::collections::BTreeSet;
 
@@ -26,35 +25,28 @@ pub struct Features {
     pub logic: f64,
     /// The number of bits of the ROMs that are made of look-up tables, divided by 16.
     pub rom: f64,
-    /// The number of bits in the sums of partial products, for products that take several multipliers: half the width of the
-    /// product for each multiplier beyond the first. For a family without DSP blocks, the number of look-up tables that its
-    /// products take.
+    /// The number of bits in the sums of partial products: half the width of the product for each multiplier beyond the first.
+    /// For a family without DSP blocks, the number of look-up tables that its products take.
     pub product: f64,
 }
 
-/// The estimated cost of a configuration on an FPGA target, without synthesis.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Cost {
-    /// The estimated number of look-up tables.
     pub luts: f64,
-    /// The estimated number of DSP blocks.
     pub dsps: u64,
-    /// The estimated number of block RAMs.
     pub block_rams: u64,
-    /// The number of bits of all ROMs.
     pub rom_bits: u64,
-    /// The estimated clock frequency in MHz.
+    /// The clock frequency in MHz.
     pub mhz: f64,
 }
 
-/// Returns the FPGA family whose model estimates a target. Standard cells have no model of their own and use the model of ECP5,
-/// which is the most similar family.
+/// Standard cells have no model of their own and use the model of ECP5, the most similar family.
 fn family(target: Target) -> &'static Family {
     target.family().unwrap_or(&ECP5)
 }
 
 impl Cost {
-    /// Estimates the cost of a design on a target. For standard cells, the estimate is the one for ECP5.
+    /// For standard cells, the estimate is the one for ECP5.
     pub fn new(design: &Design, target: Target) -> Self {
         let family = family(target);
         let features = Features::new(design, target);
@@ -82,14 +74,13 @@ impl Cost {
         }
     }
 
-    /// Returns the area in look-up tables. A DSP block or block RAM counts as many look-up tables as a chip of the family has for
-    /// each such block. For example, iCE40 UP5K has 5280 look-up tables and 8 DSP blocks, so that a DSP block counts as 660.
+    /// Returns the area in look-up tables, as [`area`] counts it.
     pub fn area(&self, target: Target) -> f64 {
         area(target, self.luts, self.dsps, self.block_rams)
     }
 
-    /// Returns the resources that the usual chip of the target lacks, in words; empty if the core fits. For example, `it does
-    /// not fit the iCE40 UP5K: it takes 9 of 8 DSP blocks`.
+    /// Returns the resources that the usual chip of the target lacks, in words: for example, `it does not fit the iCE40 UP5K:
+    /// it takes 9 of 8 DSP blocks`. The text is empty if the core fits.
     pub fn excess(&self, target: Target) -> String {
         let chip = &family(target).chips[0];
         let wanted = [self.luts.ceil() as u64, self.dsps, self.block_rams];
@@ -117,7 +108,7 @@ pub fn area(target: Target, luts: f64, dsps: u64, block_rams: u64) -> f64 {
 }
 
 impl Features {
-    /// Counts the features of a design on a target. For standard cells, the counts are the ones for ECP5.
+    /// For standard cells, the counts are the ones for ECP5.
     pub fn new(design: &Design, target: Target) -> Self {
         let family = family(target);
         let mut sum = Self::default();
@@ -152,7 +143,7 @@ impl Features {
     }
 }
 
-/// Returns the number of DSP blocks for the product of `a` and `b`, with the operands in the order that takes fewer blocks.
+/// Returns the number of DSP blocks of a product, with the operands in the order that takes fewer blocks.
 fn dsps_of_product(design: &Design, family: &Family, a: NetId, b: NetId) -> u64 {
     let [a, b] = [a, b].map(|net| {
         let sign = if design.net(net).format.signed { family.estimate.sign } else { 0 };
@@ -177,9 +168,9 @@ fn dsps_one_way(family: &Family, first: u32, second: u32) -> u64 {
     blocks
 }
 
-/// Returns the widths of the slices into which Yosys divides an operand of `operand` bits: slices of the width of a block, and
-/// a rest. A rest of a single bit is left out, because it becomes a row of gates. For example, 35 bits for blocks of 16 are 16,
-/// 16 and 3, and 33 bits are 16 and 16.
+/// Returns the widths of the slices into which Yosys divides an operand: slices of the width of a block, and a rest. A rest of
+/// a single bit is left out, because it becomes a row of gates. For example, 35 bits for blocks of 16 are 16, 16 and 3, and 33
+/// bits are 16 and 16.
 fn slices(operand: u32, block: u32) -> Vec<u32> {
     let mut slices = vec![block; (operand / block) as usize];
     let rest = operand % block;
@@ -189,8 +180,8 @@ fn slices(operand: u32, block: u32) -> Vec<u32> {
     slices
 }
 
-/// Returns the number of partial products of a product. The operands are in the order that has fewer of them. For example, on
-/// iCE40, whose blocks multiply 16 by 16 bits, a product of 20 by 12 bits has 2.
+/// Returns the smaller number of partial products in both orders. For example, on iCE40, whose blocks multiply 16 by 16 bits,
+/// a product of 20 by 12 bits has 2.
 fn blocks(family: &Family, a: u32, b: u32) -> u64 {
     let (wide, narrow) = family.timing.multiplier;
     let one_way = count_slices(a, wide) * count_slices(b, narrow);
@@ -198,13 +189,11 @@ fn blocks(family: &Family, a: u32, b: u32) -> u64 {
     one_way.min(other_way)
 }
 
-/// Returns the number of slices of an operand; an operand without bits has one slice.
 fn count_slices(operand: u32, block: u32) -> u64 {
     u64::from(operand.div_ceil(block).max(1))
 }
 
-/// Returns the number of block RAMs. A synchronous ROM takes block RAMs if it is large enough and does not share the block of
-/// another ROM.
+/// A synchronous ROM takes block RAMs if it is large enough and does not share the block of another ROM.
 fn block_rams(design: &Design, family: &Family) -> u64 {
     let mut blocks = 0;
     for rom in &design.roms {
@@ -217,7 +206,7 @@ fn block_rams(design: &Design, family: &Family) -> u64 {
     blocks
 }
 
-/// Returns the delay of the longest path between registers, in nanoseconds, including the delay of a register.
+/// Returns the longest delay between registers, in nanoseconds, including the delay of a register.
 fn period(design: &Design, family: &Family) -> f64 {
     let delays = &family.timing;
     let order = design.levelise().unwrap_or_default();
@@ -248,7 +237,7 @@ fn period(design: &Design, family: &Family) -> f64 {
     longest + delays.register
 }
 
-/// Returns the delay of the cell that drives a net, in nanoseconds.
+/// Returns the delay of a net's cell, in nanoseconds.
 fn cell_delay(design: &Design, family: &Family, id: NetId, driver: &Driver) -> f64 {
     let delays = &family.timing;
     let levels = |inputs: u32| delays.logic * f64::from(inputs.max(2).ilog2().div_ceil(2).max(1));

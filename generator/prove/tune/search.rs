@@ -1,8 +1,8 @@
 //! Searches for the configuration with the smallest cost whose error, clock, rate and DSP blocks meet a goal.
 //!
-//! The search moves from a configuration to a neighbour, which has another value of one key. The search first moves toward the
-//! goal until the goal is met, and fails if no neighbour is nearer. Then it moves to smaller configurations that still meet the
-//! goal. If no change of one key helps, it tries changes of two keys. The result may be a local minimum.
+//! The search moves from a configuration to a neighbour, which has another value of one key. It first moves toward the goal,
+//! and fails if no neighbour is nearer. Then it moves to smaller configurations that still meet the goal. If no change of one
+//! key helps, it tries changes of two keys. The result may be a local minimum.
 
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
@@ -22,19 +22,16 @@ use glint_show::evidence::comparison::{EXPONENT, clocks_per_point};
 /// A configuration that `glint tune` has evaluated, with its error bound, its cost and its rate.
 #[derive(Clone, Debug)]
 pub struct Candidate {
-    /// The configuration that was evaluated.
     pub config: Config,
-    /// The proved error bound of the configuration's accuracy contract.
     pub bounds: Bounds,
-    /// The estimated cost of the configuration.
     pub cost: Cost,
-    /// The number of clocks from one point to the next, as `glint synth` counts them; `None` if the device never shows a result.
+    /// The number of clocks from one point to the next, as `glint synth` counts them; `None` if the device never shows a
+    /// result.
     pub clocks: Option<f64>,
 }
 
 impl Candidate {
-    /// Returns the number of points per second in millions, at the estimated clock frequency, or `None` if the device never
-    /// shows a result.
+    /// Returns the rate in million points a second, at the estimated clock frequency.
     pub fn rate(&self) -> Option<f64> {
         self.clocks.map(|clocks| self.cost.mhz / clocks)
     }
@@ -43,20 +40,18 @@ impl Candidate {
 /// The result of `glint tune`: the best configuration that it found, and the alternatives.
 #[derive(Clone, Debug)]
 pub struct Answer {
-    /// The configuration with the smallest cost that was found and meets the goal.
     pub best: Candidate,
     /// The Pareto front, by rising error: the configurations for which no other has both a smaller error and a smaller cost.
-    /// The front covers only configurations that the search has evaluated and that have the wanted clock, rate and DSP blocks.
-    /// Their errors may exceed the limit.
+    /// It covers the configurations that the search has evaluated and that have the wanted clock, rate and DSP blocks. Their
+    /// errors may exceed the limit.
     pub front: Vec<Candidate>,
-    /// The keys of the configuration (parameters such as bit widths) that the search was allowed to change.
+    /// The keys that the search was allowed to change.
     pub free: Vec<&'static str>,
-    /// The number of configurations that the search evaluated.
     pub looked_at: usize,
 }
 
-/// A search in progress. The map `seen` caches the candidates by the text of their configurations; `None` is for a
-/// configuration that makes no design with the same interface.
+/// A search in progress. `seen` caches the candidates by the text of their configurations; `None` is for a configuration that
+/// makes no design with the same interface.
 pub struct Search<'a> {
     device: &'a Device,
     space: &'a SearchSpace,
@@ -75,7 +70,7 @@ impl<'a> Search<'a> {
         Self { device, space, goal, progress, seen: Mutex::default() }
     }
 
-    /// Searches from `base` until the goal is met, and then for smaller configurations. The result may be a local minimum.
+    /// Searches from `base` until the goal is met, and then for smaller configurations.
     ///
     /// # Errors
     /// Fails if `base` makes no design, or if no neighbour comes nearer to the goal before it is met.
@@ -101,8 +96,7 @@ impl<'a> Search<'a> {
         self.seen.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Evaluates all combinations of values, and returns the configuration with the smallest cost that meets the goal, or
-    /// `None` if no combination does.
+    /// Evaluates all combinations of values, and returns the configuration with the smallest cost that meets the goal.
     ///
     /// # Errors
     /// Fails if a key does not exist.
@@ -130,8 +124,8 @@ impl<'a> Search<'a> {
         Ok(self.smallest(found))
     }
 
-    /// Returns the candidate of a configuration, or `None` if the configuration makes no design with the same interface. The
-    /// function computes a candidate once, and later takes the candidate from the cache.
+    /// Returns the candidate of a configuration, if possible from the cache, or `None` if the configuration makes no design
+    /// with the same interface.
     fn look(&self, config: &Config) -> Option<Candidate> {
         let text = config.to_toml(self.space.schema());
         if let Some(known) = self.lock_seen().get(&text) {
@@ -144,7 +138,6 @@ impl<'a> Search<'a> {
         found
     }
 
-    /// Computes the candidate of a configuration, or `None` as [`Self::look`] does.
     fn compute(&self, config: &Config) -> Option<Candidate> {
         let opened = self.device.open(config.clone()).ok()?;
         let contract = opened.contract();
@@ -165,12 +158,10 @@ impl<'a> Search<'a> {
         self.goal.error(candidate)
     }
 
-    /// Returns whether a candidate meets the goal: its error bound, its DSP blocks and its clock.
     fn keeps(&self, candidate: &Candidate) -> bool {
         self.error(candidate) <= self.goal.error && self.is_possible(candidate)
     }
 
-    /// Returns whether a candidate has at most the allowed number of DSP blocks, and a clock that is fast enough.
     fn is_possible(&self, candidate: &Candidate) -> bool {
         self.has_dsps(candidate) && candidate.cost.mhz >= self.wanted_mhz(candidate)
     }
@@ -179,8 +170,8 @@ impl<'a> Search<'a> {
         self.goal.most_dsps.is_none_or(|most| candidate.cost.dsps <= most)
     }
 
-    /// Returns the clock that a candidate needs for the goal, in MHz. The clock is infinite if a rate is wanted and the
-    /// candidate never shows a result. For example, 2 million points a second at 10 clocks a point need 20 MHz.
+    /// Returns the clock that a candidate needs for the goal, in MHz. It is infinite if a rate is wanted and the candidate
+    /// never shows a result. For example, 2 million points a second at 10 clocks a point need 20 MHz.
     fn wanted_mhz(&self, candidate: &Candidate) -> f64 {
         let of_rate = match (self.goal.rate, candidate.clocks) {
             (Some(rate), Some(clocks)) => rate * clocks,
@@ -190,7 +181,7 @@ impl<'a> Search<'a> {
         self.goal.clock.unwrap_or_default().max(of_rate)
     }
 
-    /// Returns the costs of a candidate, the most important first, and the text of its configuration. The text decides between
+    /// Returns the costs of a candidate, the most important first, and the text of its configuration, which decides between
     /// candidates with equal costs.
     fn order(&self, candidate: &Candidate) -> ([f64; 5], String) {
         (self.goal.order(candidate), candidate.config.to_toml(self.space.schema()))
@@ -211,8 +202,7 @@ impl<'a> Search<'a> {
         smallest.map(|(_, candidate)| candidate)
     }
 
-    /// Returns the candidates that differ from `candidate` by `changes` changed keys, 1 or 2. Changes that make no design, or a
-    /// design with another interface, are left out.
+    /// Returns the candidates that differ from `candidate` by `changes` changed keys, 1 or 2.
     fn around(&self, candidate: &Candidate, changes: usize) -> Vec<Candidate> {
         let moves = self.space.moves(&candidate.config);
         let mut changed: Vec<Vec<(&'static str, Value)>> = Vec::new();
@@ -231,10 +221,8 @@ impl<'a> Search<'a> {
         all.filter_map(|values| self.look(&self.space.with(&candidate.config, values)?)).collect()
     }
 
-    /// Moves from `base` to the neighbour that is nearest to the goal, again and again, until the goal is met.
-    ///
-    /// # Errors
-    /// Fails if no neighbour is nearer to the goal.
+    /// Moves from `base` to the neighbour that is nearest to the goal, again and again, until the goal is met. Fails if no
+    /// neighbour is nearer.
     fn reach(&self, base: Candidate) -> Result<Candidate> {
         let mut here = base;
         while !self.keeps(&here) {
@@ -258,7 +246,7 @@ impl<'a> Search<'a> {
         Ok(here)
     }
 
-    /// Returns a number that is smaller for a candidate nearer to the goal. If `wants_error` is set, the number is the error.
+    /// Returns a number that is smaller for a candidate nearer to the goal. If `wants_error` is set, it is the error.
     /// Otherwise it is infinite if the error is too large, the number of DSP blocks if they are too many, and else minus the
     /// clock, as a share of the wanted clock.
     fn distance(&self, candidate: &Candidate, wants_error: bool) -> f64 {
@@ -273,7 +261,6 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Fails with the fastest clock that was found, which is too slow for the goal.
     fn too_slow(&self, fastest: &Candidate) -> Result<Candidate> {
         let wanted = match (self.goal.rate, fastest.clocks) {
             (Some(rate), Some(clocks)) => {
@@ -289,7 +276,6 @@ impl<'a> Search<'a> {
         )
     }
 
-    /// Fails with the smallest number of DSP blocks that was found, which is too large for the goal.
     fn too_many_dsps(&self, fewest: &Candidate) -> Result<Candidate> {
         bail!(
             "the smallest number of DSP blocks that was found with this error is {}, but {} are allowed; a \
@@ -299,8 +285,7 @@ impl<'a> Search<'a> {
         )
     }
 
-    /// Fails with the smallest error that was found, which is too large for the goal. The message names the largest term of the
-    /// bound.
+    /// Fails with the smallest error that was found, and names the largest term of the bound.
     fn out_of_reach(&self, nearest: &Candidate) -> Result<Candidate> {
         let unit = self.goal.unit;
         let mut largest: Option<&Term> = None;
@@ -325,8 +310,8 @@ impl<'a> Search<'a> {
         )
     }
 
-    /// Returns the candidate with the smallest cost among those that differ from `here` in `changes` keys and meet the goal.
-    /// Returns `None` if there is no such candidate, or if its cost is not smaller than the cost of `here`.
+    /// Returns the smallest candidate that differs from `here` in `changes` keys and meets the goal, if it is smaller than
+    /// `here`.
     fn descend(&self, here: &Candidate, changes: usize) -> Option<Candidate> {
         let smallest = self.smallest(self.around(here, changes))?;
         let is_smaller = self.goal.order(&smallest) < self.goal.order(here);
@@ -349,8 +334,8 @@ impl TuningGoal {
         }
     }
 
-    /// Returns numbers by which candidates are compared, the most important first: fit to the chip, objective, area, error bound,
-    /// and bits of ROM. Less is better.
+    /// Returns numbers by which candidates are compared, the most important first: fit to the chip, objective, area, error
+    /// bound, and bits of ROM. Less is better.
     pub(super) fn order(&self, candidate: &Candidate) -> [f64; 5] {
         let (cost, target) = (&candidate.cost, self.target);
         let excess = if cost.excess(target).is_empty() { 0.0 } else { 1.0 };
@@ -376,8 +361,8 @@ impl TuningGoal {
     }
 }
 
-/// Returns a value with at least six digits after the point, and with as many more as show that it is above a limit. For
-/// example, 0.5000001 with the limit 0.5 gives `0.5000001`, and 0.75 gives `0.750000`.
+/// Shows at least six digits after the point, and as many more as show that the value is above a limit. For example, 0.5000001
+/// with the limit 0.5 gives `0.5000001`, and 0.75 gives `0.750000`.
 fn above(value: f64, limit: f64) -> String {
     for digits in 6..17 {
         let text = format!("{value:.digits$}");

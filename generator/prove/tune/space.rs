@@ -1,9 +1,9 @@
 //! Finds the keys that `glint tune` may change, and the steps from a configuration to its neighbours.
 //!
-//! A key is free if no value that is tried for it changes the ports of the core or its formula, and each makes a design. Values
-//! that the schema refuses do not count, and formulas are compared at 600 random points. The number of microinstructions must
-//! stay the same too, unless the search may make slower cores. The keys of the tables `domain` and `function` are never free,
-//! because they are part of the user's question.
+//! A key is free if no value that is tried for it changes the ports of the core or its formula, and each makes a design.
+//! Formulas are compared at 600 random points. The number of microinstructions must stay the same too, unless the search may
+//! make slower cores. The keys of the tables `domain` and `function` are never free, because they are part of the user's
+//! question.
 //!
 //! A step gives one free key a value next to its own. For example, the integer 8 becomes 7, 9, 6, 10, 4 or 12, if the key
 //! allows it.
@@ -22,12 +22,10 @@ const STEPS: [i64; 3] = [1, 2, 4];
 /// The tables of keys that define the computation and its domain.
 const STATEMENT: [&str; 2] = ["domain", "function"];
 
-/// The number of points at which formulas are compared. The points are drawn like the points of a test: at most of them the
-/// formula is neither 0 nor flat.
+/// The points are drawn like the points of a test: at most of them the formula is neither 0 nor flat.
 const POINTS: u32 = 600;
 
-/// The configuration keys of a device that `glint tune` may change when it searches for better configurations: the core keeps its
-/// ports and its formula with every value of these keys.
+/// The keys that `glint tune` may change: the core keeps its ports and its formula with every value of these keys.
 pub struct SearchSpace {
     schema: Schema,
     free: Vec<&'static str>,
@@ -37,8 +35,7 @@ pub struct SearchSpace {
 }
 
 impl SearchSpace {
-    /// Finds the keys of `base` that change neither ports nor formula. Keys that add microinstructions are included only if
-    /// `slower` is set. Keys in `fixed` are left out.
+    /// Keys that add microinstructions are free only if `slower` is set, and keys in `fixed` never are.
     ///
     /// # Errors
     /// Fails if `base` makes no design.
@@ -58,9 +55,8 @@ impl SearchSpace {
         Ok(space)
     }
 
-    /// Returns whether a key has other values, and each value that is tried (the values next to its own, and the ends of its
-    /// range) makes a design with the same interface of the core. Values that the schema refuses do not count. Returns `false`
-    /// for the keys of the tables `domain` and `function`, and for a key whose value is a number with a fraction.
+    /// Returns whether each value that is tried for a key makes a design with the same interface. A key whose value is a
+    /// number with a fraction is not free.
     fn is_free(&self, device: &Device, base: &Config, key: &Key) -> bool {
         let (table, _) = key.table_and_leaf();
         if STATEMENT.contains(&table) {
@@ -82,8 +78,8 @@ impl SearchSpace {
         true
     }
 
-    /// Returns whether a core has the same ports and the same formula as the base configuration. The core must also have the
-    /// same number of microinstructions, unless `slower` was set for this search space.
+    /// Returns whether a core has the same ports and formula as the base configuration. Unless the core may be slower, it must
+    /// also have the same number of microinstructions.
     pub fn holds(&self, design: &Design, contract: &dyn Contract) -> bool {
         let own = &self.outside;
         own.ports == ports(design)
@@ -91,18 +87,15 @@ impl SearchSpace {
             && own.has_formula(contract)
     }
 
-    /// Returns the names of the configuration's keys (parameters such as bit widths) that `glint tune` may change.
     pub fn free(&self) -> &[&'static str] {
         &self.free
     }
 
-    /// Returns the schema of the device, which lists the keys of its configurations and their possible values.
     pub fn schema(&self) -> &Schema {
         &self.schema
     }
 
-    /// Returns the possible steps of the search from a configuration: each is a free key that applies, and a neighbouring value
-    /// of it.
+    /// Returns the possible steps from a configuration: each is a free key that applies, and a neighbouring value.
     pub fn moves(&self, config: &Config) -> Vec<(&'static str, Value)> {
         let mut moves = Vec::new();
         for key in &self.schema.keys {
@@ -115,15 +108,12 @@ impl SearchSpace {
         moves
     }
 
-    /// Returns the configuration with some values replaced, or `None` if the schema refuses the result or if a replaced key
-    /// does not apply.
+    /// Replaces some values. Returns `None` if the schema refuses the result or if a replaced key does not apply.
     pub fn with(&self, config: &Config, values: &[(&'static str, Value)]) -> Option<Config> {
         with(&self.schema, config, values)
     }
 }
 
-/// Returns a configuration with some values replaced, or `None` if the schema refuses the result or if a replaced key does not
-/// apply.
 fn with(schema: &Schema, config: &Config, values: &[(&'static str, Value)]) -> Option<Config> {
     let mut all: Vec<(String, Value)> = Vec::new();
     for (name, before) in config.values() {
@@ -147,8 +137,8 @@ fn with(schema: &Schema, config: &Config, values: &[(&'static str, Value)]) -> O
     values.iter().all(|(key, value)| config.value(key) == value).then_some(config)
 }
 
-/// Returns whether a key applies if the other keys have the values `values`. Its condition must hold, and so must the condition
-/// of the key that this condition names, and so on.
+/// Returns whether a key applies if the other keys have the values `values`. Its condition must hold, and so must the
+/// condition of the key that this condition names, and so on.
 fn applies(schema: &Schema, values: &[(String, Value)], name: &str) -> bool {
     let mut key = schema.key(name);
     while let Some(condition) = key.and_then(|key| key.condition) {
@@ -180,8 +170,8 @@ impl CoreInterface {
         }
     }
 
-    /// Returns whether `contract` has the same formula. At a jump of a formula, two values are right, and the widths decide
-    /// which one the hardware computes. One of the two values must be a value of the other formula.
+    /// At a jump of a formula, two values are right, and the widths decide which one the hardware computes. One of the two
+    /// values must be a value of the other formula.
     fn has_formula(&self, contract: &dyn Contract) -> bool {
         let others = formula(contract, &self.points);
         if others.len() != self.formula.len() {
@@ -196,7 +186,7 @@ impl CoreInterface {
     }
 }
 
-/// Returns the ports of a design as texts with name and format. For example, `cos_gamma u0.20`.
+/// Returns texts with name and format, for example `cos_gamma u0.20`.
 fn ports(design: &Design) -> Vec<String> {
     let mut ports = Vec::new();
     for port in &design.ports {
@@ -206,7 +196,7 @@ fn ports(design: &Design) -> Vec<String> {
     ports
 }
 
-/// Returns the exact results at some points. Each result is a pair of values, which differ at a jump of the formula.
+/// Each result is a pair of values, which differ at a jump of the formula.
 fn formula(contract: &dyn Contract, points: &[Vec<i64>]) -> Vec<[f64; 2]> {
     let mut values = Vec::new();
     for point in points {
@@ -230,9 +220,8 @@ fn alternatives(key: &Key, value: &Value) -> Vec<Value> {
     values
 }
 
-/// Returns the values next to `value` that lie in the key's range. For example, the integer 8 has the neighbours 7, 9, 6, 10, 4
-/// and 12. The list `[6, 6]` has `[5, 6]`, `[7, 6]`, `[6, 5]`, `[6, 7]`, `[6, 6, 6]` and `[6]`. A choice or a flag has all its
-/// other values. A number with a fraction has none.
+/// Returns the values next to `value` that lie in the key's range. For example, the list `[6, 6]` has `[5, 6]`, `[7, 6]`, `[6,
+/// 5]`, `[6, 7]`, `[6, 6, 6]` and `[6]`. A choice or a flag has all its other values. A number with a fraction has none.
 fn neighbours(kind: &KeyKind, value: &Value) -> Vec<Value> {
     match (kind, value) {
         (KeyKind::Integer { min, max }, Value::Integer(value)) => {

@@ -16,22 +16,20 @@ use glint_core::core::{TEST_POINTS, TEST_SEED};
 use glint_core::cosim::exhaustive::{Job, Proof, Record, Shard, ShardState};
 use glint_golden::{Bound, Contract, Sweep};
 
-/// The number of results that lockstep compares: without full effort, and with it.
+/// The number of compared results: without full effort, and with it.
 const POINTS: [u64; 2] = [TEST_POINTS, 100 * TEST_POINTS];
 
-/// The largest number of evaluations of the golden model in the check of the bound without full effort. These evaluations take
-/// some seconds.
+/// The largest number of evaluations of the golden model without full effort. They take some seconds.
 const EVALUATIONS: u64 = 1 << 28;
 
 /// The approximate number of evaluations of `f` that are repeated for a recorded proof.
 const AGAIN: u64 = 1 << 24;
 
-/// The largest number of faults that are planted without full effort, spread evenly over all faults. The check then takes a
-/// minute or two.
+/// The largest number of faults that are planted without full effort. The check then takes a minute or two.
 const MOST_FAULTS: usize = 1 << 11;
 
-/// States that the netlist obeys the design rules. The check repeats nothing: the rules are checked when the core is built, so
-/// a core that breaks one does not exist. The finding also says whether the error bound is below its limit.
+/// The design rules are checked when the core is built, so a core that breaks one does not exist, and this check repeats
+/// nothing. Its finding also says whether the error bound is below its limit.
 pub const DESIGN: Check = Check {
     id: "design",
     title: "Design rules",
@@ -69,7 +67,6 @@ pub const DESIGN: Check = Check {
     },
 };
 
-/// Compares the golden model with the simulated netlist at random points, every register and output on every clock.
 pub const LOCKSTEP: Check = Check {
     id: "lockstep",
     title: "Golden model against simulation",
@@ -115,9 +112,8 @@ fn lockstep(subject: &CheckSubject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Resu
     .open("Operands that were not drawn."))
 }
 
-/// Checks that the golden model is within the error bound of the formula in f64, for every combination of operands that the
-/// contract's sweep lists. A long check is replaced by its record, and a part of the record is computed again. Without a
-/// record, a long check is not run. A contract that states no bound has no such check.
+/// A long check is replaced by its record, and a part of the record is computed again. Without a record, a long check is not
+/// run.
 pub const CONTRACT: Check = Check {
     id: "contract",
     title: "Golden model against the formula",
@@ -134,7 +130,7 @@ pub const CONTRACT: Check = Check {
     run: |subject, _, progress| contract(subject, progress),
 };
 
-/// Returns the number of evaluations of the check of the bound: of `f` at every place of the sweep, and of the colour products.
+/// Counts `f` at every place of the sweep, and the colour products.
 fn evaluations(subject: &CheckSubject<'_>) -> u64 {
     let job = Job::new(subject.core.contract.as_ref());
     job.f.count() + job.colours.count()
@@ -144,16 +140,13 @@ fn is_short(subject: &CheckSubject<'_>, evaluations: u64) -> bool {
     subject.effort.full || evaluations <= EVALUATIONS
 }
 
-/// Returns the record of a long check of the bound, or `None` if no record is for this contract. Fails if a record cannot be
-/// read.
 fn record(subject: &CheckSubject<'_>) -> Result<Option<Record>> {
     let (core, digest) = (subject.core, subject.core.contract_digest());
     Record::find(subject.proofs, &digest, core.contract.as_ref())
 }
 
-/// Runs the exhaustive check of the bound and returns its finding. If the check is long, it returns the finding of a record of
-/// the check, and repeats a part of the evaluations. Without such a record, the verdict is [`CheckVerdict::NotRun`]. Fails if a
-/// record cannot be read, or if the check cannot be run.
+/// Runs the exhaustive check of the bound. For a long check, the finding comes from its record, and a part of the evaluations
+/// is repeated. Without such a record, the verdict is [`CheckVerdict::NotRun`].
 fn contract(subject: &CheckSubject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Result<Finding> {
     let contract = subject.core.contract.as_ref();
     if !contract.bounds().are_stated() {
@@ -183,7 +176,7 @@ fn contract(subject: &CheckSubject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Resu
     .open(job.f.sweep().omits.clone()))
 }
 
-/// Returns the verdict of a sweep without failures. A sweep that leaves out combinations has only passed, and proves nothing.
+/// A sweep that leaves out combinations has only passed, and proves nothing.
 fn of_sweep(sweep: &Sweep) -> CheckVerdict {
     if sweep.omits.is_empty() { CheckVerdict::Proved } else { CheckVerdict::Passed }
 }
@@ -220,8 +213,7 @@ fn without_record(subject: &CheckSubject<'_>, evaluations: u64) -> Finding {
     Finding { complete_with: Some(command), ..Finding::without(CheckVerdict::NotRun, why) }
 }
 
-/// Compares golden model and netlist clock by clock for every combination of operands. The check does not apply if the operands
-/// have too many bits for this.
+/// The check does not apply if the operands have too many bits.
 pub const CLOCKS: Check = Check {
     id: "clocks",
     title: "Golden model against simulation, every operand",
@@ -253,9 +245,8 @@ pub const CLOCKS: Check = Check {
     },
 };
 
-/// Plants faults in the netlist of a sequential core, one at a time, and checks that the comparison with the golden model
-/// notices them. Without full effort it plants at most 2048 faults. If more than 1 % of the faults are undecided, the verdict
-/// is [`CheckVerdict::Undecided`]. The check does not apply to a pipeline.
+/// Without full effort it plants at most 2048 faults. If more than 1 % of the faults are undecided, the verdict is
+/// [`CheckVerdict::Undecided`]. The check does not apply to a pipeline.
 pub const MUTATION: Check = Check {
     id: "mutation",
     title: "Faults in the netlist",
@@ -330,8 +321,7 @@ pub const MUTATION: Check = Check {
     },
 };
 
-/// Returns the faults to plant, and the number of all faults. For example, without full effort it returns 2048 of 10 457
-/// faults, spread evenly, and 10 457.
+/// Returns the faults to plant, and the number of all faults.
 fn faults(subject: &CheckSubject<'_>) -> (Faults, usize) {
     let mut faults = Faults::of(&subject.core.design);
     let all = faults.len();
@@ -344,8 +334,7 @@ fn faults(subject: &CheckSubject<'_>) -> (Faults, usize) {
 /// The largest number of faults that a finding names.
 const NAMED: usize = 20;
 
-/// Returns at most 20 ids of faults as text, and the number of the others. For example, 23 ids give 20 ids and `3 more`. No ids
-/// give an empty text.
+/// Returns at most 20 ids of faults as text, and the number of the others. No ids give an empty text.
 fn named(ids: &[String]) -> String {
     let named = ids[..ids.len().min(NAMED)].join(", ");
     match ids.len() - ids.len().min(NAMED) {

@@ -31,9 +31,7 @@ use glint_tools::{LimitReached, Tool};
 pub struct CheckSubject<'a> {
     /// The path of the configuration file on the command line.
     pub path: &'a str,
-    /// The core that is built from the configuration.
     pub core: &'a Core,
-    /// The amount of work that the verification may do.
     pub effort: Effort,
     /// The directory with the records that `glint cosim --exhaustive --json` writes.
     pub proofs: &'a Path,
@@ -41,13 +39,11 @@ pub struct CheckSubject<'a> {
 }
 
 impl<'a> CheckSubject<'a> {
-    /// Prepares the checks of a core. No check has run yet.
     pub fn new(path: &'a str, core: &'a Core, effort: Effort, proofs: &'a Path) -> Self {
         Self { path, core, effort, proofs, files: OnceLock::new() }
     }
 
-    /// Returns every file that `glint generate` writes. The first call makes the files; later calls return the same. Fails if
-    /// the files cannot be made, for example because golden model and simulation disagree on the test bench.
+    /// Returns every file that `glint generate` writes. The first call makes the files.
     fn files(&self) -> Result<&OutputFiles> {
         if let Some(files) = self.files.get() {
             return Ok(files);
@@ -57,34 +53,28 @@ impl<'a> CheckSubject<'a> {
     }
 
     /// Returns the files of the core that tools read for a target, as pairs of a file name without directories and contents.
-    /// `target` is the name of an FPGA family, or empty for files that suit every target. Fails if the files of the core cannot
-    /// be made.
+    /// `target` is the name of an FPGA family, or empty for files that suit every target.
     fn sources(&self, target: &str) -> Result<Vec<(String, String)>> {
         Ok(self.files()?.sources_for(FileKind::CORE_SOURCES, target))
     }
 }
 
-/// A file and its digest, in the record of a verification.
 #[derive(Clone, Debug, Serialize)]
 pub struct FileDigest {
     /// The path as `generate` names it, for example `rtl_out/rsqrt/rsqrt.v`.
     pub path: String,
-    /// The digest of the file, SHA-256 in hexadecimal.
+    /// The SHA-256 in hexadecimal.
     pub sha256: String,
 }
 
-/// How much work a run of `glint verify` may do.
 #[derive(Clone, Copy, Debug)]
 pub struct Effort {
     /// Whether to do all the work, however long it takes. Otherwise long checks do a part of their work, or are left out.
     pub full: bool,
-    /// Whether to run only the checks that need no tool outside Glint.
     pub without_tools: bool,
-    /// The time limit of each run of an outside tool.
     pub time_limit: Duration,
 }
 
-/// The verdict of one check of `glint verify`, from "proved" to "not applicable".
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum CheckVerdict {
@@ -128,8 +118,7 @@ impl CheckVerdict {
         }
     }
 
-    /// Returns the conclusion of a verification whose worst verdict is this one. For example, a missing tool is
-    /// [`CheckVerdict::NotRun`], which makes the verification incomplete.
+    /// Returns the conclusion of a verification whose worst verdict is this one.
     pub fn conclusion(self) -> Conclusion {
         match self {
             Self::Failed => Conclusion::Failed,
@@ -142,42 +131,38 @@ impl CheckVerdict {
     }
 }
 
-/// The answer of one check of `glint verify`: its verdict, and the reasons.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Finding {
-    /// The verdict of the check.
     pub verdict: CheckVerdict,
-    /// The domain for which the finding holds, for example operands, clocks or faults.
+    /// The operands, clocks or faults for which the finding holds, in words.
     pub domain: String,
     /// The outcome in a sentence or two.
     pub words: String,
     /// The questions that the check leaves open; may be empty.
     pub open: String,
-    /// The path of a record that replaces a part of the work; `None` if the check did all the work itself.
+    /// The path of a record that replaces a part of the work.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub record: Option<String>,
-    /// The command that would run a check that was left out or not run, or that reached its time limit. It is `None` in every
-    /// other case, and if the check knows no such command. A check that did a part of its work names the rest in `open`.
+    /// The command that would run a check that was left out or not run, or that reached its time limit. A check that did a
+    /// part of its work names the rest in `open`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub complete_with: Option<String>,
-    /// The failures, each as a text: for example, the seed, the clock and the signal of a difference, or the output of the tool
-    /// that failed. Empty unless the verdict is [`CheckVerdict::Failed`].
+    /// The failures in words: for example, the seed, the clock and the signal of a difference, or the output of the tool that
+    /// failed.
     #[serde(rename = "faults")]
     pub failures: Vec<String>,
 }
 
 impl Finding {
-    /// Makes a finding with a verdict, the domain for which it holds, and the outcome in words.
     fn new(verdict: CheckVerdict, domain: impl Into<String>, words: impl Into<String>) -> Self {
         Self { domain: domain.into(), ..Self::without(verdict, words) }
     }
 
-    /// Makes a finding that has only a verdict and a reason.
     fn without(verdict: CheckVerdict, why: impl Into<String>) -> Self {
         Self { verdict, words: why.into(), ..Self::default() }
     }
 
-    /// Sets the list of failures. If it is not empty, the verdict becomes [`CheckVerdict::Failed`].
+    /// Sets the failures; if there are any, the verdict becomes [`CheckVerdict::Failed`].
     fn failures(self, failures: Vec<String>) -> Self {
         let verdict = if failures.is_empty() { self.verdict } else { CheckVerdict::Failed };
         Self { verdict, failures, ..self }
@@ -188,30 +173,26 @@ impl Finding {
     }
 }
 
-/// The function that runs a check. It gets the subject, the check's tools in the order of their names, and a function that it
-/// calls with the number of steps that it has finished since the last call.
+/// Gets the subject, the check's tools in the order of their names, and a function for progress. It calls this function with
+/// the number of steps that it has finished since the last call.
 type CheckFunction = fn(&CheckSubject<'_>, &[Tool], &(dyn Fn(u64) + Sync)) -> Result<Finding>;
 
-/// A check of a configuration, which asks one question.
 pub struct Check {
     /// The name for scripts, for example `lockstep`.
     pub id: &'static str,
-    /// The name of the check for people, for example "Golden model against simulation".
+    /// The name for people, for example "Golden model against simulation".
     pub title: &'static str,
-    /// The question that the check answers, for example "Is no output further from the formula in f64 than the stated bound, for
-    /// any operands?".
+    /// The question, for example "Is no output further from the formula in f64 than the stated bound, for any operands?".
     pub question: &'static str,
     /// The files or structures that the check reads, in words.
     pub reads: &'static str,
-    /// The names of the outside tools that the check runs.
     tools: &'static [&'static str],
-    /// Returns the number of steps of the check's progress.
     steps: fn(&CheckSubject<'_>) -> u64,
     run: CheckFunction,
 }
 
-/// All checks of `glint verify`, in the order in which they run. Checks that take seconds come first; those that may compute every
-/// combination of operands, or every fault, come last.
+/// All checks, in the order in which they run. Checks that take seconds come first. Checks that may compute every combination
+/// of operands, or every fault, come last.
 pub const CHECKS: [&Check; 16] = [
     &inside::DESIGN,
     &inside::LOCKSTEP,
@@ -232,27 +213,26 @@ pub const CHECKS: [&Check; 16] = [
 ];
 
 impl Check {
-    /// Returns whether the check needs a tool outside Glint.
     pub fn is_outside(&self) -> bool {
         !self.tools.is_empty()
     }
 
-    /// Returns the number of steps that the check will report to `progress` of [`Check::run`].
+    /// Returns the number of steps that [`Check::run`] will report to its `progress`.
     pub fn steps(&self, subject: &CheckSubject<'_>) -> u64 {
         (self.steps)(subject)
     }
 
-    /// Runs the check, and calls `progress` with the number of newly finished steps. It always returns an answer. If a tool is
-    /// missing, the verdict is [`CheckVerdict::NotRun`]. If the check ends with an error, the verdict is
-    /// [`CheckVerdict::Failed`], or [`CheckVerdict::LimitReached`] if a tool was stopped at its time limit. A check can also
-    /// handle a failure of its tool itself: if Gappa finds no proof in time, the verdict is [`CheckVerdict::Unconfirmed`].
+    /// Runs the check, and calls `progress` with the number of newly finished steps. If a tool is missing, the verdict is
+    /// [`CheckVerdict::NotRun`]. If the check ends with an error, the verdict is [`CheckVerdict::Failed`], or
+    /// [`CheckVerdict::LimitReached`] if a tool was stopped at its time limit. A check can also handle a failure of its tool
+    /// itself: if Gappa finds no proof in time, the verdict is [`CheckVerdict::Unconfirmed`].
     pub fn run(&self, subject: &CheckSubject<'_>, progress: &(dyn Fn(u64) + Sync)) -> CheckAnswer {
         let begin = Instant::now();
         let (tools, finding) = self.find(subject, progress);
         self.answer(tools, finding, begin.elapsed())
     }
 
-    /// Returns the answer of a check that is left out on purpose. `why` is the reason. The check is not run.
+    /// Returns the answer of a check that is left out on purpose, for the reason `why`.
     pub fn left_out(&self, why: &str) -> CheckAnswer {
         let finding = Finding::without(CheckVerdict::LeftOut, why);
         self.answer(Vec::new(), finding, Duration::ZERO)
@@ -305,35 +285,32 @@ impl Check {
 /// A check of `glint verify`, with its finding and the time that it took.
 #[derive(Clone, Debug, Serialize)]
 pub struct CheckAnswer {
-    /// The name of the check for scripts: [`Check::id`].
+    /// The same as [`Check::id`].
     pub check: &'static str,
-    /// The name of the check for people: [`Check::title`].
+    /// The same as [`Check::title`].
     pub title: &'static str,
-    /// The question of the check: [`Check::question`].
+    /// The same as [`Check::question`].
     pub question: &'static str,
-    /// The files or structures that the check read: [`Check::reads`].
+    /// The same as [`Check::reads`].
     pub reads: &'static str,
-    /// The versions of the outside tools that the check used; empty if a tool is missing, if the check was left out, or if it
-    /// needs no tool.
+    /// The versions of the outside tools that the check used; empty if a tool is missing.
     pub tools: Vec<String>,
-    /// The finding of the check: its verdict and reasons.
     #[serde(flatten)]
     pub finding: Finding,
-    /// The time that the check took. It is not serialised, because it differs from run to run.
+    /// The record leaves out the time, because it differs from run to run.
     #[serde(skip)]
     pub timing: CheckTime,
 }
 
-/// The time that a check took, which is kept apart from the findings because it differs from run to run.
+/// The time is kept apart from the findings because it differs from run to run.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct CheckTime {
-    /// The name of the check for scripts: [`Check::id`].
+    /// The same as [`Check::id`].
     pub check: &'static str,
-    /// The time that the check took, in seconds.
     pub seconds: f64,
 }
 
-/// The conclusion of `glint verify` from all checks of a configuration; the worst of their verdicts decides.
+/// The worst verdict of the checks of a configuration decides.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Conclusion {
@@ -349,14 +326,12 @@ pub enum Conclusion {
 }
 
 impl Conclusion {
-    /// Returns the conclusion from the answers of checks: the worst one. For example, if one check failed, the conclusion is
-    /// [`Conclusion::Failed`], whatever the others found. Without answers it is [`Conclusion::Incomplete`].
+    /// Returns the worst conclusion. Without answers it is [`Conclusion::Incomplete`].
     pub fn of(answers: &[CheckAnswer]) -> Self {
         let verdicts = answers.iter().map(|answer| answer.finding.verdict.conclusion());
         verdicts.max().unwrap_or(Self::Incomplete)
     }
 
-    /// Returns the conclusion as a short text. For example, `verified in part`.
     pub fn words(self) -> &'static str {
         match self {
             Self::Verified => "verified",
@@ -367,34 +342,28 @@ impl Conclusion {
     }
 }
 
-/// The record of `glint verify` for one configuration, written to `<name>.json`.
+/// The record for one configuration, written to `<name>.json`.
 #[derive(Clone, Debug, Serialize)]
 pub struct VerificationRecord {
-    /// The version of Glint that wrote the record.
     pub glint: &'static str,
-    /// The path of the configuration on the command line.
+    /// The path on the command line.
     pub config: String,
-    /// The name of the top module.
     pub name: String,
-    /// The name of the device.
     pub device: &'static str,
-    /// A digest of the configuration with all its keys, SHA-256 in hexadecimal.
+    /// The SHA-256 of the configuration with all its keys, in hexadecimal.
     pub configuration: String,
-    /// Each Verilog file and memory file that `generate` writes, with its digest. It is empty if these files cannot be made,
-    /// for example because golden model and simulation disagree on the test bench.
+    /// The Verilog and memory files that `generate` writes, with digests. Empty if these files cannot be made, for example
+    /// because golden model and simulation disagree on the test bench.
     pub files: Vec<FileDigest>,
-    /// Whether all the work was done, however long it took.
     pub full: bool,
-    /// The conclusion from all checks together.
     pub conclusion: Conclusion,
-    /// The number of checks with each verdict. A verdict that no check has is left out.
+    /// A verdict that no check has is left out.
     pub counts: BTreeMap<CheckVerdict, usize>,
-    /// The answers of the checks, in the order in which they ran.
+    /// The answers in the order in which the checks ran.
     pub checks: Vec<CheckAnswer>,
 }
 
 impl VerificationRecord {
-    /// Makes the record of a verification from the answers of all checks.
     pub fn new(subject: &CheckSubject<'_>, checks: Vec<CheckAnswer>) -> Self {
         let mut counts = BTreeMap::new();
         let mut files = Vec::new();

@@ -30,11 +30,10 @@ use glint_tools::{Limits, PROOF_LIMITS, VerilogSimulator, elaborate, lint, prove
 /// The number of results that a bench compares: without full effort, and with it.
 const POINTS: [u64; 2] = [200, 20_000];
 
-/// Without full effort, the time limit for writing the statements for Gappa, and for proving one of them.
+/// The time limit for writing the statements for Gappa, and for proving one of them, without full effort.
 const STATEMENT: Duration = Duration::from_secs(10);
 
-/// Without full effort, the time limit of the solver for each of two proofs: that a pipeline equals its sequential core, and
-/// that its Verilog equals its netlist.
+/// The time limit of the solver for each of the proofs of [`EQUALITY`] and [`TEXT`], without full effort.
 const EQUAL: Duration = Duration::from_secs(300);
 
 /// The version of cocotb that the benches in Python are written for.
@@ -43,9 +42,8 @@ const COCOTB_VERSION: &str = "2.1.0";
 /// The number of results of a bench around a netlist.
 const GATE_POINTS: u64 = 40;
 
-/// Lets Gappa prove the error bound of the contract of a sequential core. If the statements cannot be written, or Gappa does
-/// not prove one in time, the check is unconfirmed. The check is not failed, because another check shows the bound too. A
-/// pipeline has no such check.
+/// If the statements cannot be written, or Gappa does not prove one in time, the check is unconfirmed. It does not fail,
+/// because another check shows the bound too. A pipeline has no such check.
 pub const CERTIFICATE: Check = Check {
     id: "certificate",
     title: "Proof of the error bound",
@@ -107,8 +105,7 @@ pub const CERTIFICATE: Check = Check {
     },
 };
 
-/// Lets the solver z3 prove that a pipeline and the sequential core of the same description compute the same outputs for every
-/// point. A sequential core has no such check.
+/// A sequential core has no such check.
 pub const EQUALITY: Check = Check {
     id: "equality",
     title: "Equal to the sequential core",
@@ -147,8 +144,7 @@ pub const EQUALITY: Check = Check {
     },
 };
 
-/// Lets Yosys read the emitted Verilog of a pipeline, and z3 prove that it equals the netlist. A sequential core has no such
-/// check.
+/// Yosys reads the emitted Verilog, and z3 proves that it equals the netlist. A sequential core has no such check.
 pub const TEXT: Check = Check {
     id: "text",
     title: "Emitted Verilog equal to the netlist",
@@ -195,8 +191,6 @@ pub const TEXT: Check = Check {
     },
 };
 
-/// Returns the finding for a solver that does not decide: [`CheckVerdict::Undecided`], or [`CheckVerdict::LimitReached`] after
-/// `limit`.
 fn undecided(subject: &CheckSubject<'_>, open: equality::Open, limit: Duration) -> Finding {
     let limit = limit.as_secs();
     match open {
@@ -221,7 +215,7 @@ fn undecided(subject: &CheckSubject<'_>, open: equality::Open, limit: Duration) 
     }
 }
 
-/// Runs the linters of Icarus Verilog and Verilator on the emitted Verilog. Any remark is a failure.
+/// Any remark is a failure.
 pub const LINT: Check = Check {
     id: "lint",
     title: "Lint",
@@ -260,7 +254,6 @@ pub const LINT: Check = Check {
     },
 };
 
-/// Simulates the emitted Verilog in Icarus Verilog with the shipped bench and new random points.
 pub const ICARUS: Check = Check {
     id: "icarus",
     title: "Emitted Verilog in Icarus Verilog",
@@ -271,7 +264,6 @@ pub const ICARUS: Check = Check {
     run: |subject, _, _| bench(subject, VerilogSimulator::Icarus),
 };
 
-/// Simulates the emitted Verilog in Verilator with the shipped bench and new random points.
 pub const VERILATOR: Check = Check {
     id: "verilator",
     title: "Emitted Verilog in Verilator",
@@ -282,8 +274,7 @@ pub const VERILATOR: Check = Check {
     run: |subject, _, _| bench(subject, VerilogSimulator::Verilator),
 };
 
-/// Simulates the emitted Verilog with each shipped bench, for 200 results, or 20 000 with full effort. Fails if golden model
-/// and netlist differ, or if the simulator cannot be run.
+/// Simulates the emitted Verilog with each shipped bench, for 200 results, or 20 000 with full effort.
 fn bench(subject: &CheckSubject<'_>, simulator: VerilogSimulator) -> Result<Finding> {
     let (core, effort) = (subject.core, subject.effort);
     let points = POINTS[usize::from(effort.full)];
@@ -307,8 +298,6 @@ fn bench(subject: &CheckSubject<'_>, simulator: VerilogSimulator) -> Result<Find
     .open("Operands that were not drawn."))
 }
 
-/// Synthesises the core with Yosys for each FPGA family that Glint compares, and states the cells that it takes. The check
-/// fails if Yosys fails for a family.
 pub const SYNTHESIS: Check = Check {
     id: "synthesis",
     title: "Synthesis",
@@ -339,8 +328,7 @@ pub const SYNTHESIS: Check = Check {
     },
 };
 
-/// Proves the formal properties of the emitted Verilog, about the handshake, by k-induction. Products and ROMs are replaced by
-/// arbitrary values, so the check says nothing about results.
+/// Products and ROMs are replaced by arbitrary values, so the check says nothing about results.
 pub const FORMAL: Check = Check {
     id: "formal",
     title: "Proof of the handshake",
@@ -358,7 +346,6 @@ pub const FORMAL: Check = Check {
         }
         let dir = directory_of(&plain)?;
         let time = subject.effort.time_limit.min(PROOF_LIMITS.time);
-        // The proof of the core, and one for each wrapper.
         let proofs = subject.files()?.of(&[FileKind::CoreProof, FileKind::WrapperProof]);
         let mut files: Vec<&str> = proofs.iter().map(|file| file.name()).collect();
         files.sort_unstable();
@@ -418,13 +405,11 @@ pub const COCOTB: Check = Check {
     },
 };
 
-/// Writes all emitted files, and the Python driver, into a new temporary directory, each at its path. Fails if a file cannot be
-/// made or written.
+/// Writes all emitted files, and the Python driver, into a new temporary directory, each at its path.
 fn written(subject: &CheckSubject<'_>) -> Result<Directory> {
     directory_of(subject.files()?.iter().chain([&package::driver()]))
 }
 
-/// Writes files into a new temporary directory, each at its path. Fails if a file cannot be written.
 pub(super) fn directory_of<'f>(
     files: impl IntoIterator<Item = &'f OutputFile>,
 ) -> Result<Directory> {
@@ -439,8 +424,7 @@ pub(super) fn directory_of<'f>(
     Ok(dir)
 }
 
-/// Synthesises the core, and simulates the netlists with the shipped bench in Icarus Verilog. The netlists are of the FPGA
-/// families whose cells have models, and of cells of 0.18 µm if their library is installed.
+/// The netlists are of the FPGA families whose cells have models, and of cells of 0.18 µm if their library is installed.
 pub const GATES: Check = Check {
     id: "gates",
     title: "Netlists at gate level",
@@ -504,7 +488,6 @@ pub const GATES: Check = Check {
     },
 };
 
-/// Returns the FPGA families that Glint compares and whose netlists can be simulated.
 fn simulated() -> impl Iterator<Item = &'static Family> {
     COMPARED.iter().filter(|family| gates::is_simulated(family))
 }

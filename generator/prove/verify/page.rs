@@ -21,7 +21,6 @@ struct Page<'a> {
     timings: Vec<(&'static str, String)>,
 }
 
-/// A check and its answer, with the texts as HTML.
 struct CheckView<'a> {
     answer: &'a CheckAnswer,
     class: String,
@@ -49,8 +48,7 @@ impl<'a> CheckView<'a> {
     }
 }
 
-/// Returns the HTML page of a verification. `timings` has the time of each check, in the order of the record's checks. Only the
-/// last section of the page depends on it.
+/// `timings` has the time of each check, in the order of the record's checks. Only the last section of the page depends on it.
 ///
 /// # Errors
 /// Fails if the template fails.
@@ -73,8 +71,8 @@ pub fn page(record: &VerificationRecord, timings: &[CheckTime]) -> Result<String
     Ok(text)
 }
 
-/// Returns the class of a verdict or a conclusion in the style sheet, which is also its name in JSON. For example, the class of
-/// [`super::CheckVerdict::LimitReached`] is `limit-reached`.
+/// Returns the class of a verdict or a conclusion in the style sheet, which is also its name in JSON, for example
+/// `limit-reached`.
 fn class(verdict: impl Serialize) -> String {
     json!(verdict).as_str().unwrap_or_default().to_owned()
 }

@@ -1,10 +1,8 @@
-//! Checks the error bound with a generated C program that computes every combination of operands. The program evaluates the
-//! formulas with MPFR and with the C library, and not with Glint's arithmetic. The program compares the formulas with the
-//! results of the core's C model.
+//! Checks the error bound with a generated C program that computes every combination of operands. The program compares the
+//! results of the core's C model with the formulas, by MPFR and the C library, and not by Glint's arithmetic.
 //!
-//! For example, the program for `x / y` with operands of 12 bits compares 2^24 results with the formula. For an expression, the
-//! program uses MPFR only if doubles, with a margin for their rounding, cannot decide. Without `--full`, the check is left out
-//! for more than 2^24 combinations of an expression, or 2^20 operands of a function.
+//! For an expression, the program uses MPFR only if doubles, with a margin for their rounding, cannot decide. Without
+//! `--full`, the check is left out for more than 2^24 combinations of an expression, or 2^20 operands of a function.
 
 use std::fs;
 use std::path::Path;
@@ -22,18 +20,15 @@ use glint_core::package::{FileKind, OutputFile};
 use glint_golden::Operand;
 use glint_tools::Tool;
 
-/// The largest number of operands of a function that are recomputed without full effort. MPFR computes each of them.
+/// MPFR computes the result of each of these operands.
 const MOST_OPERANDS: u128 = 1 << 20;
 
-/// The largest number of combinations of an expression's operands that are recomputed without full effort. Doubles decide most
-/// of them.
+/// Doubles decide most of these combinations.
 const MOST_COMBINATIONS: u128 = 1 << 24;
 
-/// The exit code of the program if it finds no error, but cannot decide whether the results of some combinations are right.
+/// The exit code of the program if it finds no error, but cannot decide about some combinations.
 const SOME_UNDECIDED: i32 = 3;
 
-/// Checks the error bound with a generated C program, which computes every combination of operands and compares the results with
-/// the formula in MPFR.
 pub const RECOMPUTATION: Check = Check {
     id: "recomputation",
     title: "Every combination of operands recomputed with MPFR",
@@ -68,8 +63,7 @@ pub const RECOMPUTATION: Check = Check {
     },
 };
 
-/// Returns the finding [`CheckVerdict::LeftOut`] if the operands have more combinations than this effort allows, and `None`
-/// otherwise.
+/// Returns the finding [`CheckVerdict::LeftOut`] if the operands have more combinations than this effort allows.
 fn left_out(subject: &CheckSubject<'_>) -> Option<Finding> {
     let contract = &subject.core.contract;
     let most = if contract.conditions().is_some() { MOST_COMBINATIONS } else { MOST_OPERANDS };
@@ -96,16 +90,14 @@ struct ProgramCompiler<'a> {
 }
 
 impl ProgramCompiler<'_> {
-    /// Compiles the source file `source`. Returns whether the compiler accepts it, and the output of the compiler. Fails if the
-    /// compiler cannot be run, or reaches the time limit.
+    /// Returns whether the compiler accepts the file `source`, and the compiler's output.
     fn compile(&self, source: &str) -> Result<(bool, String)> {
         let arguments = ["-std=c99", "-O2", "-o", "recompute", source, "-lmpfr", "-lgmp", "-lm"];
         let run = self.tool.run(arguments, self.dir, self.subject.effort.time_limit)?;
         Ok((run.status.success(), run.output))
     }
 
-    /// Returns whether the compiler can compile a program that includes MPFR, so that MPFR is installed. Fails if the compiler
-    /// cannot be run, or reaches the time limit.
+    /// Returns whether the compiler can compile a program that includes MPFR, so that MPFR is installed.
     fn has_mpfr(&self) -> Result<bool> {
         let probe = "#include <mpfr.h>\nint main(void) { return 0; }\n";
         fs::write(self.dir.join("probe.c"), probe)
@@ -120,8 +112,6 @@ impl ProgramCompiler<'_> {
     }
 }
 
-/// Runs the compiled program, and returns the finding from its exit code and its output. Fails if the program cannot be started
-/// or reaches the time limit.
 fn run(subject: &CheckSubject<'_>, program: &OutputFile, dir: &Path) -> Result<Finding> {
     let recompute = Tool::find_in("recompute", dir.as_os_str())?;
     // A program that has no memory to check takes no argument.
@@ -144,12 +134,11 @@ fn run(subject: &CheckSubject<'_>, program: &OutputFile, dir: &Path) -> Result<F
     ))
 }
 
-/// Returns whether a line of the program says that there are no memory files.
 fn is_about_memories(line: &str) -> bool {
     line.starts_with("no memory is checked")
 }
 
-/// Returns the raw values of the operands as text. For example, `every operand: x = 0 to 255`.
+/// Returns a text such as `every operand: x = 0 to 255`.
 fn domain(operands: &[Operand]) -> String {
     let mut ranges = Vec::new();
     for operand in operands {

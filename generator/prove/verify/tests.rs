@@ -9,7 +9,6 @@ use glint_config as config;
 use glint_core::core::Core;
 use glint_core::registry::Registry;
 
-/// Returns the core of a narrow configuration of `rough`.
 fn core() -> Core {
     let registry = Registry::catalogue();
     let text = include_str!("../../../configs/reduced/rough.toml");
@@ -18,7 +17,6 @@ fn core() -> Core {
     Core::new(device, config).expect("a design")
 }
 
-/// Runs the checks that need nothing but Glint.
 fn verified(core: &Core) -> VerificationRecord {
     let effort = Effort { full: false, without_tools: true, time_limit: Duration::from_secs(1) };
     let subject = CheckSubject::new("core.toml", core, effort, Path::new("records/proofs"));

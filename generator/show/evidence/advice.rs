@@ -2,7 +2,7 @@
 //!
 //! If the core does not keep its accuracy contract, the module looks for changes with which it does, in at most 40 steps.
 //! Otherwise, or if it finds none, it names the one key that reduces the bound most. It never changes keys of the table
-//! `domain`, and gives no advice if no key helps. For example, it suggests `intensity.fraction = 17` in place of 16.
+//! `domain`, because a narrower domain promises less. For example, it suggests `intensity.fraction = 17` in place of 16.
 
 use std::fmt;
 
@@ -13,20 +13,20 @@ use glint_core::core::Core;
 use glint_core::registry::Device;
 use glint_golden::{Bound, Contract};
 
-/// The steps by which the value of an integer key is changed. A larger step is tried only if no smaller one reduces the bound.
+/// A larger step is tried only if no smaller one reduces the bound.
 const STEPS: [i64; 4] = [1, 2, 4, 8];
 
-/// The smallest reduction of the bound that counts, in output units.
+/// Smaller reductions of the bound do not count, in output units.
 const GAIN: f64 = 1e-6;
 
 /// The largest number of changes that are tried one after the other until the core keeps its contract.
 const MOST: usize = 40;
 
-/// Changes of keys that make the error bound smaller. For example, as text: "`intensity.fraction = 17` in place of 16
-/// would bring the bound to 0.812 units".
+/// Changes of keys that make the error bound smaller. For example, as text: "`intensity.fraction = 17` in place of 16 would
+/// bring the bound to 0.812 units".
 #[derive(Clone, Debug, PartialEq)]
 pub struct Advice {
-    /// The keys to change. Each entry has the name of the key, its present value and the value that helps, both as TOML.
+    /// The name of each key, its present value and the value that helps, both as TOML.
     pub changes: Vec<(&'static str, String, String)>,
     /// The error bound with all of these changes, in output units.
     pub units: f64,
@@ -48,9 +48,9 @@ struct Better {
     bound: Bound,
 }
 
-/// Returns changes of configuration keys that reduce the error bound of a core. If the core violates its accuracy contract, the
-/// changes are enough to keep it, if at most 40 steps find such changes. Otherwise only one key changes: among the smallest
-/// steps that help any key, the key that reduces the bound most. Returns `None` if no step of one key reduces the bound.
+/// Returns changes that reduce the error bound of a core. If the core violates its accuracy contract, the function looks for
+/// changes that keep it, in at most 40 steps. Otherwise only one key changes: among the smallest steps that help any key, the
+/// key that reduces the bound most.
 pub fn of(core: &Core) -> Option<Advice> {
     let device = core.device();
     let bound = core.contract.bounds().governing().clone();
@@ -72,9 +72,7 @@ pub fn of(core: &Core) -> Option<Advice> {
     Some(single)
 }
 
-/// Returns the configuration in which one key is changed so that the bound becomes smallest. Only keys on which the bound
-/// depends are changed, by the smallest of [`STEPS`] that reduces the bound. Returns `None` if no step does. Keys of the table
-/// `domain` are never changed, because a narrower domain promises less.
+/// Changes the key that reduces the bound most, by the smallest of [`STEPS`] that reduces it at all.
 fn better(device: &Device, config: &Config, bound: &Bound) -> Option<Better> {
     let schema = (device.schema)();
     // A smaller bound of outputs with other formats is in other units, and need not be a smaller error.
@@ -105,7 +103,6 @@ fn better(device: &Device, config: &Config, bound: &Bound) -> Option<Better> {
     None
 }
 
-/// Returns the contract of a configuration, or `None` if the device cannot have it.
 fn contract_of(device: &Device, config: &Config) -> Option<Box<dyn Contract>> {
     let opened = device.open(config.clone()).ok()?;
     Some(opened.contract())
@@ -115,8 +112,8 @@ fn output_formats(contract: &dyn Contract) -> Vec<Format> {
     contract.outputs().iter().map(|output| output.format).collect()
 }
 
-/// Undoes the changes without which the core still keeps its contract, one key after the other. `config` is the
-/// configuration before all changes. For example, if one of two changes is enough, the other one is undone.
+/// Undoes the changes without which the core still keeps its contract, one key after the other. `config` is the configuration
+/// before all changes.
 fn needed(device: &Device, config: &Config, mut kept: Better) -> Better {
     let schema = (device.schema)();
     for (key, ..) in changes(device, config, &kept.config) {
@@ -135,8 +132,7 @@ fn advice(device: &Device, config: &Config, better: &Better) -> Advice {
     Advice { changes: changes(device, config, &better.config), units: better.bound.units }
 }
 
-/// Returns the keys with different values in two configurations: the name of each, and its value in `config` and in `other`, as
-/// TOML.
+/// Returns the keys with different values in two configurations, with both values as TOML.
 fn changes(
     device: &Device,
     config: &Config,
@@ -153,8 +149,7 @@ fn changes(
 }
 
 /// Returns the keys that the bound depends on, each with the values that differ from its own by `step`. A key counts if a term
-/// of the bound names it, or if it is a choice or a flag in the table of such a key. Keys of the table `domain`, and keys that
-/// do not apply, are left out.
+/// of the bound names it, or if it is a choice or a flag in the table of such a key.
 fn candidates(
     schema: &Schema,
     config: &Config,
@@ -177,8 +172,7 @@ fn candidates(
     candidates
 }
 
-/// Returns the table of a key. For example, `exponent.bits` is in the table `exponent`. A key outside of all tables, such as
-/// `name`, gives an empty text.
+/// Returns the table of a key, for example `exponent` for `exponent.bits`. A key outside of all tables gives an empty text.
 fn table_of(key: &str) -> &str {
     match key.split_once('.') {
         Some((table, _)) => table,
@@ -187,7 +181,7 @@ fn table_of(key: &str) -> &str {
 }
 
 /// Returns the values that differ from `value` by `step`. For example, the integer 8 and the step 2 give 6 and 10. A choice or
-/// a flag gives all its other values. A list gives each list in which one entry differs by `step`. Any other value gives none.
+/// a flag gives all its other values. A list gives each list in which one entry differs by `step`.
 fn neighbours(kind: &KeyKind, value: &Value, step: i64) -> Vec<Value> {
     match (kind, value) {
         (_, Value::Integer(value)) => [value - step, value + step].map(Value::Integer).to_vec(),
@@ -211,7 +205,7 @@ fn neighbours(kind: &KeyKind, value: &Value, step: i64) -> Vec<Value> {
     }
 }
 
-/// Returns the configuration with the value `value` for `key`, or `None` if the device does not accept it.
+/// Returns `None` if the device does not accept the value.
 fn with(schema: &Schema, config: &Config, key: &str, value: &Value) -> Option<Config> {
     let mut given = Vec::new();
     for (name, before) in config.values() {

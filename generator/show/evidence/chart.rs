@@ -2,42 +2,34 @@
 
 use serde::Serialize;
 
-/// The scale of an axis: linear or logarithmic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum AxisScale {
-    /// Values are spaced evenly.
     Linear,
     /// Powers of ten are spaced evenly. Such an axis cannot show 0 or a negative value.
     Logarithmic,
 }
 
-/// An axis of a chart: its label, its scale and its range.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ChartAxis {
-    /// The quantity that the axis shows, with its unit. For example, `γ (degrees)`.
+    /// The quantity with its unit. For example, `γ (degrees)`.
     pub label: String,
-    /// Whether the axis is linear or logarithmic.
     pub scale: AxisScale,
-    /// The smallest and the largest value of the plotted range. The plot clips values outside the range; the table of values
-    /// shows them.
+    /// The ends of the plotted range. The plot clips values outside; the table of values shows them.
     pub range: (f64, f64),
 }
 
 impl ChartAxis {
-    /// Makes a linear axis that shows the values from `low` to `high`.
     pub fn linear(label: &str, low: f64, high: f64) -> Self {
         Self { label: label.to_owned(), scale: AxisScale::Linear, range: (low, high) }
     }
 
-    /// Makes a logarithmic axis that shows the values from `low` to `high`.
     pub fn logarithmic(label: &str, low: f64, high: f64) -> Self {
         Self { scale: AxisScale::Logarithmic, ..Self::linear(label, low, high) }
     }
 
-    /// Returns the position of a value on the axis: the value itself, or its logarithm to base 10 on a logarithmic axis.
-    /// Returns `None` if the value has no position. For example, 100 is at 2 on a logarithmic axis, and 0 has no position
-    /// there.
+    /// Returns the position of a value on the axis, which is its logarithm to base 10 on a logarithmic axis. For example, 100
+    /// is at 2 there, and 0 has no position.
     pub fn place(&self, value: f64) -> Option<f64> {
         let place = match self.scale {
             AxisScale::Linear => value,
@@ -48,49 +40,42 @@ impl ChartAxis {
     }
 }
 
-/// A curve of a chart: its name and its values.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Series {
-    /// The name of the curve, for the legend and the head of the table.
+    /// The name for the legend and the head of the table.
     pub name: String,
-    /// The values of the curve, one for each position in [`Chart::places`]. A position without a value has NaN, which is
-    /// `null` in JSON.
+    /// One value for each position in [`Chart::places`]. A position without a value has NaN, which is `null` in JSON.
     pub values: Vec<f64>,
 }
 
-/// A horizontal reference line across a chart, for example the proved bound.
+/// A horizontal reference line, for example the proved bound.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Mark {
-    /// The label of the reference line.
     pub label: String,
-    /// The value on the vertical axis at which the line is drawn.
+    /// The value on the vertical axis.
     pub at: f64,
 }
 
-/// A chart: several curves over the same horizontal axis.
+/// Several curves over the same horizontal axis.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Chart {
-    /// The identifier of the chart in HTML, which must be unique on the page.
+    /// The identifier in HTML, which must be unique on the page.
     pub id: String,
-    /// The heading of the chart.
     pub title: String,
-    /// The caption of a sentence or two, which a screen reader also reads.
+    /// A sentence or two, which a screen reader also reads.
     pub caption: String,
-    /// The horizontal axis of the chart.
     pub x: ChartAxis,
-    /// The vertical axis of the chart.
     pub y: ChartAxis,
     /// The positions on the horizontal axis at which the curves have values, in ascending order.
     pub places: Vec<f64>,
-    /// The curves of the chart. There may be at most [`crate::pages::plots::STYLES`], so that a reader can tell them apart.
+    /// The curves, at most [`crate::pages::plots::STYLES`], so that a reader can tell them apart.
     pub series: Vec<Series>,
-    /// The horizontal reference lines, such as the proved bound.
     pub marks: Vec<Mark>,
 }
 
 impl Chart {
     /// Returns about `rows` evenly spread indices into [`Chart::places`], the first and the last among them. For example, 5
-    /// rows of 101 places are 0, 25, 50, 75 and 100, and 1 row is 0 alone. The chart must have places.
+    /// rows of 101 places are 0, 25, 50, 75 and 100. The chart must have places.
     pub fn rows(&self, rows: usize) -> Vec<usize> {
         let last = self.places.len().saturating_sub(1);
         let mut chosen: Vec<usize> =
@@ -100,15 +85,15 @@ impl Chart {
     }
 }
 
-/// Returns `steps + 1` evenly spaced values from `low` to `high`. For example, 4 steps from 0 to 2 are 0, 0.5, 1, 1.5 and 2.
-/// `steps` must be at least 1; 0 steps give NaN.
+/// Returns `steps + 1` evenly spaced values. For example, 4 steps from 0 to 2 are 0, 0.5, 1, 1.5 and 2. `steps` must be at
+/// least 1.
 pub fn even(low: f64, high: f64, steps: u32) -> Vec<f64> {
     (0..=steps).map(|step| low + (high - low) * f64::from(step) / f64::from(steps)).collect()
 }
 
-/// Returns the integers from `low` to `high` that are spaced evenly on a logarithmic axis, about `per_decade` of them for each
-/// power of ten. `low` and `high` are among them. For example, 1 to 1000 with 4 for each power of ten begins with 1, 2, 3, 6
-/// and 10. `low` must be at least 1, and less than `high`.
+/// Returns integers that are spaced evenly on a logarithmic axis, about `per_decade` of them for each power of ten, with both
+/// ends. For example, 1 to 1000 with 4 for each power of ten begins with 1, 2, 3, 6 and 10. `low` must be at least 1, and less
+/// than `high`.
 pub fn exponents(low: u32, high: u32, per_decade: u32) -> Vec<u32> {
     let value = |step: u32| {
         let value = f64::from(low) * libm::pow(10.0, f64::from(step) / f64::from(per_decade));

@@ -17,26 +17,23 @@ use glint_rtl::netlist::{Design, Driver, Op};
 /// The number of angles in each degree at which [`accuracy`] compares the reflectance f of a device with `cosⁿγ`.
 pub const ANGLES_PER_DEGREE: u32 = 100;
 
-/// The number of angles at which [`accuracy`] compares: 9001, from 0 to 90° in steps of 0.01°, both ends included.
+/// The number of angles from 0 to 90°, both included.
 pub const ANGLES: u32 = 90 * ANGLES_PER_DEGREE + 1;
 
-/// The exponent n at which the clocks per point are counted, for devices whose number of clocks depends on n.
+/// The exponent n at which the clocks per point are counted, if they depend on n.
 pub const EXPONENT: f64 = 35.0;
 
 /// The angle γ, in degrees, at which the clocks per point are counted.
 const TYPICAL: f64 = 10.0;
 
-/// The largest and the mean absolute error over all [`ANGLES`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Spread {
-    /// The largest absolute error over all angles.
     pub largest: f64,
-    /// The mean absolute error over all angles.
     pub mean: f64,
 }
 
 impl Spread {
-    /// Adds the error at one of the [`ANGLES`]. The mean is right after an error was added for each angle.
+    /// The mean is right after an error was added for each angle.
     fn take(&mut self, error: f64) {
         let error = error.abs();
         self.largest = self.largest.max(error);
@@ -48,29 +45,26 @@ impl Spread {
 /// of the signed errors by cause. The largest values of two causes may be at different angles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Accuracy {
-    /// The total error: the reflectance f that the hardware computes, against `cosⁿγ`.
+    /// The reflectance f that the hardware computes, against `cosⁿγ`.
     #[serde(rename = "error")]
     pub whole: Spread,
-    /// The error of the device's formula in f64, at the quantised operands, against `cosⁿ` of the angle that these operands
-    /// denote.
+    /// The device's formula in f64, at the quantised operands, against `cosⁿ` of the angle that these operands denote.
     pub formula: Spread,
-    /// The error of quantising the operands: `cosⁿ` of the angle that the quantised operands denote, against `cosⁿγ`. The error
-    /// is 0 if a contract does not tell that angle ([`Highlight::cosine`]); the formula's error then includes it.
+    /// `cosⁿ` of the angle that the quantised operands denote, against `cosⁿγ`. The error is 0 if a contract does not tell
+    /// that angle ([`Highlight::cosine`]); the formula's error then includes it.
     pub operands: Spread,
-    /// The error of the fixed-point arithmetic: the reflectance f that the hardware computes, against the formula at the
-    /// quantised operands.
+    /// The reflectance f that the hardware computes, against the formula at the quantised operands.
     pub fixed_point: Spread,
 }
 
-/// Returns the value of the device's formula at the quantised operands. At a jump of the formula, it returns the value on the
-/// side that is nearer to `f`.
+/// Returns the value of the formula at the quantised operands; at a jump, the value on the side that is nearer to `f`.
 pub fn formula(highlight: &Highlight, control: &[i64], f: f64) -> f64 {
     let [one, other] = highlight.references(control);
     if (f - other).abs() < (f - one).abs() { other } else { one }
 }
 
-/// Measures the errors of a device's reflectance f at all [`ANGLES`] for the exponent `n`. Returns `None` if the device is
-/// no highlight, or if its operands cannot represent `n`.
+/// Measures the errors of a device's reflectance f for the exponent `n`. Returns `None` if the device is no highlight, or if
+/// its operands cannot represent `n`.
 pub fn accuracy(contract: &dyn Contract, n: f64) -> Option<Accuracy> {
     let highlight = contract.highlight()?;
     let format = highlight.f_format();
@@ -93,10 +87,9 @@ pub fn accuracy(contract: &dyn Contract, n: f64) -> Option<Accuracy> {
     Some(accuracy)
 }
 
-/// Returns the number of clocks per point for the exponent `n`: the clocks from one `start` to the earliest next `start`,
-/// divided by the number of results between them. The computation has a typical angle of 10° and the exponent `n`. Operands
-/// that do not follow from them, such as colours, have their largest values. If the device computes lines, the computation
-/// is the longest line of the domain. For example, a line of 16 points in 20 clocks takes 1.25 clocks per point.
+/// Returns the number of clocks per point: the clocks from one `start` to the earliest next `start`, divided by the number of
+/// results between them. The computation has an angle of 10° and the exponent `n`; other operands, such as colours, have their
+/// largest values. For example, a line of 16 points in 20 clocks takes 1.25 clocks per point.
 ///
 /// # Errors
 /// Fails if the computation is not over after 65 536 clocks, or if the device never raises `valid`.
@@ -114,12 +107,10 @@ pub fn clocks_per_point(design: &Design, contract: &dyn Contract, n: f64) -> Res
     Ok(f64::from(clocks) / f64::from(points))
 }
 
-/// The operand widths of a multiplier, the wider one first. For example, as text: `21x10`.
+/// The operand widths of a multiplier in bits, the wider one first. For example, as text: `21x10`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct MultiplierSize {
-    /// The number of bits of the wider operand.
     pub first: u32,
-    /// The number of bits of the narrower operand.
     pub second: u32,
 }
 
@@ -129,8 +120,7 @@ impl fmt::Display for MultiplierSize {
     }
 }
 
-/// Returns the sizes of the multipliers of a design, one for each product in the netlist. The size whose widths have the
-/// largest product is first.
+/// Returns one size for each product in the netlist, the largest first.
 pub fn multipliers(design: &Design) -> Vec<MultiplierSize> {
     let mut found: Vec<MultiplierSize> = design
         .nets

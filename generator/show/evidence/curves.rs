@@ -12,7 +12,6 @@ use super::comparison;
 use glint_core::registry::Device;
 use glint_golden::{Contract, Highlight, formulas};
 
-/// The exponents n at which the error curves are measured.
 pub const EXPONENTS: [u32; 20] =
     [1, 2, 3, 4, 6, 8, 11, 16, 23, 32, 45, 64, 91, 128, 181, 256, 362, 512, 724, 1000];
 
@@ -22,26 +21,23 @@ const SHOWN: [u32; 5] = [2, 8, 35, 128, 1000];
 /// The largest value of `√n·γ` on the curves over the angle.
 const REACH: f64 = 4.0;
 
-/// The number of steps between the first and the last position of a curve over the angle. At each position, errors are measured
-/// in [`ANGLES`] steps from half a step before to half a step after it, and the largest one counts.
+/// The number of steps between the first and the last position of a curve over the angle. At each position, the largest error
+/// of [`ANGLES`] steps around it counts.
 const PLACES: u32 = 100;
 const ANGLES: u32 = 12;
 
 /// The lowest error on a logarithmic axis. Smaller errors are shown there.
 const FLOOR: f64 = 1e-6;
 
-/// The error curves of a device: its errors over the exponent n and over the angle γ, with the facts that a page shows next to
-/// them.
+/// The error curves of a device, with the facts that a page shows next to them.
 #[derive(Clone, Debug, Serialize)]
 pub struct DeviceCurves {
-    /// The name of the device in the registry.
     pub device: String,
-    /// A summary of the device in a line, from the registry.
     pub summary: String,
-    /// The proven bound on the error of an output, in output units.
+    /// The proved bound of an output's error, in output units.
     pub bound_units: f64,
-    /// The largest value of a colour operand; 0 for a device without colours. An error of `f` multiplied by this value is an
-    /// error in output units.
+    /// The largest value of a colour operand; 0 for a device without colours. An error of `f` times this value is an error in
+    /// output units.
     pub largest_colour: f64,
     /// The largest errors for each exponent; empty if no operands of the device denote γ and n.
     pub exponents: Vec<AtExponent>,
@@ -52,38 +48,34 @@ pub struct DeviceCurves {
 /// The largest errors of `f` at one exponent, over all angles from 0 to 90°.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct AtExponent {
-    /// The exponent n of the highlight.
     pub n: u32,
-    /// The largest error of the device's formula against `cosⁿγ` at this exponent.
+    /// The formula against `cosⁿγ`.
     pub formula: f64,
-    /// The largest error of the fixed-point arithmetic at this exponent: the computed reflectance f against the formula at the
-    /// quantised operands.
+    /// The computed reflectance f against the formula at the quantised operands.
     pub fixed_point: f64,
-    /// The largest total error at this exponent: the computed reflectance f against `cosⁿγ`, before the angle is quantised.
+    /// The computed reflectance f against `cosⁿγ`, before the angle is quantised.
     pub whole: f64,
 }
 
-/// The number of steps into which the measurement of the curves is divided. [`device`] calls `done` after each step, so that a
-/// caller can show progress.
+/// The number of calls of `done` by [`device`], so that a caller can show progress.
 pub const STEPS: usize = EXPONENTS.len() + SHOWN.len();
 
-/// The errors of `f` at one angle: the signed error of the formula against `cosⁿγ`, and the absolute error of the fixed-point
-/// arithmetic against the formula.
+/// The signed error of the formula against `cosⁿγ`, and the absolute error of the fixed-point arithmetic against the formula,
+/// at one angle.
 #[derive(Clone, Copy, Default)]
 struct AtAngle {
     formula: f64,
     fixed_point: f64,
 }
 
-/// Measures the error curves of a device in its default configuration. The function calls `done` after each of [`STEPS`] steps.
+/// Measures the curves of the default configuration. The function calls `done` after each of [`STEPS`] steps.
 pub fn device(device: &Device, done: &(dyn Fn() + Sync)) -> DeviceCurves {
     let opened = device.open(device.defaults()).expect("the defaults of a device can be opened");
     let contract = opened.contract();
     configuration(device, contract.as_ref(), done)
 }
 
-/// Measures the error curves of a configuration of a device, given its contract. The function calls `done` after each of
-/// [`STEPS`] steps.
+/// Does the same as [`device`] for a configuration with the given contract.
 pub fn configuration(
     device: &Device,
     contract: &dyn Contract,
@@ -135,14 +127,14 @@ pub fn configuration(
     }
 }
 
-/// Returns the values of `√n·γ` at which a curve over the angle has values: from 0 to 4 in 100 steps.
+/// Returns values of `√n·γ` from 0 to 4, in 100 steps.
 fn places() -> Vec<f64> {
     even(0.0, REACH, PLACES)
 }
 
-/// Returns the signed error of the formula at each position of [`places`], and the largest fixed-point error near the position.
-/// Both errors are NaN for angles beyond 90°, at which there is no highlight. For example, the curve of n = 2 ends at √n·γ =
-/// 2.2. Returns `None` if the device is no highlight, or if its operands cannot represent `n`.
+/// Returns the signed error of the formula at each position of [`places`], and the largest fixed-point error near the
+/// position. Both are NaN for angles beyond 90°, at which there is no highlight. For example, the curve of n = 2 ends at √n·γ
+/// = 2.2.
 fn over_angle(contract: &dyn Contract, n: f64) -> Option<Vec<AtAngle>> {
     let highlight = contract.highlight()?;
     let half = REACH / f64::from(PLACES) / 2.0;
@@ -162,7 +154,7 @@ fn over_angle(contract: &dyn Contract, n: f64) -> Option<Vec<AtAngle>> {
     Some(curve)
 }
 
-/// Returns the errors at the angle γ = x/√n. Returns `None` if the operands cannot represent the angle and `n`.
+/// Returns the errors at the angle γ = x/√n.
 fn at_angle(highlight: &Highlight, x: f64, n: f64) -> Option<AtAngle> {
     let gamma = (x / n.sqrt()).clamp(0.0, FRAC_PI_2);
     let control = highlight.at(gamma, n)?;
@@ -253,9 +245,8 @@ fn charts(
     vec![over_n, over_gamma, fixed_point]
 }
 
-/// Returns the end of an axis for some curves: the smallest round number from 0.001 to 0.5 that is at least as large as every
-/// finite absolute value of the curves. For example, values up to 0.013 give 0.02. If a value is above 0.5, the end is 1, even
-/// if the value is above 1.
+/// Returns the end of an axis. It is the smallest round number from 0.001 to 0.5 that is at least as large as every finite
+/// absolute value of the curves. For example, values up to 0.013 give 0.02. If a value is above 0.5, the end is 1.
 fn reach(series: &[Series]) -> f64 {
     let mut largest: f64 = 0.0;
     for value in series.iter().flat_map(|series| &series.values) {
@@ -271,7 +262,7 @@ fn reach(series: &[Series]) -> f64 {
     1.0
 }
 
-/// Returns an error as the logarithmic axis shows it: at least [`FLOOR`]; NaN stays NaN.
+/// NaN stays NaN.
 fn floored(error: f64) -> f64 {
     if error.is_nan() { f64::NAN } else { error.max(FLOOR) }
 }

@@ -6,15 +6,14 @@
 use super::chart::{Chart, ChartAxis, Mark, Series};
 use glint_golden::Contract;
 
-/// The number of positions along the domain at which a chart has values. A domain with fewer values has one position for each.
+/// A domain with fewer values has one position for each.
 const PLACES: i64 = 160;
 
-/// The approximate number of operands that are tried at each position; the chart shows the largest error among them.
+/// The approximate number of operands that are tried at each position. The chart shows the largest error among them.
 const OPERANDS: i64 = 256;
 
-/// Returns the charts of a device with one operand and one output: the function and its error over the domain. If the domain
-/// has at most 160 values, the charts show each value. Returns no charts for a device that multiplies colours by a reflectance,
-/// or has more operands or outputs. Returns none either if the operand sets the number of results of a computation.
+/// Returns the charts of a device with one operand and one output: the function and its error over the domain. Returns no
+/// charts for a highlight, or if the operand sets the number of results of a computation.
 pub fn charts(contract: &dyn Contract) -> Vec<Chart> {
     let ([operand], [output]) = (contract.operands(), contract.outputs()) else {
         return Vec::new();

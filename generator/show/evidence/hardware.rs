@@ -16,8 +16,8 @@ pub trait Synthesis: Sync {
     /// Fails if the tool does not say its version.
     fn version(&self) -> Result<String>;
 
-    /// Returns the number of cells of each kind that the module `top` takes on an FPGA family. `files` are the Verilog and
-    /// memory files: pairs of a file name without directory, and the contents.
+    /// Counts the cells of the module `top` on an FPGA family. `files` are the Verilog and memory files: pairs of a file name
+    /// without directory, and the contents.
     ///
     /// # Errors
     /// Fails if the tool fails or takes too long.
@@ -27,18 +27,14 @@ pub trait Synthesis: Sync {
 /// The number of cells that a core takes on an FPGA family, before placement.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FamilyUsage {
-    /// The name of the FPGA family.
     pub family: &'static str,
-    /// The number of look-up tables that the core takes.
     pub luts: u64,
-    /// The number of DSP blocks that the core takes.
     pub dsps: u64,
-    /// The number of block RAMs that the core takes.
     pub block_rams: u64,
 }
 
-/// Returns the number of cells that a core takes on each of the FPGA families [`COMPARED`], in their order. The function calls
-/// `done` after each family, so that a caller can show progress.
+/// Returns the cells on each of the FPGA families [`COMPARED`], in their order. The function calls `done` after each family,
+/// so that a caller can show progress.
 ///
 /// # Errors
 /// Fails if synthesis fails.

@@ -14,30 +14,23 @@ use glint_base::input;
 /// The directory with the synthesis records of this repository.
 pub const DIRECTORY: &str = "records/synthesis";
 
-/// The record of a configuration's measurements, `<name>.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SynthesisRecord<F = Figures> {
-    /// The version of Glint that made the record.
     pub glint: String,
-    /// The path of the configuration file.
     pub config: String,
-    /// The name of the module.
     pub name: String,
-    /// The name of the device, such as `rough`.
     pub device: String,
-    /// A digest that identifies the core: [`glint_core::core::Core::core_digest`].
+    /// A digest of the core: [`glint_core::core::Core::core_digest`].
     pub core: String,
-    /// The number of clocks for each point: the clocks from one `start` to the next, divided by the number of results between
-    /// them. The number is 1 for a pipeline that takes a point every clock, and may be a fraction for a device that computes
-    /// lines.
+    /// The clocks from one `start` to the next, divided by the number of results between them. The number is 1 for a pipeline
+    /// that takes a point every clock, and may be a fraction for a device that computes lines.
     pub clocks_per_point: f64,
-    /// The measurements, one for each target.
     pub targets: Vec<F>,
 }
 
 impl SynthesisRecord {
-    /// Returns the record of the core with the digest `core`, among all records in a directory. Returns `None` if the
-    /// directory has no such record, or does not exist. Files that are no records are ignored.
+    /// Returns the record of the core with the digest `core`, among all records in a directory. Files that are no records are
+    /// ignored.
     ///
     /// # Errors
     /// Fails if the directory or a file in it cannot be read, or if a record is damaged.
@@ -47,38 +40,37 @@ impl SynthesisRecord {
         Ok(records.find(|record| record.core == core))
     }
 
-    /// Returns the measurement for a target, or `None` if the record has none.
     pub fn of(&self, target: Target) -> Option<&Figures> {
         self.targets.iter().find(|figures| figures.target == target)
     }
 
-    /// Returns the tools that made the measurements, each once, with their versions, in alphabetical order.
+    /// Returns each tool once, with its version, in alphabetical order.
     pub fn tools(&self) -> BTreeSet<&str> {
         tools(&self.targets)
     }
 }
 
-/// Returns the tools that made some measurements, each once, with their versions, in alphabetical order.
+/// Returns each tool once, with its version, in alphabetical order.
 pub fn tools<'a>(figures: impl IntoIterator<Item = &'a Figures>) -> BTreeSet<&'a str> {
     figures.into_iter().flat_map(|it| &it.tools).map(String::as_str).collect()
 }
 
-/// The number of points that a core computes per second. For example, 50 MHz and 5 clocks a point are 10 million points a second.
+/// The points that a core computes per second: 50 MHz and 5 clocks a point are 10 million.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Rate {
-    /// The number of points per second in millions, at the median frequency.
+    /// The rate in millions, at the median frequency.
     #[serde(rename = "million_points_per_second")]
     pub points: f64,
-    /// The number of points per second for each look-up table, in millions; `None` if there is no look-up table.
+    /// The rate in millions for each look-up table, if the core has any.
     #[serde(rename = "million_points_per_second_per_lut")]
     pub per_lut: Option<f64>,
-    /// The number of points per second for each DSP block, in millions; `None` if there is no DSP block.
+    /// The rate in millions for each DSP block, if the core has any.
     #[serde(rename = "million_points_per_second_per_dsp")]
     pub per_dsp: Option<f64>,
 }
 
 impl Rate {
-    /// Returns the rate of a core that takes `clocks_per_point` clocks for a point. Returns `None` if no frequency was measured.
+    /// Returns `None` if no frequency was measured.
     pub fn new(figures: &Figures, clocks_per_point: f64) -> Option<Self> {
         let points = figures.frequency?.median / clocks_per_point;
         let per = |units: Option<u64>| Some(points / units.filter(|units| *units > 0)? as f64);

@@ -4,70 +4,63 @@ use anyhow::Result;
 use glint_base::fill;
 use glint_base::template::Template;
 
-/// A drawing of lines, boxes and text, in units of the page at full size. Each [`Item::Open`] must have an [`Item::Close`].
+/// Lines, boxes and text, in units of the page at full size. Each [`Item::Open`] must have an [`Item::Close`].
 #[derive(Clone, Debug)]
 #[glint_base::template::template("drawing.svg")]
 pub struct Drawing {
-    /// The identifier of the drawing in HTML, which must be unique on the page.
+    /// The identifier in HTML, which must be unique on the page.
     pub id: String,
-    /// The title of the drawing, which a screen reader reads.
+    /// The title, which a screen reader reads.
     pub title: String,
     /// A description for screen readers.
     pub description: String,
-    /// The width of the drawing, in units of the page.
     pub width: i32,
-    /// The height of the drawing, in units of the page.
     pub height: i32,
-    /// The parts of the drawing, in the order in which they are drawn.
+    /// The parts in the order in which they are drawn.
     pub items: Vec<Item>,
 }
 
-/// A part of a drawing. Its class selects colours in the style sheet.
+/// The class of a part selects colours in the style sheet.
 #[derive(Clone, Debug)]
 pub enum Item {
     /// Lines, by SVG's path syntax.
     Path {
-        /// The class of the lines in the style sheet.
         class: &'static str,
-        /// The path, as the attribute `d` of SVG. For example, `M0 0H10V5` goes 10 to the right and 5 down.
+        /// The attribute `d` of SVG. For example, `M0 0H10V5` goes 10 to the right and 5 down.
         d: String,
     },
-    /// A line of text.
     Text {
-        /// The class of the text in the style sheet. The class also decides the alignment.
+        /// The class also decides the alignment.
         class: &'static str,
         /// The horizontal position at which the text starts, is centred or ends, as its class says.
         x: i32,
         /// The vertical position of the base line.
         y: i32,
-        /// The text of the line.
         text: String,
     },
     /// Begins a group of items, which [`Item::Close`] ends.
     Open {
-        /// The class of the group in the style sheet.
         class: &'static str,
         /// The tooltip of the group, a sentence.
         title: String,
     },
-    /// Ends the group that [`Item::Open`] began.
     Close,
 }
 
 impl Item {
-    /// Makes a line of text at the position (`x`, `y`), with the class `class` of the style sheet.
+    /// Makes a line of text; see [`Item::Text`].
     pub fn text(class: &'static str, x: i32, y: i32, text: impl Into<String>) -> Self {
         Self::Text { class, x, y, text: text.into() }
     }
 
-    /// Makes lines, by SVG's path syntax. For example, `M0 0H10V5` goes 10 to the right and 5 down.
+    /// Makes lines; see [`Item::Path`].
     pub fn path(class: &'static str, d: impl Into<String>) -> Self {
         Self::Path { class, d: d.into() }
     }
 }
 
 impl Drawing {
-    /// Returns the drawing as an `svg` element.
+    /// Returns an `svg` element.
     ///
     /// # Errors
     /// Fails if the template cannot be printed.
@@ -75,7 +68,7 @@ impl Drawing {
         Ok(self.render()?)
     }
 
-    /// Returns the drawing as an SVG file, ending with a newline.
+    /// Returns an SVG file that ends with a newline.
     ///
     /// # Errors
     /// Fails if a template cannot be printed.
@@ -91,7 +84,7 @@ impl Drawing {
 /// The font size of text in drawings, in units of the page.
 pub const SIZE: f64 = 11.0;
 
-/// Estimates the width of a text in a drawing. For example, 10 characters are 66 units wide.
+/// Estimates the width of a text: 10 characters are 66 units wide.
 pub fn text_width(text: &str) -> i32 {
     (text.chars().count() as f64 * SIZE * 0.6).ceil() as i32
 }

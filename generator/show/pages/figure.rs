@@ -9,21 +9,18 @@ use crate::evidence::chart::{AxisScale, Chart};
 /// The number of rows of the table beside a plot.
 const ROWS: usize = 11;
 
-/// A chart as a page shows it: plot, legend and table.
 pub struct Figure<'a> {
-    /// The chart that the figure shows.
     pub chart: &'a Chart,
     /// The place of the reproduced figure in the source document; empty for a figure of Glint's own.
     pub source: &'a str,
-    /// The plot of the chart as SVG text.
     pub svg: String,
     /// The class and the name of each curve.
     pub legend: Vec<(String, &'a str)>,
-    /// Some values of the chart for the table: a position on the horizontal axis, and the value of each curve.
+    /// Some values for the table: a position on the horizontal axis, and the value of each curve.
     pub rows: Vec<(String, Vec<String>)>,
 }
 
-/// Makes the figures of some charts. Each chart comes with the text for [`Figure::source`], which may be empty.
+/// Each chart comes with the text for [`Figure::source`], which may be empty.
 ///
 /// # Errors
 /// Fails if a chart cannot be plotted.
@@ -52,8 +49,7 @@ fn figure<'a>(chart: &'a Chart, source: &'a str) -> Result<Figure<'a>> {
     Ok(Figure { chart, source, svg: plots::svg(chart)?, legend, rows })
 }
 
-/// Returns a value as the table shows it: in scientific notation if the axis is logarithmic, otherwise with four digits
-/// after the point. NaN becomes a dash. For example, 0.5 is `0.5000` on a linear axis.
+/// Uses scientific notation if the axis is logarithmic, otherwise four digits after the point. NaN becomes a dash.
 fn cell(value: f64, scale: AxisScale) -> String {
     match scale {
         _ if value.is_nan() => "\u{2013}".to_owned(),
@@ -62,7 +58,7 @@ fn cell(value: f64, scale: AxisScale) -> String {
     }
 }
 
-/// Returns a number in scientific notation with one digit after the point. For example, 0.00123 is `1.2e−3`, and 0 is `0`.
+/// The text has one digit after the point. For example, 0.00123 is `1.2e−3`, and 0 is `0`.
 pub fn scientific(value: f64) -> String {
     match value {
         0.0 => "0".to_owned(),
@@ -70,7 +66,7 @@ pub fn scientific(value: f64) -> String {
     }
 }
 
-/// Writes a number with at most three digits after the point. For example, 2.5 is `2.5`, and 0.12345 is `0.123`.
+/// The text has at most three digits after the point. For example, 2.5 is `2.5`, and 0.12345 is `0.123`.
 fn number(value: f64) -> String {
     let text = format!("{value:.3}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()

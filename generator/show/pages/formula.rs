@@ -1,18 +1,17 @@
 //! Converts a formula in plain text to MathML.
 //!
-//! A device's description writes a formula in the syntax of programs, for example `out = colour * (n/2 * (c - 1) + 1)^2`. If the
-//! parser does not understand a formula, the page shows it as plain text.
+//! A device's description writes a formula in the syntax of programs, for example `out = colour * (n/2 * (c - 1) + 1)^2`. If
+//! the parser does not understand a formula, its functions return `None`, and the page shows plain text.
 
 use super::markup::html;
 
-/// The functions that may have an exponent after the name, such as `cos^2(x)`. Parentheses around a single name are not shown.
+/// These functions may have an exponent after the name, such as `cos^2(x)`. Parentheses around a single name are not shown.
 const FUNCTIONS: [&str; 4] = ["cos", "sin", "tan", "log"];
 
-/// The words that may occur between formulas. The page shows these words as text.
+/// Words that may occur between formulas, which the page shows as text.
 const PROSE: [&str; 10] =
     ["by", "where", "stretched", "if", "for", "with", "when", "and", "or", "otherwise"];
 
-/// The Greek letters that a formula writes by name.
 const GREEK: [(&str, &str); 12] = [
     ("alpha", "α"),
     ("beta", "β"),
@@ -28,8 +27,7 @@ const GREEK: [(&str, &str); 12] = [
     ("psi", "ψ"),
 ];
 
-/// Returns a formula as `math` elements, with operators between them at which a line may break. Returns `None` for a text that
-/// the parser does not understand.
+/// Returns a formula as `math` elements, with operators between them at which a line may break.
 pub fn mathml(text: &str) -> Option<String> {
     let mut reader = FormulaReader { tokens: tokens(text)?, at: 0 };
     let mut clauses = String::new();
@@ -44,7 +42,7 @@ pub fn mathml(text: &str) -> Option<String> {
     }
 }
 
-/// Returns a formula as HTML: typeset if the parser understands it, otherwise the plain text as code.
+/// Returns HTML: a typeset formula if the parser understands it, otherwise the plain text as code.
 pub fn typeset(text: &str) -> String {
     match mathml(text) {
         Some(formula) => format!("<div class=\"formula\">{formula}</div>"),
@@ -52,8 +50,7 @@ pub fn typeset(text: &str) -> String {
     }
 }
 
-/// Splits a formula into names, numbers and signs. Returns `None` if the text has another character. For example, `n/2 + 1` has
-/// the tokens `n`, `/`, `2`, `+` and `1`.
+/// Splits a formula into names, numbers and signs: `n/2 + 1` has the tokens `n`, `/`, `2`, `+` and `1`.
 fn tokens(text: &str) -> Option<Vec<&str>> {
     let mut tokens = Vec::new();
     let mut rest = text.trim_start();
@@ -75,7 +72,7 @@ fn tokens(text: &str) -> Option<Vec<&str>> {
     Some(tokens)
 }
 
-/// A part of a formula: its MathML, and, if it has parentheses around it, the MathML inside them.
+/// The MathML of a part and, if it has parentheses around it, the MathML inside them.
 struct FormulaPart {
     mathml: String,
     inside: Option<String>,
@@ -86,7 +83,7 @@ impl FormulaPart {
         Self { mathml, inside: None }
     }
 
-    /// Returns the part without its parentheses, for a numerator, a denominator, an exponent or a root.
+    /// A numerator, a denominator, an exponent or a root has no parentheses.
     fn bare(self) -> String {
         format!("<mrow>{}</mrow>", self.inside.unwrap_or(self.mathml))
     }
@@ -108,16 +105,15 @@ impl<'a> FormulaReader<'a> {
         Some(token)
     }
 
-    /// Reads the next token if it is one of `signs`. Otherwise it reads nothing and returns `None`.
+    /// Reads the next token only if it is one of `signs`.
     fn sign(&mut self, signs: &[&str]) -> Option<&'a str> {
         let found = self.peek().filter(|token| signs.contains(token))?;
         self.at += 1;
         Some(found)
     }
 
-    /// Parses a clause, up to a comma outside parentheses, a semicolon or the end, and returns its MathML. A clause consists of
-    /// relations and words of [`PROSE`], with at least one word between two relations. Returns `None` if the clause is empty,
-    /// or if the parser does not understand it.
+    /// Parses a clause, up to a comma outside parentheses, a semicolon or the end. A clause consists of relations and words of
+    /// [`PROSE`], with at least one word between two relations.
     fn clause(&mut self) -> Option<String> {
         let mut clause = String::new();
         let mut after_relation = false;
@@ -139,7 +135,7 @@ impl<'a> FormulaReader<'a> {
         (!clause.is_empty()).then_some(clause)
     }
 
-    /// Parses sums with relations such as `=` and `<=` between them. Returns `None` if the parser does not understand the text.
+    /// Parses sums with relations such as `=` and `<=` between them.
     fn relation(&mut self) -> Option<String> {
         let mut relation = self.sum()?;
         while let Some(sign) = self.sign(&["=", "<", ">", "<=", ">="]) {
@@ -155,8 +151,7 @@ impl<'a> FormulaReader<'a> {
         Some(relation)
     }
 
-    /// Parses products with `+`, `-` and `+-` between them, and returns their MathML. A minus may precede the first product.
-    /// Returns `None` if the parser does not understand the text.
+    /// Parses products with `+`, `-` and `+-` between them. A minus may precede the first product.
     fn sum(&mut self) -> Option<String> {
         let mut sum = match self.sign(&["-"]) {
             Some(_) => "<mo>−</mo>".to_owned(),
@@ -174,8 +169,8 @@ impl<'a> FormulaReader<'a> {
         Some(sum)
     }
 
-    /// Parses products and quotients from left to right. The whole product before a `/` is the numerator. For example, `a * b /
-    /// c` is a fraction with a·b above c. Returns `None` if the parser does not understand the text.
+    /// Parses products and quotients from left to right. The whole product before a `/` is the numerator: `a * b / c` is a
+    /// fraction with a·b above c.
     fn product(&mut self) -> Option<String> {
         let mut product = self.power()?;
         while let Some(sign) = self.sign(&["*", "/"]) {
@@ -188,8 +183,7 @@ impl<'a> FormulaReader<'a> {
         Some(product.mathml)
     }
 
-    /// Parses a base with an optional exponent, or one of [`FUNCTIONS`] with its argument. Returns `None` if the parser does
-    /// not understand the text.
+    /// Parses a base with an optional exponent, or one of [`FUNCTIONS`] with its argument.
     fn power(&mut self) -> Option<FormulaPart> {
         let name = self.peek().filter(|name| FUNCTIONS.contains(name));
         let Some(name) = name else {
@@ -231,8 +225,7 @@ impl<'a> FormulaReader<'a> {
         Some(FormulaPart::new(format!("{name}<mo>&#x2061;</mo>{argument}")))
     }
 
-    /// Parses a number, a name, a function call, or an expression in parentheses. Returns `None` if the parser does not
-    /// understand the text.
+    /// Parses a number, a name, a function call, or an expression in parentheses.
     fn atom(&mut self) -> Option<FormulaPart> {
         let token = self.peek()?;
         if token == "(" {
@@ -249,7 +242,6 @@ impl<'a> FormulaReader<'a> {
         }))
     }
 
-    /// Parses a number or a name. Returns `None` for any other token.
     fn single(&mut self) -> Option<FormulaPart> {
         let token = self.next()?;
         let first = token.chars().next()?;
@@ -260,8 +252,7 @@ impl<'a> FormulaReader<'a> {
         is_name.then(|| FormulaPart::new(name(token)))
     }
 
-    /// Parses parentheses with one expression, or with several and commas between them. Returns `None` if the parser does not
-    /// understand the text.
+    /// Parses parentheses with one expression, or with several and commas between them.
     fn parentheses(&mut self) -> Option<FormulaPart> {
         self.sign(&["("])?;
         let mut inside = self.sum()?;
@@ -282,8 +273,8 @@ impl<'a> FormulaReader<'a> {
     }
 }
 
-/// Returns a name as MathML. The name of a Greek letter becomes the letter, and `delta_x` becomes Δx. The part after `_`, or a
-/// number at the end, becomes a subscript. For example, `zeta_start` is ζ with the subscript "start", and `dgamma` is dγ.
+/// The name of a Greek letter becomes the letter, and `delta_x` becomes Δx. The part after `_`, or a number at the end,
+/// becomes a subscript. For example, `zeta_start` is ζ with the subscript "start", and `dgamma` is dγ.
 fn name(token: &str) -> String {
     if let Some(of) = token.strip_prefix("delta_") {
         return format!("<mrow><mi mathvariant=\"normal\">Δ</mi>{}</mrow>", name(of));
@@ -312,7 +303,6 @@ mod tests {
     use super::*;
     use glint_core::registry::Registry;
 
-    /// Returns the text of a formula without markup, or `None` if the parser does not understand it.
     fn plain(text: &str) -> Option<String> {
         let mut plain = String::new();
         let mut markup = false;

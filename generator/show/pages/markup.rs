@@ -1,7 +1,6 @@
 //! Converts plain text with names in backquotes to HTML.
 
-/// Converts plain text with names in backquotes to HTML, and escapes `&`, `<`, `>` and `"`. For example, `` `a<b` `` becomes
-/// `<code>a&lt;b</code>`.
+/// Also escapes `&`, `<`, `>` and `"`. For example, `` `a<b` `` becomes `<code>a&lt;b</code>`.
 pub fn html(text: &str) -> String {
     let mut html = String::with_capacity(text.len());
     // A last backquote without a partner remains a backquote.

@@ -24,18 +24,18 @@ const INK: RGBColor = RGBColor(1, 0, 0);
 const GRID: RGBColor = RGBColor(2, 0, 0);
 const MARK: RGBColor = RGBColor(3, 0, 0);
 
-/// Returns the placeholder colour of series number `at`, which [`themed`] replaces by the class from [`class`].
+/// Returns a placeholder colour, which [`themed`] replaces by the class from [`class`].
 fn style(at: usize) -> RGBColor {
     RGBColor(4, 0, (at % STYLES) as u8)
 }
 
-/// Returns the class of curve number `at` in the style sheet. For example, curve 0 has the class `s1`, and so has curve 10.
+/// Curve 0 has the class `s1`, and so has curve 10.
 pub fn class(at: usize) -> String {
     format!("s{}", at % STYLES + 1)
 }
 
-/// Returns the plot of a chart as an `svg` element that scales to the available width. Its colours come from the classes `ink`,
-/// `grid` and `mark`, and from the classes of [`class`].
+/// Returns an `svg` element that scales to the available width. Its colours come from the classes `ink`, `grid` and `mark`,
+/// and from [`class`].
 ///
 /// # Errors
 /// Fails if the plotting library fails, for example because a range is empty.
@@ -45,8 +45,7 @@ pub fn svg(chart: &Chart) -> Result<String> {
     Ok(themed(&text, chart))
 }
 
-/// An axis in the form that the plotting library takes: the positions of values, with lines and labels at the ticks from
-/// [`ticks`].
+/// An axis in the form that the plotting library takes.
 struct AxisPlaces {
     range: std::ops::Range<f64>,
     ticks: Vec<f64>,
@@ -130,8 +129,7 @@ fn draw(chart: &Chart, text: &mut String) -> Result<(), Box<dyn std::error::Erro
     Ok(())
 }
 
-/// Returns the label of the tick at a position of an axis. For example, the position 2 of a logarithmic axis has the label
-/// `100`.
+/// Returns a label: the position 2 of a logarithmic axis has the label `100`.
 fn tick_label(axis: &ChartAxis, place: f64) -> String {
     match axis.scale {
         AxisScale::Linear => number(place),
@@ -139,7 +137,7 @@ fn tick_label(axis: &ChartAxis, place: f64) -> String {
     }
 }
 
-/// Returns the position of the only value of a series. Returns `None` if the series has several values, or none.
+/// Returns `None` if the series has several values, or none.
 fn only_place(chart: &Chart, values: &[f64]) -> Option<(f64, f64)> {
     let mut known = chart.places.iter().zip(values).filter(|(_, value)| value.is_finite());
     let (x, y) = known.next()?;
@@ -150,14 +148,12 @@ fn only_place(chart: &Chart, values: &[f64]) -> Option<(f64, f64)> {
     }
 }
 
-/// Returns the positions of both ends of an axis, or `None` if the axis cannot show one of them.
 fn ends(axis: &ChartAxis) -> Option<(f64, f64)> {
     Some((axis.place(axis.range.0)?, axis.place(axis.range.1)?))
 }
 
-/// Finds the series with one value. Returns for each the index of the series, its position, and whether its name is left of the
-/// point. The name is on the side of the point with more room. The name is on the other side if the name of a point just above
-/// is in the way.
+/// Returns for each series with only one value its index, its position, and whether its name is left of the point. The name is
+/// on the side with more room, unless the name of a point just above is in the way.
 fn points(chart: &Chart) -> Vec<(usize, (f64, f64), bool)> {
     let mut places: Vec<(usize, (f64, f64))> = Vec::new();
     for (at, series) in chart.series.iter().enumerate() {
@@ -182,8 +178,8 @@ fn points(chart: &Chart) -> Vec<(usize, (f64, f64), bool)> {
 }
 
 /// Returns the connected parts of a curve inside the range of the vertical axis, as positions. A line that leaves the range is
-/// cut at its border. For example, in a range that ends at 4, a line from 3 to 5 is cut half way. A line between two points
-/// outside the range is left out, and so is a point without neighbours in the range.
+/// cut at its border. A line between two points outside the range is left out, and so is a point without neighbours in the
+/// range.
 fn runs(chart: &Chart, values: &[f64]) -> Vec<Vec<(f64, f64)>> {
     let low = chart.y.place(chart.y.range.0).unwrap_or(f64::NEG_INFINITY);
     let high = chart.y.place(chart.y.range.1).unwrap_or(f64::INFINITY);
@@ -225,8 +221,8 @@ fn runs(chart: &Chart, values: &[f64]) -> Vec<Vec<(f64, f64)>> {
     runs
 }
 
-/// Returns round values within the range of an axis, in order. A linear axis from 0 to 10 has 0, 2, 4, 6, 8 and 10, for
-/// example. A logarithmic axis from 2 to 60 has 2, 5, 10, 20 and 50.
+/// Returns round values within the range of an axis, in order. For example, a linear axis from 0 to 10 has 0, 2, 4, 6, 8 and
+/// 10. A logarithmic axis from 2 to 60 has 2, 5, 10, 20 and 50.
 fn ticks(axis: &ChartAxis) -> Vec<f64> {
     let (low, high) = axis.range;
     match axis.scale {
@@ -257,8 +253,8 @@ fn ticks(axis: &ChartAxis) -> Vec<f64> {
     }
 }
 
-/// Returns the label of a tick: at most six digits after the point, without trailing zeros. A number nearer to 0 than 0.001 has
-/// at most two digits and an exponent. For example, `0.5`, or `1.5e−4`.
+/// The text has at most six digits after the point, without trailing zeros. A number nearer to 0 than 0.001 has at most two
+/// digits and an exponent. For example, `0.5`, or `1.5e−4`.
 fn number(value: f64) -> String {
     if value != 0.0 && value.abs() < 0.001 {
         return format!("{value:.1e}").replace(".0e", "e").replace("e-", "e\u{2212}");
@@ -268,13 +264,12 @@ fn number(value: f64) -> String {
     if shortest == "-0" { "0" } else { shortest }.replace('-', "\u{2212}")
 }
 
-/// Returns a colour in the notation of the library's SVG. For example, [`INK`] is `#010000`.
+/// Returns a colour in the notation of the library's SVG: [`INK`] is `#010000`.
 fn hex(RGBColor(r, g, b): RGBColor) -> String {
     format!("#{r:02X}{g:02X}{b:02X}")
 }
 
-/// Replaces placeholder colours by classes, and adds the attributes that make the element an image to a screen
-/// reader.
+/// Replaces placeholder colours by classes, and adds the attributes that make the element an image to a screen reader.
 fn themed(text: &str, chart: &Chart) -> String {
     let mut roles = vec![
         (hex(INK), "ink".to_owned()),

@@ -1,5 +1,4 @@
 //! Defines the perspective camera of a rendered picture: its position and direction, and where a point of the scene appears.
-//! By default, the camera is at the smallest distance at which it shows all objects.
 
 use anyhow::{Context, Result, ensure};
 
@@ -12,17 +11,16 @@ pub struct Camera {
     right: Vector,
     up: Vector,
     back: Vector,
-    /// Half the width and half the height of the view at distance 1.
     half: (f64, f64),
 }
 
-/// The user's settings of the camera. Settings that are left out follow from the size of the scene.
+/// Settings that are left out follow from the size of the scene.
 #[derive(Clone, Copy, Debug)]
 pub struct View {
-    /// The position of the camera in the scene. The default is the nearest position, in front of the scene and a little above,
-    /// from which all objects are visible.
+    /// The position in the scene. The default is the nearest position, in front of the scene and a little above, from which
+    /// all objects are visible.
     pub eye: Option<Vector>,
-    /// The point at which the camera looks. The default is the middle of the scene.
+    /// The point at which the camera looks; by default the middle of the scene.
     pub target: Option<Vector>,
     /// The vertical field of view in degrees.
     pub field: f64,
@@ -35,8 +33,8 @@ const DIRECTION: Vector = Vector::new(0.0, 0.28, 1.0);
 const FILLED: f64 = 0.92;
 
 impl Camera {
-    /// Sets up a camera for a picture whose width divided by its height is `aspect`. The camera shows all of `things`, unless
-    /// `view` says otherwise. `things` are balls, each with its middle and radius; `middle` is the middle of them all.
+    /// `aspect` is the picture's width divided by its height. The camera shows all of `things`, which are balls with their
+    /// middle and radius, unless `view` says otherwise. `middle` is the middle of them all.
     ///
     /// # Errors
     /// Fails if the camera's position is the point at which it looks, or if the position is not finite.
@@ -75,8 +73,7 @@ impl Camera {
         Ok(camera)
     }
 
-    /// Returns the distance from the target at which the camera sees all of `things`. The eye must be at the target when the
-    /// function is called.
+    /// Returns the distance from the target at which the camera sees all of `things`. The eye must still be at the target.
     fn distance(&self, things: impl Iterator<Item = (Vector, f64)>) -> f64 {
         let slopes = [self.half.0 * FILLED, self.half.1 * FILLED];
         let needed = things.flat_map(|(middle, radius)| {
@@ -90,28 +87,26 @@ impl Camera {
         needed.fold(0.0, f64::max)
     }
 
-    /// Returns the position of the camera.
     pub fn eye(&self) -> Vector {
         self.eye
     }
 
-    /// Converts a point of the scene to the camera's coordinates. For example, a point 5 units in front of the camera is (0, 0,
-    /// −5).
+    /// Converts a point of the scene to the camera's coordinates. For example, a point 5 units in front of the camera is (0,
+    /// 0, −5).
     #[inline]
     pub fn place(&self, point: Vector) -> Vector {
         let from = point - self.eye;
         Vector::new(from.dot(self.right), from.dot(self.up), from.dot(self.back))
     }
 
-    /// Converts a direction from the camera's coordinates to the coordinates of the scene. For example, (0, 0, −1) gives the
-    /// direction in which the camera looks.
+    /// Converts a direction from the camera's coordinates to the coordinates of the scene.
     #[inline]
     pub fn outward(&self, direction: Vector) -> Vector {
         let [x, y, z] = direction.0;
         self.right * x + self.up * y + self.back * z
     }
 
-    /// Returns half the width and half the height of the visible area at distance 1 from the camera.
+    /// Returns half the width and half the height of the visible area at distance 1.
     pub fn half(&self) -> (f64, f64) {
         self.half
     }

@@ -3,13 +3,13 @@
 use anyhow::{Context, Result, bail, ensure};
 use png::{BitDepth, ColorType, Decoder, Limits, Transformations};
 
-/// The largest width or height of a map in pixels.
+/// The largest width or height of a map, in pixels.
 const LARGEST_SIDE: u32 = 8192;
 
-/// The largest amount of memory, in bytes, that the decoder may use.
+/// The decoder may use this number of bytes.
 const MEMORY: usize = 512 << 20;
 
-/// The slopes of a height map. The map is repeated in all directions, like tiles.
+/// The map is repeated in all directions, like tiles.
 #[derive(Clone, Debug)]
 pub struct Relief {
     width: usize,
@@ -23,8 +23,8 @@ pub struct Relief {
 }
 
 impl Relief {
-    /// Reads a height map from the contents of a PNG file. `depth` is the height of white above black, in the unit of the scene;
-    /// `repeat` is the number of copies of the map for each unit of the texture coordinates.
+    /// Reads the contents of a PNG file. `depth` is the height of white above black, in the unit of the scene; `repeat` is the
+    /// number of copies of the map for each unit of the texture coordinates.
     ///
     /// # Errors
     /// Fails if the file is not a whole PNG, has colours or transparency, has more than 8192 pixels along a side, or needs too
@@ -65,8 +65,8 @@ impl Relief {
         Ok(Self { slopes: slopes(&heights, width, height), width, height, depth, repeat })
     }
 
-    /// Returns the slopes of the surface at the texture coordinates `u` and `v`: its rise, in units of the scene, per unit of u
-    /// and per unit of v. The slopes between the middles of pixels are interpolated, so no edges between pixels are visible.
+    /// Returns the rise of the surface at the texture coordinates `u` and `v`, in units of the scene, per unit of u and of v.
+    /// It is interpolated between the middles of pixels, so no edges are visible.
     pub fn rise(&self, u: f64, v: f64) -> [f64; 2] {
         let (width, height) = (self.width as f64, self.height as f64);
         // The first row is the upper edge, v = 1.
@@ -89,7 +89,6 @@ impl Relief {
         rise
     }
 
-    /// Returns the slopes at a pixel of the repeated map.
     fn slope(&self, column: i64, row: i64) -> [f32; 2] {
         let column = column.rem_euclid(self.width as i64) as usize;
         let row = row.rem_euclid(self.height as i64) as usize;
@@ -97,14 +96,12 @@ impl Relief {
     }
 }
 
-/// Returns the number at a share of the way from one number to another.
 fn between(from: f32, to: f32, share: f64) -> f64 {
     let (from, to) = (f64::from(from), f64::from(to));
     from + (to - from) * share
 }
 
-/// Returns the rise per pixel to the right and upward: half the difference of the neighbours. For example, between the
-/// heights 0 and 1 a pixel has the rise 0.5.
+/// Returns the rise per pixel to the right and upward: half the difference of the neighbours.
 fn slopes(heights: &[f32], width: usize, height: usize) -> Vec<[f32; 2]> {
     let height_at = |column: usize, row: usize| heights[row % height * width + column % width];
     let mut slopes = Vec::with_capacity(heights.len());

@@ -7,28 +7,27 @@ use anyhow::{Result, bail, ensure};
 
 use super::vector::Vector;
 
-/// The largest number of triangles of a mesh. This limit keeps indices in 32 bits and memory in gigabytes.
+/// This limit keeps indices in 32 bits and memory in gigabytes.
 pub const MOST_TRIANGLES: usize = 20_000_000;
 
 /// The default angle, in degrees, beyond which an edge of a mesh without normals is drawn as sharp.
 pub const CREASE: f64 = 40.0;
 
-/// The crease angle in degrees at which no edge is drawn as sharp.
+/// At this angle no edge is drawn as sharp.
 pub const SMOOTH: f64 = 180.0;
 
-/// The largest allowed absolute value of a coordinate. Up to this limit, the areas of triangles and their squares are finite.
+/// Up to this limit of coordinates, the areas of triangles and their squares are finite.
 const FARTHEST: f64 = 1e30;
 
 /// A mesh of triangles. Every corner has a normal, and may have texture coordinates.
 #[derive(Clone, Debug, Default)]
 pub struct Mesh {
-    /// The positions of the corners, in coordinates of the scene.
+    /// The corners' positions, in coordinates of the scene.
     pub positions: Vec<Vector>,
-    /// The normals at the corners, vectors of length 1.
+    /// The normals have the length 1.
     pub normals: Vec<Vector>,
-    /// The texture coordinates (u, v) of the corners.
     pub textures: Vec<[f64; 2]>,
-    /// The triangles. Their corners are indices into the other lists.
+    /// The corners are indices into the other lists.
     pub triangles: Vec<[Corner; 3]>,
     /// The number of triangles without area that were left out.
     pub degenerate: usize,
@@ -37,33 +36,26 @@ pub struct Mesh {
 /// A corner of a triangle: indices into the lists of a [`Mesh`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Corner {
-    /// The index of the corner's position.
     pub position: u32,
-    /// The index of the corner's normal.
     pub normal: u32,
-    /// The index of the corner's texture coordinates, if it has any.
     pub texture: Option<u32>,
 }
 
-/// A corner as a file gives it. If it has no normal, one is computed.
+/// A corner as a file gives it, perhaps without a normal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RawCorner {
-    /// The index of the corner's position.
     pub position: u32,
-    /// The index of the corner's normal; `None` if the file gives none.
     pub normal: Option<u32>,
-    /// The index of the corner's texture coordinates, if it has any.
     pub texture: Option<u32>,
 }
 
 impl Mesh {
-    /// Makes a mesh of positions, normals, texture coordinates and triangles. The function leaves out triangles without area,
-    /// and counts them in `degenerate`. Every index of a corner must exist; otherwise the function panics.
+    /// Makes a mesh without triangles that have no area. The function panics if an index of a corner does not exist.
     ///
-    /// A corner without a normal, or with a normal of length 0, gets a mean normal. The function averages the normals of the
-    /// triangles that meet at the corner's position, weighted by their areas. The mean includes only triangles that are
-    /// connected to the corner's own triangle there by edges of at most `crease` degrees. For example, a cube without normals
-    /// keeps its edges of 90 degrees at a `crease` of 40, and looks round at 90.
+    /// A corner without a normal, or with a normal of length 0, gets the mean normal of the triangles that meet at its
+    /// position. Their areas weight the mean. The mean includes only triangles that are connected to the corner's own triangle
+    /// there by edges of at most `crease` degrees. For example, a cube without normals keeps its edges of 90 degrees at a
+    /// `crease` of 40, and looks round at 90.
     ///
     /// # Errors
     /// Fails if no triangle has an area, or if there are more than 20 million triangles. Fails if a number is not finite, or if
@@ -95,7 +87,7 @@ impl Mesh {
         kept.retain(|corners| area_vector(&positions, corners).unit().is_some());
         ensure!(all > 0, "the mesh has no triangle");
         ensure!(!kept.is_empty(), "all {all} triangles have no area");
-        // The given normals, scaled to length 1; `None` for a normal of length 0.
+        // A normal of length 0 gives `None`.
         let given: Vec<Option<Vector>> = normals.iter().map(|normal| normal.unit()).collect();
         let is_complete =
             kept.iter().flatten().all(|corner| usable_normal(corner, &given).is_some());
@@ -123,32 +115,29 @@ impl Mesh {
         Ok(Self { degenerate: all - kept.len(), triangles, positions, normals, textures })
     }
 
-    /// Returns the positions of the three corners of the triangle with the index `triangle`, in the order of the file.
     #[inline]
     pub fn corners(&self, triangle: usize) -> [Vector; 3] {
         self.triangles[triangle].map(|corner| self.positions[corner.position as usize])
     }
 
-    /// Returns whether every corner has texture coordinates.
     pub fn is_textured(&self) -> bool {
         let mut corners = self.triangles.iter().flatten();
         corners.all(|corner| corner.texture.is_some())
     }
 
-    /// Returns the positions of all corners of all triangles.
     pub fn corner_positions(&self) -> impl Iterator<Item = Vector> {
         let corners = self.triangles.iter().flatten();
         corners.map(|corner| self.positions[corner.position as usize])
     }
 }
 
-/// Returns the normal of a triangle. Its length is twice the area of the triangle.
+/// Returns a normal whose length is twice the area of the triangle.
 fn area_vector(positions: &[Vector], corners: &[RawCorner; 3]) -> Vector {
     let [a, b, c] = corners.map(|corner| positions[corner.position as usize]);
     (b - a).cross(c - a)
 }
 
-/// Returns the index of a corner's given normal. Returns `None` if the corner has no normal, or a normal of length 0.
+/// Returns the index of a corner's given normal, if its length is not 0.
 fn usable_normal(corner: &RawCorner, given: &[Option<Vector>]) -> Option<u32> {
     corner.normal.filter(|&normal| given[normal as usize].is_some())
 }
@@ -160,8 +149,7 @@ fn finite(what: &str, vectors: &[Vector]) -> Result<()> {
     }
 }
 
-/// Returns, for each position, the index of the first position with the same coordinates. For example, four positions a, b,
-/// a, b give 0, 1, 0, 1.
+/// Returns the index of the first equal position: four positions a, b, a, b give 0, 1, 0, 1.
 fn first_of_same(positions: &[Vector]) -> Vec<u32> {
     let mut first = HashMap::with_capacity(positions.len());
     let mut same = Vec::with_capacity(positions.len());
@@ -173,8 +161,8 @@ fn first_of_same(positions: &[Vector]) -> Vec<u32> {
     same
 }
 
-/// Computes the mean normals that [`Mesh::new`] explains, and appends them to `normals`. Returns the index of the normal of
-/// every corner, three for each triangle. `areas` are the triangles' normals, each as long as twice the triangle's area.
+/// Computes the mean normals of [`Mesh::new`], and appends them to `normals`. Returns the index of the normal of every corner,
+/// three for each triangle. `areas` are the triangles' normals, each as long as twice the triangle's area.
 fn creased_normals(
     positions: &[Vector],
     triangles: &[[RawCorner; 3]],
@@ -238,8 +226,8 @@ fn creased_normals(
     found
 }
 
-/// Returns the representative of the group that contains `at` (union-find): the smallest member of the group. The function
-/// shortens the path from `at` to the representative.
+/// Returns the smallest member of the group that contains `at`, as its representative (union-find), and shortens the path to
+/// it.
 fn root(group: &mut [usize], at: usize) -> usize {
     let mut root = at;
     while group[root] != root {

@@ -1,9 +1,9 @@
 //! Renders pictures whose specular highlights are bit-exact results of a device.
 //!
-//! The host is the software around the device. The host computes visibility, normals, half vectors, and the ambient and diffuse
+//! The host is the software around the device. It computes visibility, normals, half vectors, and the ambient and diffuse
 //! light in f64. An [`Engine`] computes the specular term of each sample for each light that falls on it, point by point or
 //! along lines of points. A device that takes normals as operands, such as `shading`, also computes the ambient and diffuse
-//! light of a lit surface.
+//! light.
 //!
 //! The same picture has the same bytes on every machine, because `libm` computes the transcendental functions. For a core
 //! without mistakes, the bytes depend neither on the engine nor on the number of threads.
@@ -46,59 +46,47 @@ pub const LARGEST_SIDE: u32 = 8192;
 /// The largest number of samples along each side of a pixel.
 pub const MOST_SAMPLES: u32 = 8;
 
-/// The largest number of samples of a picture: pixels times samples per pixel.
+/// Pixels times samples per pixel.
 pub const LARGEST: u64 = 1 << 28;
 
-/// The largest number of lights in a scene.
 pub const MOST_LIGHTS: usize = 16;
 
-/// The default vertical field of view of a picture in degrees.
+/// The default vertical field of view, in degrees.
 pub const FIELD: f64 = 30.0;
 
-/// The default exponent n of a picture. A device whose domain does not contain it gets the nearest exponent of its domain.
+/// The default exponent n. A device whose domain does not contain it gets the nearest exponent of its domain.
 const EXPONENT: i64 = 80;
 
-/// The approximate number of points that the renderer passes to the engine at once. The renderer always passes whole rows of
-/// pixels.
+/// The approximate number of points that the engine gets at once, always for whole rows of pixels.
 const PORTION: usize = 1 << 18;
 
-/// The settings for rendering a picture.
 #[derive(Clone, Debug)]
 pub struct Settings {
-    /// The width and the height in pixels.
     pub size: (u32, u32),
-    /// The number of samples along each side of a pixel. The colour of the pixel is their mean.
+    /// The number along each side of a pixel. The colour of the pixel is their mean.
     pub samples: u32,
-    /// The settings of the camera: its position, the point at which it looks, and its field of view.
     pub view: View,
-    /// The material of all objects, such as the share of light that they reflect.
     pub material: Material,
     /// The colour where no object is visible, from 0 to 1.
     pub background: Vector,
     /// Whether to render also Blinn's function cosⁿγ in f64, for comparison.
     pub compare: bool,
-    /// The names and values of operands that have the same value at every point. The list must include the operands that a
-    /// scene cannot supply.
+    /// Operands that have the same value at every point, among them all operands that a scene cannot supply.
     pub operands: Vec<(String, f64)>,
 }
 
-/// A picture, and the facts about its rendering.
 #[derive(Clone, Debug)]
 pub struct Rendered {
-    /// The picture with the device's results.
     pub picture: Picture,
-    /// The number of computations of the device.
     pub points: u64,
-    /// The number of points whose roughness angle dγ (the deviation of the normal) was outside the device's domain, so that the
-    /// renderer limited it to the domain.
+    /// The number of points whose roughness angle dγ (the deviation of the normal) was outside the device's domain, so that
+    /// the renderer limited it to the domain.
     pub beyond: u64,
-    /// The comparison with Blinn's function, if the settings ask for it.
     pub comparison: Option<PictureComparison>,
 }
 
 impl Rendered {
-    /// Returns the picture. If it was compared with Blinn's function, the two pictures and their difference are side by side,
-    /// with captions.
+    /// With a comparison, returns the two pictures and their difference side by side, with captions.
     pub fn whole(&self, device: &str) -> Picture {
         let Some(comparison) = &self.comparison else {
             return self.picture.clone();
@@ -112,10 +100,8 @@ impl Rendered {
     }
 }
 
-/// The comparison of a picture with formulas in f64.
 #[derive(Clone, Debug)]
 pub struct PictureComparison {
-    /// The picture with Blinn's function cosⁿγ in f64.
     pub exact: Picture,
     /// The difference between the device's picture and this picture.
     pub difference: PictureDifference,
@@ -123,22 +109,18 @@ pub struct PictureComparison {
     pub units: f64,
 }
 
-/// Returns the default exponent n of a picture: 80, or the exponent of the device's domain that is nearest to 80. For
-/// example, it returns 64 for a device whose domain ends at 64. A device without an exponent gives 80.
+/// Returns 80, or the exponent of the device's domain that is nearest to 80.
 pub fn usual_exponent(contract: &dyn Contract) -> u32 {
     let (least, most) = exponents(contract).unwrap_or((0, i64::MAX));
     EXPONENT.clamp(least, most).max(0) as u32
 }
 
-/// Returns whether Glint can render a picture with a device, because it can compute all operands of the device from a scene.
+/// Returns whether Glint can compute all operands of the device from a scene.
 pub fn draws(core: &Core) -> bool {
     let contract = core.contract.as_ref();
     Feed::new(core.device().name, contract).is_ok()
 }
 
-/// Checks the settings and the scene before rendering.
-///
-/// # Errors
 /// Fails if the size, the number of samples or the number of lights is outside its limits. Fails if the picture has too many
 /// samples in all. Fails if the scene has a height map and a mesh without texture coordinates.
 pub fn check(settings: &Settings, scene: &Scene) -> Result<()> {
@@ -174,8 +156,8 @@ pub fn check(settings: &Settings, scene: &Scene) -> Result<()> {
     Ok(())
 }
 
-/// Renders a scene. The function calls `progress` with the number of finished rows of pixels, several times up to the height of
-/// the picture. The highlights are results of `engine`, for example the golden model or a simulation of the Verilog.
+/// Renders a scene, whose highlights are results of `engine`, for example the golden model or a simulation of the Verilog. The
+/// function calls `progress` with the number of finished rows of pixels, several times up to the height of the picture.
 ///
 /// # Errors
 /// Fails if [`check`] does, if the camera is at the point at which it looks, if a scene cannot supply an operand, or if the
@@ -242,12 +224,11 @@ pub fn render(
     Ok(result.finish(settings.compare))
 }
 
-/// A picture whose rows are added from top to bottom, and the engine that computes the highlights of the rows.
+/// A picture whose rows are added from top to bottom, and the engine that computes their highlights.
 struct Portions<'a> {
     core: &'a Core,
     feed: &'a Feed,
     engine: &'a mut dyn Engine,
-    /// The number of samples along each side of a pixel.
     samples: usize,
     width: usize,
     picture: Picture,
@@ -260,8 +241,7 @@ struct Portions<'a> {
 }
 
 impl Portions<'_> {
-    /// Computes the highlights of some rows of samples, and adds the finished rows of pixels to the picture. The number of rows
-    /// must be a multiple of the number of samples along a pixel. Fails if the engine fails.
+    /// Adds rows of pixels. The number of rows of samples must be a multiple of the number of samples along a pixel.
     fn add(&mut self, rows: &[Shaded], compare: bool) -> Result<()> {
         let mut points = Points::new(self.feed.operand_count());
         for row in rows {
@@ -294,8 +274,7 @@ impl Portions<'_> {
         Ok(())
     }
 
-    /// Returns the specular light of every sample and light, 0 … 255 in each channel. `outputs` are the device's results for
-    /// all of `rows`.
+    /// Returns the specular light of every sample and light, 0 … 255 in each channel, from the device's results.
     fn specular(&self, rows: &[Shaded], outputs: &[i64]) -> Vec<Vector> {
         let width = self.core.contract.outputs().len();
         let result = |at: usize| &outputs[at * width..(at + 1) * width];
@@ -318,8 +297,8 @@ impl Portions<'_> {
         all
     }
 
-    /// Returns the pixels of some rows of samples. The colour of a sample is its ambient and diffuse light plus the
-    /// `specular` light of each of its lights, limited to 255. The colour of a pixel is the mean of its samples.
+    /// The colour of a sample is its ambient and diffuse light plus the `specular` light of each of its lights, limited to
+    /// 255. The colour of a pixel is the mean of its samples.
     fn pixels(&self, rows: &[Shaded], specular: Vec<Vector>) -> Vec<[u8; 3]> {
         let mut sums = Vec::with_capacity(self.width * rows.len() / self.samples);
         let mut specular = specular.into_iter();
@@ -342,7 +321,7 @@ impl Portions<'_> {
         sums
     }
 
-    /// Returns the largest error of an output against the device's own formula, in output units.
+    /// Compares with the device's own formula, in output units.
     fn error(&self, points: &Points, outputs: &[i64]) -> f64 {
         let contract = self.core.contract.as_ref();
         let width = contract.outputs().len();

@@ -1,16 +1,14 @@
 //! Reads the geometry of a mesh from a file in Wavefront's OBJ format.
 //!
-//! The reader takes vertices, normals, texture coordinates and faces. The reader ignores everything else, such as groups,
-//! materials and curves. The reader reports a mistake with its line number. Corners with and without normals may be mixed in
-//! one file.
+//! The reader takes vertices, normals, texture coordinates and faces, and ignores everything else, such as groups, materials
+//! and curves. Corners with and without normals may be mixed in one file.
 
 use anyhow::{Context, Result, anyhow, bail, ensure};
 
 use super::mesh::{Mesh, RawCorner};
 use super::vector::Vector;
 
-/// Parses a mesh from the text of an OBJ file. At corners without normals, edges of more than `crease` degrees are drawn as
-/// sharp.
+/// At corners without normals, edges of more than `crease` degrees are drawn as sharp.
 ///
 /// # Errors
 /// Fails with the line number if a coordinate is missing or not a finite number. Fails with it too if a face has less than
@@ -56,7 +54,6 @@ impl ObjReader {
     }
 
     /// Adds a face of n corners as a fan of n − 2 triangles. For example, the face 1 2 3 4 is the triangles 1 2 3 and 1 3 4.
-    /// Fails if a corner is not valid, or if there are fewer than three.
     fn face<'a>(&mut self, words: impl Iterator<Item = &'a str>) -> Result<()> {
         let corners: Vec<RawCorner> = words
             .map(|word| {
@@ -73,8 +70,7 @@ impl ObjReader {
         Ok(())
     }
 
-    /// Reads a corner: `v`, `v/vt`, `v//vn` or `v/vt/vn`. For example, `3//1` has vertex 3 and normal 1. Fails if an index is
-    /// no integer or denotes no entry so far, or if there are more than two `/`.
+    /// Reads a corner: `v`, `v/vt`, `v//vn` or `v/vt/vn`. For example, `3//1` has vertex 3 and normal 1.
     fn corner(&self, word: &str) -> Result<RawCorner> {
         let mut parts = word.split('/');
         let position = parts.next().unwrap_or_default();
@@ -93,8 +89,6 @@ impl ObjReader {
     }
 }
 
-/// Returns the first `N` words as finite numbers. Fails if there are fewer than `N` words, or if one of them is no finite
-/// number.
 fn numbers<'a, const N: usize>(
     what: &str,
     mut words: impl Iterator<Item = &'a str>,

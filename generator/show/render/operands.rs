@@ -1,7 +1,7 @@
 //! Converts the geometry at a point or along a line of a picture to raw operands of a device.
 //!
-//! The contract lists the operands of the device by name. The name decides which quantity an operand gets: for example,
-//! `cos_gamma` gets the cosine between normal and half vector. No code here depends on the name of a device.
+//! The name of an operand decides which quantity it gets: for example, `cos_gamma` gets the cosine between normal and half
+//! vector. No code here depends on the name of a device.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -18,26 +18,23 @@ use glint_golden::{Contract, Operand};
 pub struct Point {
     /// The cosine N·H of the angle γ between the smooth normal N and the half vector H.
     pub cos_gamma: f64,
-    /// The cosine of dγ, the difference between the angle of H with the perturbed normal and γ.
+    /// The cosine of dγ, the angle between H and the perturbed normal minus γ.
     pub cos_dgamma: f64,
-    /// Whether dγ is negative, which means that the perturbed normal is nearer to the half vector H than the smooth normal is. dγ
-    /// is the difference between the angles that the two normals form with H.
+    /// Whether dγ is negative: the perturbed normal is nearer to the half vector H than the smooth normal is.
     pub dgamma_negative: bool,
-    /// The vector N − H from the half vector to the normal N. N is the perturbed normal if the surface has a height map.
+    /// The vector N − H. N is the perturbed normal if the surface has a height map.
     pub difference: Vector,
-    /// The cosine N·H of the angle between the half vector and the normal N. N is the perturbed normal if the surface has a
-    /// height map.
+    /// The cosine N·H. N is the perturbed normal if the surface has a height map.
     pub cos_shaded: f64,
     /// The colour of the light times the specular coefficient, from 0 to 1.
     pub colour: Vector,
-    /// The surface at the point. A device that computes ambient and diffuse light too needs it.
+    /// A device that computes ambient and diffuse light too needs the surface.
     pub surface: Surface,
 }
 
 /// A point of a surface under one light: its normal, its vectors and its light.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Surface {
-    /// The normal as it was interpolated, of any length.
     pub normal: Vector,
     /// The unit vector to the light.
     pub light: Vector,
@@ -69,7 +66,6 @@ enum OperandMeaning {
     Ambient(usize),
     Diffuse(usize),
     Specular(usize),
-    /// A value that is the same at every point.
     Given(f64),
 }
 
@@ -79,7 +75,6 @@ impl OperandMeaning {
     }
 }
 
-/// The operand names of a device that computes the highlight of one point, each with the quantity that supplies its value.
 const OF_POINTS: [(&str, OperandMeaning); 11] = [
     ("cos_gamma", OperandMeaning::CosGamma),
     ("exponent", OperandMeaning::Exponent),
@@ -94,7 +89,6 @@ const OF_POINTS: [(&str, OperandMeaning); 11] = [
     ("blue", OperandMeaning::Colour(2)),
 ];
 
-/// The operand names of a device that computes ambient, diffuse and specular light of one point.
 const OF_SURFACES: [(&str, OperandMeaning); 19] = [
     ("nx", OperandMeaning::Normal(0)),
     ("ny", OperandMeaning::Normal(1)),
@@ -117,7 +111,7 @@ const OF_SURFACES: [(&str, OperandMeaning); 19] = [
     ("specular_blue", OperandMeaning::Specular(2)),
 ];
 
-/// The operand names of a device that computes a line of points, in one colour channel at a time.
+/// The operands of a device that computes a line of points, in one colour channel at a time.
 const OF_LINES: [(&str, OperandMeaning); 5] = [
     ("zeta_start", OperandMeaning::ZetaStart),
     ("delta_zeta", OperandMeaning::DeltaZeta),
@@ -126,8 +120,7 @@ const OF_LINES: [(&str, OperandMeaning); 5] = [
     ("amplitude", OperandMeaning::Amplitude),
 ];
 
-/// The operands of a device, each with the quantity of a scene that supplies its value. For example, `cos_gamma` gets the cosine
-/// between normal and half vector.
+/// The operands of a device, each with the quantity of a scene that supplies its value.
 #[derive(Clone, Debug)]
 pub struct Feed {
     operands: Vec<(OperandMeaning, Format, (i64, i64))>,
@@ -135,27 +128,24 @@ pub struct Feed {
     channels: [usize; 3],
     /// For red, green and blue, the factor that makes an output 255 at full colour.
     scales: [f64; 3],
-    /// The largest number of intervals of a line, or `None` if the device computes single points.
+    /// The largest number of intervals of a line, if the device computes lines.
     longest: Option<usize>,
-    /// Whether the device computes ambient and diffuse light too.
     surfaces: bool,
 }
 
-/// Returns the smallest and the largest exponent of the device's domain, or `None` if the device has no operand `exponent`.
+/// Returns the domain of the operand `exponent`, if the device has it.
 pub fn exponents(contract: &dyn Contract) -> Option<(i64, i64)> {
     let mut operands = contract.operands().iter();
     let exponent = operands.find(|operand| operand.name == "exponent")?;
     Some(exponent.domain)
 }
 
-/// Returns whether a device computes several points along a scan line after one `start`.
 pub fn walks_lines(contract: &dyn Contract) -> bool {
     contract.length().is_some()
 }
 
 impl Feed {
-    /// Finds for each operand of a device the quantity of a scene that supplies its value. `device` is the name of the
-    /// device, for messages.
+    /// Finds the quantity for each operand. Messages name the device by `device`.
     ///
     /// # Errors
     /// Fails if a picture cannot supply an operand, or if the device lacks the colour operands or their outputs. Fails also if
@@ -164,8 +154,7 @@ impl Feed {
         Self::with(device, contract, &[])
     }
 
-    /// Finds the quantities of the operands as [`Feed::new`] does. Every operand named in `given` has the value in `given` at
-    /// every point.
+    /// Does the same as [`Feed::new`], but every operand named in `given` has its value there at every point.
     ///
     /// # Errors
     /// Fails as [`Feed::new`] does. Fails also if the device has no operand with a name in `given`, if that operand is a
@@ -249,33 +238,30 @@ impl Feed {
         Ok(feed)
     }
 
-    /// Returns the number of operands of the device.
     pub fn operand_count(&self) -> usize {
         self.operands.len()
     }
 
-    /// Returns whether the device computes ambient and diffuse light too, and not only the highlight.
     pub fn shades(&self) -> bool {
         self.surfaces
     }
 
-    /// Returns whether the device has the operand `cos_dgamma`, the cosine of dγ. In such a device, `cos_gamma` belongs to the
-    /// angle γ between the smooth normal and the half vector, and dγ is the amount by which the perturbed normal of a rough
-    /// surface changes this angle. In any other device, `cos_gamma` belongs to the perturbed normal.
+    /// Returns whether the device has the operand `cos_dgamma`. In such a device, `cos_gamma` belongs to the angle γ between
+    /// the smooth normal and the half vector, and dγ is the amount by which the perturbed normal of a rough surface changes
+    /// this angle. In any other device, `cos_gamma` belongs to the perturbed normal.
     pub fn takes_deviation(&self) -> bool {
         self.takes(OperandMeaning::CosDgamma)
     }
 
-    /// Returns whether an operand of the device gets the exponent n of the scene, or its logarithm to base 2. Returns false if
-    /// [`Feed::with`] got a fixed value for this operand.
+    /// Returns whether an operand gets the exponent n of the scene, or its logarithm to base 2. An operand with a fixed value
+    /// does not.
     pub fn takes_exponent(&self) -> bool {
         self.takes(OperandMeaning::Exponent) || self.takes(OperandMeaning::Shift)
     }
 
-    /// Returns the index of the first operand whose value is outside its domain by at least one unit of its last bit, or `None`
-    /// if all are inside. `values` are not quantised yet. A cosine `cos_gamma` is never outside, because a negative cosine
-    /// becomes the smallest one of the domain. The angles of lines are never outside either, because they are taken modulo a
-    /// full turn.
+    /// Returns the index of the first operand whose value is outside its domain by at least one unit of its last bit. `values`
+    /// are not quantised yet. A cosine `cos_gamma` is never outside, because a negative cosine becomes the smallest one of the
+    /// domain. The angles of lines are never outside either, because they are taken modulo a full turn.
     pub fn outside(&self, values: &[f64]) -> Option<usize> {
         let mut operands = self.operands.iter().zip(values);
         operands.position(|(&(quantity, format, domain), &value)| match quantity {
@@ -289,7 +275,7 @@ impl Feed {
         })
     }
 
-    /// Returns the largest number of intervals of a line, or `None` if the device computes single points.
+    /// Returns the largest number of intervals of a line, if the device computes lines.
     pub fn longest(&self) -> Option<usize> {
         self.longest
     }
@@ -303,8 +289,8 @@ impl Feed {
         operands.find(|operand| operand.0 == wanted).copied()
     }
 
-    /// Returns the operand values for a point with the exponent `exponent` as real numbers, before they are quantised. The
-    /// values are in the order of the device's operands. A colour of full strength gives the largest value of its operand.
+    /// Returns the operand values for a point as real numbers, before they are quantised, in the order of the device's
+    /// operands. A colour of full strength gives the largest value of its operand.
     pub fn values<'a>(&'a self, point: &'a Point, exponent: u32) -> impl Iterator<Item = f64> + 'a {
         let split = self.takes_deviation();
         self.operands.iter().map(move |&(quantity, format, (_, high))| match quantity {
@@ -334,7 +320,7 @@ impl Feed {
         })
     }
 
-    /// Returns the raw operands of a point, and whether dγ was beyond the device's domain. The device must compute single points.
+    /// Also returns whether dγ was beyond the device's domain. The device must compute single points.
     pub fn raw<'a>(
         &'a self,
         point: &'a Point,
@@ -352,8 +338,7 @@ impl Feed {
         (raw, beyond)
     }
 
-    /// Returns the value of the amplitude operand for a white light of full strength: the largest value of the operand's
-    /// domain. The result is 0 if the device has no such operand.
+    /// Returns the value of the amplitude operand for a white light of full strength, or 0 without such an operand.
     pub fn full(&self) -> f64 {
         let full = self.find(OperandMeaning::Amplitude);
         full.map_or(0.0, |(_, format, (_, most))| format.to_f64(i128::from(most)))
@@ -365,8 +350,8 @@ impl Feed {
         if self.takes(OperandMeaning::Exponent) { 1.0 } else { line.stretch() }
     }
 
-    /// Returns the operand values for a line of points as real numbers, before they are quantised. The values are in the order
-    /// of the device's operands. Angles are in right angles.
+    /// Returns the operand values for a line of points as real numbers, before they are quantised, in the order of the
+    /// device's operands. Angles are in right angles.
     pub fn line_values<'a>(&'a self, line: &'a LineParameters) -> impl Iterator<Item = f64> + 'a {
         let stretch = self.stretch(line);
         self.operands.iter().map(move |(quantity, ..)| match quantity {
@@ -381,7 +366,7 @@ impl Feed {
         })
     }
 
-    /// Returns the raw operands for a line of points. Angles are taken modulo a full turn.
+    /// Angles are taken modulo a full turn.
     ///
     /// # Errors
     /// Fails if the device has no exponent operand and the format of `zeta_start` cannot represent the angles of the line. For
@@ -409,9 +394,9 @@ impl Feed {
         Ok(self.operands.iter().zip(self.line_values(line)).map(raw).collect())
     }
 
-    /// Returns the results of a point as a colour, in which 255 is full light. `outputs` returns the outputs of the
-    /// computation that has the colour channel 0 (red), 1 (green) or 2 (blue). A device for points has all three channels in
-    /// one computation; a device for lines has a computation for each.
+    /// Returns a colour, in which 255 is full light. `outputs` returns the outputs of the computation that has the colour
+    /// channel 0 (red), 1 (green) or 2 (blue). A device for points has all three channels in one computation; a device for
+    /// lines has a computation for each.
     #[inline]
     pub fn colour<'a>(&self, outputs: impl Fn(usize) -> &'a [i64]) -> Vector {
         let of = |channel: usize| outputs(channel)[self.channels[channel]] as f64;
@@ -419,21 +404,18 @@ impl Feed {
     }
 }
 
-/// Returns the raw value nearest to a number, limited to the domain. For example, 300 in a domain from 1 to 255 is 255.
+/// Returns the nearest raw value in the domain. For example, 300 in a domain from 1 to 255 is 255.
 fn number(value: f64, format: Format, (low, high): (i64, i64)) -> i64 {
     format.quantise(value).clamp(i128::from(low), i128::from(high)) as i64
 }
 
-/// Returns the raw value nearest to an angle in right angles. An angle outside the format's range wraps around, which changes
-/// it by full turns. For example, 2.5 right angles in a signed format from −2 to 2 are −1.5.
+/// An angle outside the format's range wraps around, which changes it by full turns. For example, 2.5 right angles in a signed
+/// format from −2 to 2 are −1.5.
 fn raw_angle(right_angles: f64, format: Format) -> i64 {
     let scaled = nearest(right_angles * exp2(format.frac)) as i128;
     format.narrow(scaled, format.frac, Rounding::Truncate, Overflow::Wrap) as i64
 }
 
-/// Returns the meaning of an operand that has the same `value` at every point.
-///
-/// # Errors
 /// Fails if the operand is a colour, or if `value` is outside its domain.
 fn fixed(operand: &Operand, value: f64) -> Result<OperandMeaning> {
     let name = &operand.name;
@@ -450,8 +432,8 @@ fn fixed(operand: &Operand, value: f64) -> Result<OperandMeaning> {
     Ok(OperandMeaning::Given(value))
 }
 
-/// Returns the quantity that supplies an operand, or `None` if `names` has none for it. If a device takes several lights, the
-/// renderer supplies one light per computation, and the operands of the others are 0. For example, `lx2` is 0 at every point.
+/// If a device takes several lights, the renderer supplies one light per computation, and the operands of the others are 0.
+/// For example, `lx2` is 0 at every point.
 fn quantity(operand: &Operand, names: &[(&str, OperandMeaning)]) -> Option<OperandMeaning> {
     let of = |wanted: &str| {
         let mut names = names.iter();

@@ -1,5 +1,4 @@
-//! Defines pictures with 8 bits for each colour channel. The module joins, captions and compares pictures, and writes them as
-//! PNG.
+//! Defines pictures with 8 bits for each colour channel, and joins, captions, compares and writes them as PNG.
 
 use anyhow::{Context, Result};
 use noto_sans_mono_bitmap::{FontWeight, RasterHeight, get_raster, get_raster_width};
@@ -19,28 +18,24 @@ const STRIP: [u8; 3] = [24, 26, 30];
 /// The colour of the letters of a caption.
 const LETTER: [u8; 3] = [232, 233, 235];
 
-/// A picture: rows of pixels, from the top.
+/// Rows of pixels, from the top.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Picture {
-    /// The number of pixels in a row of the picture.
     pub width: u32,
-    /// Red, green and blue of each pixel.
     pub pixels: Vec<[u8; 3]>,
 }
 
 impl Picture {
-    /// Makes a picture of `width` columns that has no rows yet.
     pub fn new(width: u32) -> Self {
         Self { width, pixels: Vec::new() }
     }
 
-    /// Returns the number of pixel rows in the picture. The width must not be 0.
+    /// The width must not be 0.
     pub fn height(&self) -> u32 {
         (self.pixels.len() / self.width as usize) as u32
     }
 
-    /// Returns the picture with a strip of 22 rows below it, which shows the caption in the middle. A caption that is too long
-    /// is cut off.
+    /// Adds a strip of 22 rows below the picture with the caption in its middle. A caption that is too long is cut off.
     pub fn captioned(&self, caption: &str) -> Self {
         let letter = get_raster_width(FontWeight::Regular, LETTERS);
         let width = self.width as usize;
@@ -61,8 +56,7 @@ impl Picture {
         captioned
     }
 
-    /// Joins pictures side by side, the first one on the left. All pictures must have the height of the first one. An empty
-    /// list gives a picture without pixels.
+    /// Joins pictures side by side. All must have the height of the first one. An empty list gives a picture without pixels.
     pub fn beside(pictures: &[&Self]) -> Self {
         let mut all = Self::new(pictures.iter().map(|picture| picture.width).sum());
         for row in 0..pictures.first().map_or(0, |picture| picture.height()) as usize {
@@ -74,7 +68,7 @@ impl Picture {
         all
     }
 
-    /// Returns the picture as a PNG file. The same pixels give the same bytes.
+    /// The same pixels give the same bytes.
     ///
     /// # Errors
     /// Fails only through a bug, not through anything that a user gives.
@@ -92,14 +86,12 @@ impl Picture {
     }
 }
 
-/// Converts a colour with 0 … 255 in each channel to a pixel: saturates and rounds to the nearest integer. For example, 127.5 is
-/// 128, and 900 is 255.
+/// Saturates 0 … 255 in each channel and rounds to the nearest integer. For example, 127.5 is 128, and 900 is 255.
 #[inline]
 pub fn pixel(colour: Vector) -> [u8; 3] {
     colour.0.map(|value| (value + 0.5).clamp(0.0, 255.0) as u8)
 }
 
-/// The difference between two pictures, as numbers and as a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PictureDifference {
     /// The largest difference of a colour channel, from 0 to 255.
@@ -107,10 +99,9 @@ pub struct PictureDifference {
     /// The peak signal-to-noise ratio in decibels over the pixels in `shown`, see [`PictureDifference::new`]. `None` if the
     /// pictures are equal.
     pub psnr: Option<f64>,
-    /// The factor by which [`PictureDifference::picture`] multiplies the differences to make them visible. For example, a largest
-    /// difference of 30 has the factor 8.
+    /// The factor by which [`PictureDifference::picture`] multiplies the differences to make them visible. For example, a
+    /// largest difference of 30 has the factor 8.
     pub gain: u8,
-    /// A picture of the absolute differences.
     pub picture: Picture,
 }
 
@@ -143,7 +134,7 @@ impl PictureDifference {
     }
 }
 
-/// Returns the mix of two colours, in which `over` has the share `share`/255. For example, 255 over 0 with a share of 51 is 51.
+/// Mixes two colours, in which `over` has the share `share`/255: 255 over 0 with a share of 51 is 51.
 fn mix(ground: [u8; 3], over: [u8; 3], share: u8) -> [u8; 3] {
     let share = u32::from(share);
     let channel = |at: usize| {

@@ -6,34 +6,29 @@ use super::shapes;
 use super::vector::Vector;
 use anyhow::Result;
 
-/// The scene of a picture: its objects, lights and height map.
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
-    /// The objects of the scene, at least one.
+    /// The objects, at least one.
     pub objects: Vec<Object>,
     /// The lights, which are so far away that their directions are the same everywhere.
     pub lights: Vec<Light>,
-    /// The height map that tilts the normals of all objects; `None` for smooth surfaces.
+    /// The height map that tilts the normals of all objects.
     pub relief: Option<Relief>,
 }
 
-/// An object of a scene: its shape and its colour.
 #[derive(Clone, Debug)]
 pub struct Object {
-    /// The shape of the object: a ball or triangles.
     pub shape: Shape,
-    /// The colour with which the object reflects ambient and diffuse light, 0 … 1 in each channel.
+    /// The colour of the reflected ambient and diffuse light, 0 … 1 in each channel.
     pub colour: Vector,
 }
 
-/// The shape of an object: a ball or a mesh of triangles.
 #[derive(Clone, Debug)]
 pub enum Shape {
     /// A ball, which is drawn exactly and not as triangles.
     Ball {
-        /// The middle of the ball.
+        /// The middle, in coordinates of the scene.
         middle: Vector,
-        /// The radius of the ball.
         radius: f64,
     },
     /// Triangles with interpolated normals.
@@ -43,33 +38,27 @@ pub enum Shape {
 /// A light so far away that its direction is the same everywhere.
 #[derive(Clone, Copy, Debug)]
 pub struct Light {
-    /// The direction toward the light, of length 1.
+    /// A vector of length 1 toward the light.
     pub direction: Vector,
-    /// The colour of the light, 0 … 1 in each channel.
+    /// The colour, 0 … 1 in each channel.
     pub colour: Vector,
 }
 
-/// The scenes that need no file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BuiltIn {
-    /// A ball.
     Sphere,
-    /// A ring.
     Torus,
-    /// A vase.
     Vase,
-    /// A vase, a ball and a ring.
     Group,
 }
 
-/// The default colour of an object, as red, green and blue from 0 to 1.
+/// Red, green and blue from 0 to 1, as for [`BACKGROUND`].
 pub const COLOUR: Vector = Vector::new(0.08, 0.35, 0.54);
 
-/// The default colour of the background, as red, green and blue from 0 to 1.
 pub const BACKGROUND: Vector = Vector::new(0.05, 0.06, 0.08);
 
 impl Light {
-    /// Returns the default lights: a white one from the upper left, and a weaker one from behind on the right.
+    /// A white light from the upper left, and a weaker one from behind on the right.
     pub fn usual() -> Vec<Self> {
         let white = Self {
             direction: Vector::new(-0.6, 0.8, 0.9).unit().unwrap_or_default(),
@@ -84,8 +73,8 @@ impl Light {
 }
 
 impl Scene {
-    /// Returns the objects of a scene that needs no file, in `colour` or in colours of their own. With `coarse`, they consist of
-    /// large triangles, for devices that interpolate along lines in a triangle.
+    /// Returns the objects in `colour` or in colours of their own. With `coarse`, they consist of large triangles, for devices
+    /// that interpolate along lines in a triangle.
     ///
     /// # Errors
     /// Fails only through a bug, not through anything that a user gives.
@@ -113,8 +102,8 @@ impl Scene {
         Ok(objects)
     }
 
-    /// Returns the middle and half the diagonal of the box around everything. For example, a ball of radius 1 around
-    /// the origin has the origin and √3.
+    /// Returns the middle and half the diagonal of the box around everything. For example, a ball of radius 1 around the
+    /// origin has the origin and √3.
     pub fn extent(&self) -> (Vector, f64) {
         let mut low = Vector([f64::INFINITY; 3]);
         let mut high = Vector([f64::NEG_INFINITY; 3]);
@@ -128,7 +117,7 @@ impl Scene {
         ((low * 0.5 + high * 0.5), (high * 0.5 - low * 0.5).length())
     }
 
-    /// Returns balls that together contain all objects, each as its middle and radius. A corner of a mesh is a ball of radius 0.
+    /// Returns balls that together contain all objects. A corner of a mesh is a ball of radius 0.
     pub fn balls(&self) -> impl Iterator<Item = (Vector, f64)> {
         self.objects.iter().flat_map(|object| {
             let (ball, mesh) = match &object.shape {
@@ -141,7 +130,6 @@ impl Scene {
     }
 }
 
-/// Returns a ball, or the triangles of a `coarse` one. Fails if the mesh cannot be made.
 fn ball(middle: Vector, radius: f64, coarse: bool) -> Result<Shape> {
     if coarse {
         Ok(Shape::Mesh(shapes::ball(middle, radius, [64, 32])?))
@@ -158,7 +146,6 @@ fn vase(coarse: bool) -> Result<Mesh> {
     shapes::vase(if coarse { [48, 60] } else { [384, 480] })
 }
 
-/// Returns the shape of a mesh scaled, tilted about the x axis by an angle, and moved.
 fn place(mut mesh: Mesh, size: f64, tilt: f64, to: Vector) -> Shape {
     let (sin, cos) = (libm::sin(tilt), libm::cos(tilt));
     for position in &mut mesh.positions {
@@ -170,7 +157,7 @@ fn place(mut mesh: Mesh, size: f64, tilt: f64, to: Vector) -> Shape {
     Shape::Mesh(mesh)
 }
 
-/// Returns a vector turned about the x axis by the angle with this sine and cosine.
+/// Turns a vector about the x axis by the angle with this sine and cosine.
 fn tilted(vector: Vector, sin: f64, cos: f64) -> Vector {
     let [x, y, z] = vector.0;
     Vector::new(x, y * cos - z * sin, y * sin + z * cos)

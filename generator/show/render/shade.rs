@@ -1,7 +1,5 @@
 //! Computes the host's part of shading: the surface at a point, its ambient and diffuse light, and the operands of the device.
-//!
-//! All arithmetic is f64. Most devices compute only the specular term. A device that takes normals as operands computes the
-//! ambient and diffuse terms too.
+//! All arithmetic is f64.
 
 use std::f64::consts::{PI, TAU};
 
@@ -15,62 +13,53 @@ use super::visibility::Hit;
 use crate::render::setup::Arc;
 use glint_core::cosim::batch::Points;
 
-/// The material of surfaces: the shares of light that they reflect.
+/// The shares of light that a surface reflects.
 #[derive(Clone, Copy, Debug)]
 pub struct Material {
     /// The share of the ambient light, which is white and has the strength of one light.
     pub ambient: f64,
-    /// The share of each light that is reflected diffusely. The share is multiplied by the cosine of the light's angle.
+    /// The share of each light that is reflected diffusely, times the cosine of the light's angle.
     pub diffuse: f64,
-    /// The specular coefficient k_s: the share of each light that the highlight reflects. The reflectance f from the device
-    /// multiplies it.
+    /// The specular coefficient k_s: the share of each light that the highlight reflects, times the reflectance f of the
+    /// device.
     pub specular: f64,
-    /// The exponent n of the highlight.
     pub exponent: u32,
 }
 
 impl Material {
-    /// Returns the default material with the highlight exponent `exponent`.
     pub const fn usual(exponent: u32) -> Self {
         Self { ambient: 0.12, diffuse: 0.75, specular: 0.7, exponent }
     }
 }
 
-/// The inputs for shading a picture: scene, camera, material and background.
 pub struct Shader<'a> {
-    /// The scene with its objects and lights.
     pub scene: &'a Scene,
-    /// The camera from which the scene is seen.
     pub camera: &'a Camera,
-    /// The material of all objects in the scene.
     pub material: Material,
     /// The colour where no object is visible, from 0 to 255.
     pub background: Vector,
-    /// The operands of the device, each with the quantity of the scene that supplies it.
     pub feed: &'a Feed,
     /// Whether to compute also Blinn's function cosⁿγ, for a comparison.
     pub compare: bool,
 }
 
-/// A shaded row of samples: all light except the light that the device computes.
+/// All light of a row of samples except the light that the device computes.
 pub struct Shaded {
     /// The colour of each sample without the device's light, 0 … 255, and the number of lights for which the device computes a
     /// result.
     pub samples: Vec<(Vector, u32)>,
-    /// The points for which the device must compute the highlight.
     pub points: Points,
     /// For each sample and each of its lights, the indices of the results with its red, green and blue. `None` if every
     /// computation has one result with all three colours, and the results are in this order.
     pub places: Option<Vec<[usize; 3]>>,
-    /// For each sample and each of its lights, the light that the device should compute, in f64 and with Blinn's cosⁿγ as
+    /// For each sample and each of its lights, the light that the device should compute, with Blinn's cosⁿγ in f64 as
     /// reflectance, 0 … 255. Empty unless [`Shader::compare`] is set.
     pub exact: Vec<Vector>,
     /// The number of points whose roughness angle dγ (the deviation of the normal) is outside the device's domain.
     pub beyond: usize,
 }
 
-/// A visible point of a surface: its colour, its unit normals and the direction to the eye. `smooth` is the normal without the
-/// height map, and `perturbed` the normal with it.
+/// A visible point of a surface. `smooth` is the unit normal without the height map, and `perturbed` with it.
 struct SurfacePoint {
     colour: Vector,
     smooth: Vector,
@@ -81,13 +70,13 @@ struct SurfacePoint {
 }
 
 impl SurfacePoint {
-    /// Returns whether a light falls on the surface. The renderer must check this, because the device would compute a highlight
-    /// on the side away from the light too.
+    /// The renderer must check whether a light falls on the surface. The device would compute a highlight on the side away
+    /// from the light too.
     fn is_lit(&self, light: &Light) -> bool {
         self.smooth.dot(light.direction) > 0.0
     }
 
-    /// Returns the half vector H between the directions to the light and to the eye, of length 1.
+    /// Returns the half vector H between light and eye, of length 1.
     fn half(&self, light: &Light) -> Vector {
         let sum = light.direction + self.toward_eye;
         sum.unit().unwrap_or(self.smooth)
@@ -95,8 +84,8 @@ impl SurfacePoint {
 }
 
 impl Shader<'_> {
-    /// Shades a row of samples. Returns its ambient and diffuse light, and the points for which the device must compute the
-    /// highlight. `hits` are the surfaces at the samples, and `ray` returns the ray through the sample of a column.
+    /// Shades a row of samples. `hits` are the surfaces at the samples, and `ray` returns the ray through the sample of a
+    /// column.
     ///
     /// # Errors
     /// Fails if the operands of a line cannot be computed, or if the device cannot represent them.
@@ -133,8 +122,7 @@ impl Shader<'_> {
         Ok(shaded)
     }
 
-    /// Shades neighbouring samples of a row on one triangle or ball, and appends them to `shaded`. Fails if the operands of a
-    /// line cannot be computed, or if the device cannot represent them.
+    /// Shades neighbouring samples of a row on one triangle or ball, and appends them to `shaded`.
     fn surfaces(&self, surfaces: &[SurfacePoint], shaded: &mut Shaded) -> Result<()> {
         let lines = match self.feed.longest() {
             None => Vec::new(),
@@ -197,10 +185,7 @@ impl Shader<'_> {
 
     /// Adds the lines along some neighbouring samples to `points`: for each light one line in red, green and blue. Returns for
     /// each light the indices of the first results of these three lines. A light that falls on none of the samples has no
-    /// lines.
-    ///
-    /// [`Arc`] computes the operands from the normals and half vectors at both ends. Fails if the operands of a line cannot be
-    /// computed, or if the device cannot represent them.
+    /// lines. [`Arc`] computes the operands from the normals and half vectors at both ends.
     fn lines(&self, surfaces: &[SurfacePoint], points: &mut Points) -> Result<Vec<[usize; 3]>> {
         let (Some(first), Some(last)) = (surfaces.first(), surfaces.last()) else {
             return Ok(Vec::new());
@@ -234,8 +219,8 @@ impl Shader<'_> {
         SurfacePoint { colour: object.colour, smooth, perturbed, interpolated, toward_eye }
     }
 
-    /// Returns three normals on the side of the eye: the unit normal of the smooth surface, the unit normal of the perturbed
-    /// surface, and the perturbed normal as it was interpolated, of any length.
+    /// Returns three normals on the side of the eye. These are the unit normals of the smooth and of the perturbed surface,
+    /// and the interpolated perturbed normal, which may have any length.
     fn normals(
         &self,
         object: &Object,
@@ -276,8 +261,8 @@ impl Shader<'_> {
     }
 }
 
-/// Returns the quantities of a point from which operands are made. `smooth` and `perturbed` are unit normals, and `half` is the
-/// half vector H. For example, `cos_dgamma` is 1 if both normals are the same.
+/// Returns the quantities of a point from which operands are made, from the unit normals `smooth` and `perturbed` and the half
+/// vector H.
 ///
 /// As in the patent that `rough` implements, roughness changes the angle γ between normal and half vector by dγ. N′ is the
 /// perturbed normal, and γ′ is its angle with H. Then dγ = γ′ − γ and cos dγ = cos γ·cos γ′ + sin γ·sin γ′. dγ is negative if
@@ -302,8 +287,8 @@ pub fn point(smooth: Vector, perturbed: Vector, half: Vector, colour: Vector) ->
     }
 }
 
-/// Returns the texture coordinates (u, v) of a hit and their gradients: the vectors along the surface in which u and v grow, in
-/// texture units per unit of the scene.
+/// Returns the texture coordinates (u, v) of a hit and their gradients: the vectors along the surface in which u and v grow,
+/// in texture units per unit of the scene.
 fn texture(object: &Object, hit: &Hit, normal: Vector) -> ([f64; 2], [Vector; 2]) {
     match &object.shape {
         Shape::Ball { radius, .. } => {

@@ -7,9 +7,8 @@ use anyhow::Result;
 use super::mesh::{Mesh, RawCorner, SMOOTH};
 use super::vector::Vector;
 
-/// Makes a torus around the y axis. `major` is the distance from the middle of the torus to the middle of its tube, and `minor`
-/// is the radius of the tube. `steps` are the numbers of steps around the axis and around the tube. For example, 96 by 48 steps
-/// make 9216 triangles.
+/// Makes a torus around the y axis. `major` is the distance from its middle to the middle of its tube, and `minor` the radius
+/// of the tube. `steps` are the numbers of steps around the axis and around the tube.
 ///
 /// # Errors
 /// Fails if [`Mesh::new`] fails.
@@ -25,7 +24,7 @@ pub fn torus(major: f64, minor: f64, steps: [u32; 2]) -> Result<Mesh> {
     })
 }
 
-/// Makes a ball. `steps` are the numbers of steps around the y axis and from pole to pole.
+/// `steps` are the numbers of steps around the y axis and from pole to pole.
 ///
 /// # Errors
 /// Fails if [`Mesh::new`] fails.
@@ -43,8 +42,8 @@ pub fn ball(middle: Vector, radius: f64, steps: [u32; 2]) -> Result<Mesh> {
     })
 }
 
-/// Makes a vase around the y axis with belly, neck and lip, open at the top. The vase reaches from y = −1 to y = 1. `steps` are
-/// the numbers of steps around the axis and along the wall.
+/// Makes a vase around the y axis with belly, neck and lip, open at the top, from y = −1 to y = 1. `steps` are the numbers of
+/// steps around the axis and along the wall.
 ///
 /// # Errors
 /// Fails if [`Mesh::new`] fails.
@@ -63,7 +62,7 @@ pub fn vase(steps: [u32; 2]) -> Result<Mesh> {
     })
 }
 
-/// Returns the outer radius of the vase at a height from 0 (the foot) to 1 (the lip).
+/// Returns the outer radius at a height from 0 (the foot) to 1 (the lip).
 fn vase_radius(height: f64) -> f64 {
     // The radius is 0 at the foot, so the vase has a closed bottom; the lip widens at the top.
     let foot = (height * 14.0).min(1.0);
@@ -74,8 +73,7 @@ fn vase_radius(height: f64) -> f64 {
 }
 
 /// Makes a mesh whose corners are the values of `at` at evenly spaced (u, v) from 0 to 1. `steps` are the numbers of steps
-/// along u and v. If `closed` is set for a direction, `at` must repeat in it, and the last corners are the same as the first
-/// ones. Fails if [`Mesh::new`] fails.
+/// along u and v. If `closed` is set for a direction, `at` must repeat in it, and the last corners are the first ones.
 fn grid(steps: [u32; 2], closed: [bool; 2], at: impl Fn(f64, f64) -> Vector) -> Result<Mesh> {
     let [columns, rows] = steps;
     let mut positions = Vec::new();

@@ -10,34 +10,30 @@ use std::ops::{Add, Mul, Neg, Sub};
 pub struct Vector(pub [f64; 3]);
 
 impl Vector {
-    /// Makes a vector from its components.
     #[inline]
     pub const fn new(x: f64, y: f64, z: f64) -> Self {
         Self([x, y, z])
     }
 
-    /// Returns the scalar product. For example, (1, 2, 3) and (4, 5, 6) give 32.
     #[inline]
     pub fn dot(self, other: Self) -> f64 {
         let ([ax, ay, az], [bx, by, bz]) = (self.0, other.0);
         ax * bx + ay * by + az * bz
     }
 
-    /// Returns the cross product. Swapping the operands negates it exactly, also when it rounds.
+    /// Swapping the operands negates the cross product exactly, also when it rounds.
     #[inline]
     pub fn cross(self, other: Self) -> Self {
         let ([ax, ay, az], [bx, by, bz]) = (self.0, other.0);
         Self::new(ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx)
     }
 
-    /// Returns the Euclidean length √(x² + y² + z²) of the vector.
     #[inline]
     pub fn length(self) -> f64 {
         self.dot(self).sqrt()
     }
 
-    /// Returns the vector of length 1 with the same direction. Returns `None` if the vector has length 0 or a component that
-    /// is not finite. For example, (0, 3, −4) gives (0, 0.6, −0.8).
+    /// Returns the vector of length 1 with the same direction, unless the length is 0 or a component is not finite.
     #[inline]
     pub fn unit(self) -> Option<Self> {
         let [x, y, z] = self.0.map(f64::abs);
@@ -48,14 +44,13 @@ impl Vector {
         (self.finite() && length.is_finite() && length > 0.0).then(|| scaled * (1.0 / length))
     }
 
-    /// Multiplies two vectors component by component. For example, (1, 2, 3) and (4, 5, 6) give (4, 10, 18).
+    /// Multiplies two vectors component by component.
     #[inline]
     pub fn times(self, other: Self) -> Self {
         let ([ax, ay, az], [bx, by, bz]) = (self.0, other.0);
         Self::new(ax * bx, ay * by, az * bz)
     }
 
-    /// Returns whether all components are finite numbers.
     #[inline]
     pub fn finite(self) -> bool {
         self.0.iter().all(|component| component.is_finite())

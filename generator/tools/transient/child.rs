@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use super::list;
 
-/// A child process in a process group of its own. Dropping it kills the process and its descendants. For example, an early return
+/// A child process in a process group of its own. Dropping it kills the process and its descendants, so that an early return
 /// cannot leave a simulator running.
 #[derive(Debug)]
 pub struct Child {
@@ -16,9 +16,6 @@ pub struct Child {
 }
 
 impl Child {
-    /// Starts `command` in a process group of its own, and adds it to the list of children.
-    ///
-    /// # Errors
     /// Fails if the command does not start.
     pub fn spawn(command: &mut Command) -> io::Result<Self> {
         // A terminal's Ctrl-C reaches this process alone, which then ends its children itself.
@@ -30,12 +27,11 @@ impl Child {
         Ok(Self { child, ended: false })
     }
 
-    /// Returns the process number (PID) of the child.
     pub fn id(&self) -> u32 {
         self.child.id()
     }
 
-    /// Returns the exit status of the process, or `None` if it still runs.
+    /// Returns `None` if the process still runs.
     ///
     /// # Errors
     /// Fails if the system cannot report the status of the child.
@@ -73,8 +69,8 @@ impl Drop for Child {
     }
 }
 
-/// Kills a child, its process group, and its descendants in other groups. The child's exit status must not have been read, so
-/// that its process number is still its own. For example, yosys-smtbmc runs its solver in a session of its own.
+/// Kills a child, its process group, and its descendants in other groups, because yosys-smtbmc runs its solver in a session of
+/// its own. The child's exit status must not have been read, so that its process number is still its own.
 #[cfg(unix)]
 pub fn kill_tree(child: u32) {
     use rustix::process::{Pid, Signal, kill_process_group};
@@ -144,8 +140,7 @@ mod tree {
         parent: i32,
     }
 
-    /// Returns the process numbers of the living descendants of `root`, and of `root` itself if `with_root`. The list is empty on
-    /// a system without `/proc`.
+    /// The list includes `root` itself if `with_root`. It is empty on a system without `/proc`.
     pub fn descendants(root: i32, with_root: bool) -> Vec<i32> {
         let all = all();
         let mut found = vec![root];

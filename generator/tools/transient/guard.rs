@@ -8,9 +8,9 @@ use std::io::Write;
 use std::os::unix::process::CommandExt;
 use std::process::{ChildStdin, Command, Stdio};
 
-/// Reads lists of children, one list a line, until the pipe closes, at the latest when Glint ends. Then it kills the children on
-/// the last line, with their process groups and with their descendants in other groups. For example, the line `4711 4712` names
-/// two children. After an orderly end, the last line is empty.
+/// Reads lists of children, one list a line such as `4711 4712`, until the pipe closes, at the latest when Glint ends. Then it
+/// kills the children on the last line, with their process groups and with their descendants in other groups. After an orderly
+/// end, the last line is empty.
 ///
 /// The pipe closes shortly before Glint's process is gone. When the process ends, the groups of its children become orphans. If
 /// such a group then contains a stopped process, the system sends SIGHUP and SIGCONT to the whole group. A child that the guard
@@ -41,17 +41,15 @@ kill -KILL $all
 for child in $children; do kill -KILL "-$child"; done
 "#;
 
-/// The pipe to the shell that guards the children. The pipe is `None` before the first child, and on a system without a shell.
+/// The pipe to the shell. It is `None` before the first child, and on a system without a shell.
 pub struct Guard(Option<ChildStdin>);
 
 impl Guard {
-    /// Makes the guard before the first child.
     pub const fn new() -> Self {
         Self(None)
     }
 
-    /// Writes the list of children to the guard, which must kill them if Glint ends without a clean-up. The first call starts the
-    /// guard.
+    /// Tells the guard which children it must kill if Glint ends without a clean-up. The first call starts the guard.
     pub fn tell(&mut self, children: &BTreeSet<u32>) {
         let pipe = self.0.take().or_else(|| shell(SCRIPT).spawn().ok()?.stdin);
         let line: Vec<String> = children.iter().map(u32::to_string).collect();
@@ -59,7 +57,7 @@ impl Guard {
     }
 }
 
-/// Returns the command for a shell that runs `script` in a process group of its own, with a pipe as its standard input.
+/// The shell has a process group of its own and a pipe as its standard input.
 pub(super) fn shell(script: &str) -> Command {
     let mut command = Command::new("/bin/sh");
     // The shell has a group of its own: a signal to the group of this process does not reach it.

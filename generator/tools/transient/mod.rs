@@ -43,7 +43,6 @@ struct List {
     children: BTreeSet<u32>,
     #[cfg(unix)]
     guard: guard::Guard,
-    /// The paths of the temporary directories.
     paths: BTreeSet<PathBuf>,
 }
 
@@ -72,16 +71,15 @@ pub fn undivided<T>(work: impl FnOnce() -> T) -> T {
     work()
 }
 
-/// The locks of this module. As long as this value exists, no child process can start, and no temporary directory can be made.
+/// As long as this value exists, no child process can start, and no temporary directory can be made.
 pub struct Cleared {
     _undivided: MutexGuard<'static, ()>,
     _list: MutexGuard<'static, List>,
 }
 
 /// Kills all children with all processes that they have started, and deletes all temporary directories. It tries each of both
-/// for at most 5 seconds. Other threads stop at their next child or temporary directory until the result is dropped. This
-/// function is meant for the end of the process. For example, Ctrl-C during a bench kills `vvp` and deletes the bench's
-/// directory.
+/// for at most 5 seconds. Other threads stop at their next child or temporary directory until the result is dropped. The
+/// program calls this function at its end, for example after Ctrl-C during a bench.
 pub fn clear() -> Cleared {
     let undivided = UNDIVIDED.lock().unwrap_or_else(PoisonError::into_inner);
     let list = list();
@@ -99,7 +97,7 @@ pub fn clear() -> Cleared {
     Cleared { _undivided: undivided, _list: list }
 }
 
-/// Deletes the file or directory at `path`. Returns whether nothing exists at `path` afterwards.
+/// Returns whether nothing exists at `path` afterwards.
 fn delete(path: &Path) -> bool {
     let done = match fs::symlink_metadata(path) {
         Ok(found) if found.is_dir() => fs::remove_dir_all(path),

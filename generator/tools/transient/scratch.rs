@@ -20,8 +20,7 @@ const LOCK: &str = "glint.lock";
 
 static SWEEP: Once = Once::new();
 
-/// A temporary directory. The directory is deleted with its contents when the value is dropped, or when the process is
-/// interrupted.
+/// Dropping the value deletes the directory with its contents. An interruption of the process deletes it too.
 #[derive(Debug)]
 pub struct Directory {
     made: Option<TempDir>,
@@ -29,8 +28,8 @@ pub struct Directory {
 }
 
 impl Directory {
-    /// Makes a directory for the use of a tool, where the system keeps temporary files. The first call deletes the directories
-    /// that killed processes have left there.
+    /// Makes a directory for a tool, where the system keeps temporary files. The first call deletes the directories that
+    /// killed processes have left there.
     ///
     /// # Errors
     /// Fails if the directory cannot be made, or if the path of the system's temporary directory contains a blank.
@@ -49,7 +48,7 @@ impl Directory {
         Self::made(&place, FOR_TOOLS)
     }
 
-    /// Makes a directory in `parent`, for files that are moved from it into `parent` later. The function first deletes the
+    /// Makes a directory in `parent`, for files that are moved from it into `parent` later. Before that, deletes the
     /// directories that killed processes have left there.
     ///
     /// # Errors
@@ -79,7 +78,6 @@ impl Directory {
         Ok(directory)
     }
 
-    /// Returns the path of the directory.
     pub fn path(&self) -> &Path {
         self.made.as_ref().map_or(Path::new(""), TempDir::path)
     }
@@ -119,13 +117,12 @@ fn sweep(parent: &Path, prefix: &str) {
     }
 }
 
-/// Returns the text of the lock file in `directory`. For example, it begins with `Glint works in glint-a1B2c3.`
 fn title(directory: &Path) -> String {
     let name = directory.file_name().unwrap_or_default().to_string_lossy();
     format!("Glint works in {name}. The next run deletes the files that a killed run has left.\n")
 }
 
-/// Returns every file and symbolic link below a directory, sorted by path, without directories. Links are not followed.
+/// Returns every file and symbolic link below a directory, sorted by path. Links are not followed.
 ///
 /// # Errors
 /// Fails if a directory cannot be read.
@@ -142,16 +139,16 @@ pub fn files_below(directory: &Path) -> io::Result<Vec<PathBuf>> {
     Ok(found)
 }
 
-/// Returns the part of `path` below `root`, with `/` between its parts on every system. For example, below `out` the path
-/// `out/rtl_out/rsqrt/rsqrt.v` is `rtl_out/rsqrt/rsqrt.v`. A path that is not below `root` stays whole.
+/// Returns the part of `path` below `root`, with `/` between its parts on every system. A path that is not below `root` stays
+/// whole.
 pub fn relative_name(root: &Path, path: &Path) -> String {
     let relative = path.strip_prefix(root).unwrap_or(path);
     let parts: Vec<_> = relative.iter().map(|part| part.to_string_lossy()).collect();
     parts.join("/")
 }
 
-/// Returns an error about a temporary path without this path, whose random name tells a user nothing. For example,
-/// `Permission denied (os error 13) at path "/t/glint-a1B2c3"` becomes `Permission denied (os error 13)`.
+/// Removes a temporary path, whose random name tells a user nothing: `Permission denied (os error 13) at path
+/// "/t/glint-a1B2c3"` becomes `Permission denied (os error 13)`.
 fn without_path(error: io::Error) -> io::Error {
     let text = error.to_string();
     io::Error::new(error.kind(), text.split(" at path ").next().unwrap_or_default())

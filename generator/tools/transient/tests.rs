@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use super::*;
 
-/// Waits until a script has written a number and a newline to the file `path`, and returns the number.
+/// The script writes a number and a newline to the file `path`.
 fn number_in(path: &Path) -> u32 {
     let deadline = Instant::now() + Duration::from_secs(60);
     loop {
@@ -20,13 +20,13 @@ fn number_in(path: &Path) -> u32 {
     }
 }
 
-/// Returns whether a process exists and is no zombie.
+/// A zombie does not count as alive.
 fn is_alive(number: u32) -> bool {
     let stat = fs::read_to_string(format!("/proc/{number}/stat")).unwrap_or_default();
     stat.rsplit_once(')').is_some_and(|(_, rest)| !rest.trim_start().starts_with('Z'))
 }
 
-/// Checks that a process ends within ten seconds.
+/// The process must end within ten seconds.
 #[track_caller]
 fn assert_ends(number: u32, message: &str) {
     let deadline = Instant::now() + Duration::from_secs(10);
@@ -49,9 +49,9 @@ fn a_killed_child_takes_a_session_of_its_child_along() {
     assert_ends(inner, "the solver of a killed tool runs on");
 }
 
-/// A guard that is slow must still kill a tool's descendants in another session. The process that it guards ends while the guard
-/// works, and this end must not send SIGHUP to the tool before the tool's children are listed. The guarded process is this test,
-/// started a second time.
+/// A guard that is slow must still kill a tool's descendants in another session. The process that it guards ends while the
+/// guard works, and this end must not send SIGHUP to the tool before the tool's children are listed. The guarded process is
+/// this test, started a second time.
 #[test]
 #[cfg(target_os = "linux")]
 fn a_slow_guard_ends_a_session_of_a_child_too() {

@@ -1,4 +1,4 @@
-//! Runs the commands on the pages `README.md`, `docs/composing.md` and `docs/tutorial.md`, with the configurations that these
+//! Runs the commands on the pages `README.md`, `docs/shading.md` and `docs/tutorial.md`, with the configurations that these
 //! pages show. The module also tests that `docs/SUMMARY.md` lists every page.
 
 use std::collections::BTreeSet;
@@ -89,8 +89,8 @@ fn new_files_on_pages_have_the_names_of_their_cores() {
     assert!(count > 3, "{count} commands");
 }
 
-/// The README has a file `angle.toml`, whose first line is its name. Directories in the remarks exist afterwards. A box with the language `text` has lines of the output of
-/// the commands above it.
+/// The README has a file `angle.toml`, whose first line is its name. Directories in the remarks exist afterwards. A box with the
+/// language `text` has lines of the output of the commands above it.
 #[test]
 fn commands_of_the_readme_run() {
     let text = read("README.md");
@@ -131,8 +131,8 @@ fn commands_of_the_readme_run() {
 }
 
 #[test]
-fn commands_on_composing_run() {
-    run_all("docs/composing.md");
+fn commands_on_shading_run() {
+    run_all("docs/shading.md");
 }
 
 #[test]

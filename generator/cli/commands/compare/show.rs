@@ -15,12 +15,10 @@ use glint_prove::synth::{Frequency, RECORDED_TARGETS, Rate, Target, tools};
 use glint_show::evidence::comparison::{ANGLES, ANGLES_PER_DEGREE, Accuracy, MultiplierSize};
 use glint_tools::synthesis::Usage;
 
-/// The result of a comparison of devices, which can be printed as text, CSV or JSON.
 pub struct ComparisonReport<'a> {
     pub arguments: &'a Arguments,
     pub entries: &'a [ComparisonEntry],
     pub notes: &'a [String],
-    /// The synthesis runs that failed, each with the reason.
     pub failures: &'a [String],
 }
 
@@ -51,8 +49,8 @@ impl CommandReport for ComparisonReport<'_> {
     }
 }
 
-/// Returns a sentence about the operands at which the errors of a device are computed, if the device has other control operands
-/// than the cosine and n. Returns `None` for all other devices.
+/// Returns a sentence about the operands at which the errors are computed, if the device has other control operands than the
+/// cosine and n.
 fn at_rest(entry: &ComparisonEntry) -> Option<String> {
     let contract = entry.core.contract.as_ref();
     if !contract.operands().iter().any(|operand| operand.name == contract::COSINE) {
@@ -80,7 +78,8 @@ fn at_rest(entry: &ComparisonEntry) -> Option<String> {
     ))
 }
 
-/// Returns the largest and the mean error, in this order, for each of the whole, the formula, the operands and the fixed point.
+/// Returns the largest and the mean error, in this order, for each of the whole, the formula, the operands and the fixed
+/// point.
 fn errors(accuracy: &Accuracy) -> Vec<f64> {
     let Accuracy { whole, formula, operands, fixed_point } = *accuracy;
     let mut errors = Vec::new();
@@ -159,8 +158,7 @@ fn print_hardware(entries: &[ComparisonEntry]) {
     }
 }
 
-/// Returns the numbers of look-up tables, DSP blocks and block RAMs of all families as text. `unknown` replaces a number that
-/// is not known.
+/// Returns the resources of all families. `unknown` replaces a number that is not known.
 fn taken(entry: &ComparisonEntry, unknown: &str) -> Vec<String> {
     let mut cells = Vec::new();
     for at in 0..COMPARED.len() {
@@ -176,8 +174,7 @@ fn taken(entry: &ComparisonEntry, unknown: &str) -> Vec<String> {
     cells
 }
 
-/// Returns the targets for which the record has a frequency, with the core's frequency and rate. Returns an empty list without
-/// a record.
+/// Returns the targets for which the record has a frequency, with the core's frequency and rate.
 fn speeds(entry: &ComparisonEntry) -> Vec<(Target, Frequency, Rate)> {
     let mut speeds = Vec::new();
     let Some(record) = &entry.record else { return speeds };
@@ -191,7 +188,7 @@ fn speeds(entry: &ComparisonEntry) -> Vec<(Target, Frequency, Rate)> {
     speeds
 }
 
-/// Returns a number times `scale`, with one digit after the decimal point, as text. Returns `-` for `None`.
+/// Has one digit after the decimal point, or `-` for `None`.
 fn scaled(number: Option<f64>, scale: f64) -> String {
     match number {
         Some(number) => format!("{:.1}", number * scale),
@@ -231,14 +228,12 @@ fn print_speed(entries: &[ComparisonEntry]) {
     );
 }
 
-/// Returns a number of clocks as text: without decimals if it is whole, and otherwise with three. For example, 5 gives `5`, and
-/// 5.5 gives `5.500`.
+/// Has no decimals if the number is whole, and otherwise three. For example, 5 gives `5`, and 5.5 gives `5.500`.
 fn clocks(clocks: f64) -> String {
     if clocks.fract() == 0.0 { format!("{clocks}") } else { format!("{clocks:.3}") }
 }
 
-/// Returns the sizes of multipliers as text, in the order of the list. Equal neighbours are counted. For example, one of 21 by
-/// 10 bits and three of 10 by 8 bits give `21x10, 3 of 10x8`.
+/// Counts equal neighbours: one multiplier of 21 by 10 bits and three of 10 by 8 bits give `21x10, 3 of 10x8`.
 fn sizes(multipliers: &[MultiplierSize]) -> String {
     let mut texts = Vec::new();
     for alike in multipliers.chunk_by(|a, b| a == b) {
@@ -250,12 +245,11 @@ fn sizes(multipliers: &[MultiplierSize]) -> String {
     texts.join(", ")
 }
 
-/// Returns the resources of a design with their names in JSON.
 fn numbers(usage: &Usage) -> [(&'static str, u64); 3] {
     [("luts", usage.luts), ("dsps", usage.dsps), ("block_rams", usage.block_rams)]
 }
 
-/// Returns the rows of the CSV file: the headings, and then a row for each entry. A value that is not known is empty.
+/// Returns the headings, and then a row for each entry. A value that is not known is empty.
 fn as_csv(arguments: &Arguments, entries: &[ComparisonEntry]) -> Vec<Vec<String>> {
     let synthesised = entries.iter().any(|entry| !entry.usage.is_empty());
     let measured = entries.iter().any(|entry| entry.record.is_some());
@@ -266,8 +260,8 @@ fn as_csv(arguments: &Arguments, entries: &[ComparisonEntry]) -> Vec<Vec<String>
     rows
 }
 
-/// Returns the headings of the columns. For example, the columns of iCE40 are `ice40_luts`, `ice40_dsps` and
-/// `ice40_block_rams`. `synthesised` and `measured` say whether the columns of resources and of frequencies are included.
+/// The columns of iCE40 are `ice40_luts`, `ice40_dsps` and `ice40_block_rams`. `synthesised` and `measured` say whether the
+/// columns of resources and of frequencies are included.
 fn csv_heading(synthesised: bool, measured: bool) -> Vec<String> {
     let mut heading: Vec<String> = ["name", "device", "exponent"].map(str::to_owned).to_vec();
     for name in ["error", "formula", "operands", "fixed_point"] {
@@ -326,7 +320,6 @@ fn csv_row(
     row
 }
 
-/// The frequency and the rate of a core on a target, in the JSON form.
 #[derive(Serialize)]
 struct Speed {
     #[serde(rename = "mhz")]

@@ -1,5 +1,4 @@
-//! `glint cosim --simulator`: runs the emitted test bench of a configuration in an external simulator, for example Icarus
-//! Verilog.
+//! `glint cosim --simulator`: runs the emitted test bench of a configuration in an external simulator.
 
 use anyhow::{Context, Result};
 use rayon::prelude::*;
@@ -15,32 +14,26 @@ use glint_base::program::Program;
 use glint_core::package::FileKind;
 use glint_tools::{BenchDifference, BenchOutcome, VerilogSimulator, bench_waveform, run_bench};
 
-/// The number of results that are checked with an external simulator, if the user states none.
+/// The number of results if the user states none.
 const POINTS: u64 = 200;
 
-/// The largest number of results with an external simulator, because the vectors are made in memory.
+/// The vectors are made in memory, which limits the number of results.
 const MOST_POINTS: u64 = 1_000_000;
 
-/// The run of a bench in an external simulator.
 struct BenchRun {
     clocks: usize,
     outcome: BenchOutcome,
     mismatch: Option<BenchMismatch>,
 }
 
-/// The first difference that a bench has found, with a waveform and a command that reproduce it.
 struct BenchMismatch {
     difference: BenchDifference,
     /// The path of the waveform; `None` if it could not be written.
     vcd: Option<String>,
-    /// The first clock in the waveform.
     from: u64,
     command: String,
 }
 
-/// Runs the test benches of configurations in the simulator `which`, and reports the results. Returns whether all have passed.
-///
-/// # Errors
 /// Fails for wrong usage, or if the simulator is missing, refuses a bench, or does not end within the time limit.
 pub fn benches(
     output: OutputOptions,
@@ -73,7 +66,6 @@ pub fn benches(
     list.conclude(holds)
 }
 
-/// The run of a bench with the options of the command, for the report.
 struct BenchReport<'a> {
     one: &'a Loaded,
     run: &'a BenchRun,
@@ -94,8 +86,7 @@ impl CommandReport for BenchReport<'_> {
 }
 
 /// Emits a bench with `points` results, and runs it in an external simulator. The expected outputs are values on which golden
-/// model and built-in simulator agree. If the bench fails, also writes a waveform. Fails if the files cannot be made, or if the
-/// simulator is missing, refuses the bench or reaches the time limit.
+/// model and built-in simulator agree. If the bench fails, the function also writes a waveform.
 fn bench(
     one: &Loaded,
     which: VerilogSimulator,
@@ -134,7 +125,6 @@ fn bench(
     Ok(BenchRun { clocks, outcome, mismatch })
 }
 
-/// Returns the name of the simulator on the command line. For example, `icarus`.
 fn name(arguments: &Arguments) -> String {
     format!("{:?}", arguments.simulator).to_lowercase()
 }

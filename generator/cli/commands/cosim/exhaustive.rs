@@ -24,15 +24,14 @@ use show::{announce, report};
 /// The time between two writes of the state.
 const SAVE: Duration = Duration::from_secs(5);
 
-/// The estimated duration below which a division among more cores is not suggested.
+/// A division among more cores is suggested from this estimated duration on.
 const WORTH_SHARING: Duration = Duration::from_secs(60);
 
-/// The numbers of cores for which the duration of the check is printed. For example, `about 1 hour on 1 core`.
+/// The duration is printed for these numbers of cores. For example, `about 1 hour on 1 core`.
 const CORES: [u32; 3] = [1, 16, 1000];
 
-/// Runs `glint cosim --exhaustive`: measures the errors at all operands, and compares them with the bound of the accuracy
-/// contract. The command also compares model and hardware clock by clock for every combination of operands, if there are not
-/// too many. Returns whether everything holds.
+/// Measures the errors at all operands, and compares them with the bound of the accuracy contract. Also compares model and
+/// hardware clock by clock for every combination of operands, if there are not too many.
 ///
 /// # Errors
 /// Fails if a configuration has problems, if the values of `--values` are not valid, if the file of `--resume` belongs to
@@ -85,7 +84,7 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     list.conclude(holds)
 }
 
-/// Returns the progress of an exhaustive check that a file stores, or `None` if the file does not exist.
+/// Returns the saved progress of a check, or `None` if the file does not exist.
 ///
 /// # Errors
 /// Fails if the file cannot be read, or if it has other contents.
@@ -97,9 +96,8 @@ pub fn read(path: &Path) -> Result<Option<ShardState>> {
     Ok(Some(state))
 }
 
-/// Runs the job until the shard is done, and saves the state in `file` every few seconds, if a file is given. After a signal,
-/// it saves the state and fails with [`Failure::Interrupted`]. Fails also if the design cannot be simulated, or if the state
-/// cannot be saved.
+/// Runs the job until the shard is done, and saves the state in `file` every few seconds. After a signal, it saves the state
+/// and fails with [`Failure::Interrupted`].
 fn prove(
     output: OutputOptions,
     job: &Job<'_>,
@@ -155,14 +153,13 @@ fn prove(
     }
 }
 
-/// Returns whether the number of combinations fits into 64 bits.
 fn is_countable(sweep: &Sweep) -> bool {
     let mut counts = sweep.axes.iter().map(|axis| axis.values.count());
     counts.try_fold(1, u64::checked_mul).is_some()
 }
 
-/// Prints an estimate of the check's duration, from a short sample. If the check is long, also prints how the user can stop it
-/// and continue it later. `resume` is the file with the saved state. Fails if the design cannot be simulated.
+/// Prints an estimate from a short sample. If the check is long, also says how the user can stop it and continue it later.
+/// `resume` is the file with the saved state.
 fn announce_duration(job: &Job<'_>, state: &ShardState, resume: Option<&Path>) -> Result<()> {
     if job.remaining(state) == 0 {
         return Ok(());

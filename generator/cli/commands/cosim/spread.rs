@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use crate::say;
 use glint_core::cosim::{CLASSES, Histogram};
 
-/// Prints the classes of `f`, and the share of the results in each class in per cent.
+/// Prints the share of the results in each class in per cent.
 pub fn print(histogram: &Histogram) {
     let counts = histogram.counts();
     let all = counts.iter().sum::<u64>().max(1) as f64;
@@ -16,7 +16,7 @@ pub fn print(histogram: &Histogram) {
     say!("  points{}", shares.concat());
 }
 
-/// Returns the number of results in each class of `f` as JSON, and the share of results with `f` strictly between 0 and 1.
+/// Also has the share of results with `f` strictly between 0 and 1.
 pub fn as_json(histogram: &Histogram) -> Value {
     let classes = CLASSES.iter().zip(histogram.counts());
     let classes: Vec<Value> =

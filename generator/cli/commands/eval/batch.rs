@@ -13,27 +13,26 @@ use crate::report::CommandReport;
 use crate::{OutputOptions, failure, tables};
 use glint_golden::{ANY_VALUE, Contract};
 
-/// The result of a point. The value is overwritten for each point, to avoid new allocations.
+/// The result of a point, which is overwritten for each point to avoid new allocations.
 #[derive(Default)]
 struct PointResult {
     operands: Vec<i64>,
-    /// The number of the point in its line, from 0. `None` for a device that does not compute lines.
+    /// The number of the point in its line, from 0, if the device computes lines.
     point: Option<u64>,
     f: Option<i64>,
     outputs: Vec<i64>,
     exact_f: Option<f64>,
-    /// The values of the formulas; NaN for a formula without a value.
+    /// NaN for a formula without a value.
     exact: Vec<f64>,
-    /// Whether the contract promises an error, for each output.
+    /// States for each output whether the contract promises an error.
     promised: Vec<bool>,
     /// The numbers of the outputs whose errors are promised under a condition.
     conditional: Vec<usize>,
     inside: bool,
 }
 
-/// Computes every row of a CSV file, with the golden model's arithmetic and with the formula in f64, and reports the results.
-/// If the device computes a line of points, it computes all points of the line. The operands in `given` apply to all rows.
-/// Returns true.
+/// Computes every row of a CSV file with the golden model's arithmetic and with the formula in f64. If the device computes
+/// lines, the report has all points of each line. The operands in `given` apply to all rows.
 ///
 /// # Errors
 /// Fails if the file cannot be read, if a column is unknown or given twice, or if a value is not valid.
@@ -69,16 +68,14 @@ pub fn batch(
     Ok(true)
 }
 
-/// The results for a CSV file, for the report.
 struct EvaluatedPoints<'a> {
     one: &'a Loaded,
-    /// The CSV file.
     path: &'a Path,
-    /// The operands without a column, with the values that the command chose, as text.
+    /// The operands without a column, with the values that the command chose.
     missing: Vec<String>,
-    /// The results as CSV, if people read the answer.
+    /// Filled if people read the answer.
     text: String,
-    /// The results as JSON, if a script reads the answer.
+    /// Filled if a script reads the answer.
     points: Vec<Value>,
 }
 
@@ -100,9 +97,8 @@ impl CommandReport for EvaluatedPoints<'_> {
     }
 }
 
-/// Returns the index of the operand for each column. The index is `None` for a column of real values, which `glint setup`
-/// writes and this command ignores, such as `real_cos_gamma`. Fails for any other heading, and for an operand that is given
-/// twice.
+/// Returns the index of the operand for each column. It is `None` for a column of real values, such as `real_cos_gamma`, which
+/// `glint setup` writes and this command ignores.
 fn columns<'a>(
     one: &Loaded,
     given: &[Option<i64>],
@@ -123,8 +119,7 @@ fn columns<'a>(
     Ok(columns)
 }
 
-/// Returns the operands that have neither a column nor a value on the command line, with the values that the command chooses,
-/// as text.
+/// Returns the operands that have neither a column nor a value on the command line, with the values that the command chooses.
 fn missing_columns(
     contract: &dyn Contract,
     given: &[Option<i64>],
@@ -137,8 +132,8 @@ fn missing_columns(
     operands::missing(contract, &with_columns)
 }
 
-/// Computes the points of a row, which are all points of a line or one point, and calls `show` with each. `row` is overwritten.
-/// Fails if a value in the row is not valid.
+/// Computes the points of a row, which are all points of a line or one point, and calls `show` with each. `row` is
+/// overwritten.
 fn points(
     contract: &dyn Contract,
     given: &[Option<i64>],
@@ -191,9 +186,8 @@ fn points(
     Ok(())
 }
 
-/// Returns the row of headings, with a newline. Operands, `f` and formulas are real values. An output is a raw integer; if the
-/// output has fraction bits, its heading begins with `raw_`. For example, an output `y_out` with fraction bits has the heading
-/// `raw_y_out`.
+/// Returns the headings with a newline. Operands, `f` and formulas are real values. An output is a raw integer; if it has
+/// fraction bits, its heading begins with `raw_`.
 fn headings(contract: &dyn Contract) -> String {
     let mut headings: Vec<String> =
         contract.operands().iter().map(|operand| operand.name.clone()).collect();
@@ -223,13 +217,12 @@ fn headings(contract: &dyn Contract) -> String {
     headings.join(",") + "\n"
 }
 
-/// Returns the numbers of the outputs whose errors are promised under a condition.
 fn conditional_outputs(contract: &dyn Contract) -> Vec<usize> {
     let conditions = contract.conditions().unwrap_or_default();
     (0..conditions.len()).filter(|number| conditions[*number].is_some()).collect()
 }
 
-/// Appends the result of a point as a row of CSV. Numbers need no quotes.
+/// Numbers need no quotes.
 fn append(contract: &dyn Contract, row: &PointResult, text: &mut String) {
     for (operand, &raw) in contract.operands().iter().zip(&row.operands) {
         decimal(operand.format.to_f64(raw.into()), text);
@@ -264,8 +257,7 @@ fn integer(value: i64, text: &mut String) {
     text.push(',');
 }
 
-/// Appends a number and a comma, in the form of the format `{}`. Whole numbers are written by a faster function. For example,
-/// it appends `2,` for 2 and `0.5,` for 0.5.
+/// Appends a number and a comma, in the form of the format `{}`. Whole numbers are written by a faster function.
 fn decimal(value: f64, text: &mut String) {
     let whole = value as i64;
     let is_whole = whole as f64 == value && whole.unsigned_abs() < 1 << 53;

@@ -25,10 +25,7 @@ pub fn given(operands: &[Operand], settings: &[String]) -> Result<Vec<Option<i64
     Ok(raw)
 }
 
-/// Returns the index of the operand `name` in `operands`.
-///
-/// # Errors
-/// Fails if no operand has this name. The message then has the most similar name.
+/// Returns the index of an operand. The message about an unknown name has the most similar name.
 pub fn position(operands: &[Operand], name: &str) -> Result<usize, String> {
     operands.iter().position(|operand| operand.name == name).ok_or_else(|| {
         let names: Vec<&str> = operands.iter().map(|operand| operand.name.as_str()).collect();
@@ -36,8 +33,8 @@ pub fn position(operands: &[Operand], name: &str) -> Result<usize, String> {
     })
 }
 
-/// Returns raw values for all operands. An operand that is `None` in `given` gets 0, or the value nearest to 0 in its domain.
-/// For example, an exponent with the domain 1 to 255 gets 1.
+/// Gives 0, or the value nearest to 0 in its domain, to each operand that is `None` in `given`. For example, an exponent with
+/// the domain 1 to 255 gets 1.
 pub fn completed(contract: &dyn Contract, given: &[Option<i64>]) -> Vec<i64> {
     let operands = contract.operands().iter().zip(given);
     let value =
@@ -50,8 +47,8 @@ fn nearest_to_zero(operand: &Operand) -> i64 {
     0.clamp(low, high)
 }
 
-/// Returns raw values for all operands. An operand that is `None` in `given` gets a value at which the results are well inside
-/// their ranges, and a colour gets its largest value.
+/// Gives a value at which the results are well inside their ranges to each operand that is `None` in `given`. A colour gets
+/// its largest value.
 pub fn typical(contract: &dyn Contract, given: &[Option<i64>]) -> Vec<i64> {
     let typical = trial::typical(contract, given);
     let each = contract.operands().iter().zip(given).zip(typical);
@@ -61,8 +58,7 @@ pub fn typical(contract: &dyn Contract, given: &[Option<i64>]) -> Vec<i64> {
     each.collect()
 }
 
-/// Returns the operands that are `None` in `given`, with the values that [`completed`] gives them, as text. For example, `green
-/// = 0` and `blue = 0`.
+/// Returns the operands that are `None` in `given`, with the values of [`completed`]. For example, `green = 0` and `blue = 0`.
 pub fn missing(contract: &dyn Contract, given: &[Option<i64>]) -> Vec<String> {
     let operands = contract.operands().iter().zip(given);
     let missing = operands.filter(|(_, given)| given.is_none()).map(|(operand, _)| {
@@ -72,8 +68,8 @@ pub fn missing(contract: &dyn Contract, given: &[Option<i64>]) -> Vec<String> {
     missing.collect()
 }
 
-/// Parses the value of an operand, and returns it as a raw value. For example, `0.5` and `#128` both give 128 for an operand
-/// with 8 fraction bits.
+/// Parses the value of an operand to a raw value. For example, `0.5` and `#128` both give 128 for an operand with 8 fraction
+/// bits.
 ///
 /// # Errors
 /// Fails if the text is not a number, if the number exceeds the format or has more than 63 bits, or if it is a fraction and the

@@ -10,11 +10,11 @@ use crate::destination;
 use glint_base::input;
 use glint_prove::synth::{Figures, Target};
 
-/// The folder next to the configuration file. The folder may be deleted at any time.
+/// The user may delete this folder at any time.
 const FOLDER: &str = ".glint";
 
-/// The folder with the measurements, one file for each configuration and target. For example, `.glint/rough.ecp5.json`. If a
-/// file cannot be read, the core is measured again. If a file cannot be written, the measurement is not stored.
+/// One file for each configuration and target, such as `.glint/rough.ecp5.json`. A file that cannot be read or written is no
+/// error: the core is then measured again, or the measurement is not stored.
 pub struct Cache(PathBuf);
 
 #[derive(Serialize, Deserialize)]
@@ -25,7 +25,7 @@ struct CacheEntry {
 }
 
 impl Cache {
-    /// Returns the cache next to the configuration file `path`. Returns `None` if the configuration comes from standard input.
+    /// Returns `None` if the configuration comes from standard input, which has no folder.
     pub fn beside(path: &str) -> Option<Self> {
         (path != input::STDIN)
             .then(|| Self(Path::new(path).parent().unwrap_or(Path::new("")).join(FOLDER)))
@@ -35,15 +35,14 @@ impl Cache {
         self.0.join(format!("{name}.{target}.json"))
     }
 
-    /// Returns the measurement on a target that is stored under the core's name. Returns `None` if there is no such file, or if
-    /// it has another digest.
+    /// Returns `None` if there is no such file, or if the stored figures belong to another digest.
     pub fn find(&self, name: &str, target: Target, digest: &str) -> Option<Figures> {
         let text = fs::read_to_string(self.file(name, target)).ok()?;
         let entry: CacheEntry = serde_json::from_str(&text).ok()?;
         (entry.digest == digest).then_some(entry.figures)
     }
 
-    /// Stores a measurement with its digest under the core's name. If the folder cannot be written, the function does nothing.
+    /// If the folder cannot be written, the function does nothing.
     pub fn keep(&self, name: &str, digest: &str, figures: &Figures) {
         let entry = CacheEntry {
             glint: env!("CARGO_PKG_VERSION").to_owned(),

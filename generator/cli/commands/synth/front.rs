@@ -15,7 +15,6 @@ use glint_prove::tune;
 use glint_prove::tune::architectures::{self, Architecture};
 use glint_show::evidence::chart::{Chart, ChartAxis, Series};
 
-/// An architecture of a configuration with its measured figures.
 struct MeasuredArchitecture {
     architecture: Architecture,
     figures: Figures,
@@ -25,7 +24,7 @@ struct MeasuredArchitecture {
     area: f64,
 }
 
-/// The architectures of a configuration from the slowest to the fastest, for the report.
+/// The architectures are in order from the slowest to the fastest.
 struct ArchitectureFront<'a> {
     path: &'a str,
     target: Target,
@@ -34,9 +33,8 @@ struct ArchitectureFront<'a> {
     chosen: usize,
 }
 
-/// Measures the configuration in each architecture, and reports the results. The chosen architecture is the smallest that
-/// reaches `--rate`, or without `--rate` the architecture of the configuration itself. Returns true, because nothing is
-/// checked.
+/// The chosen architecture is the smallest that reaches `--rate`, or without `--rate` the architecture of the configuration
+/// itself.
 ///
 /// # Errors
 /// Fails if a tool fails, if the target is not timed, if the device cannot be a pipeline, or if no architecture has the rate.
@@ -83,8 +81,8 @@ pub fn run(output: OutputOptions, arguments: &Arguments, loaded: &[Loaded]) -> R
     Ok(true)
 }
 
-/// Returns the target to measure for: the target that the user names, or the target of the pipeline, or ECP5. Fails with wrong
-/// usage if the user names several, or one without a frequency.
+/// Returns the target that the user names, or else the target of the pipeline, or else ECP5. Fails with wrong usage if the
+/// user names several, or one without a frequency.
 fn target(arguments: &Arguments, one: &Loaded) -> Result<Target> {
     let target = match arguments.targets[..] {
         [] => super::targets_of_pipelines(std::slice::from_ref(one)).first().copied(),
@@ -127,8 +125,7 @@ fn measure(
     })
 }
 
-/// Returns the index of the architecture to mark: the smallest that has the rate, or without a rate the one with the interval
-/// `own`. Fails if no architecture has the rate.
+/// Returns the index of the smallest architecture that has the rate, or without a rate of the one with the interval `own`.
 fn chosen(measured: &[MeasuredArchitecture], rate: Option<f64>, own: Option<u32>) -> Result<usize> {
     let Some(wanted) = rate else {
         let is_own = |it: &MeasuredArchitecture| it.architecture.interval == own;

@@ -13,7 +13,6 @@ use glint_prove::synth::{Figures, Frequency, Rate, tools};
 /// The text of a cell without a figure.
 const NONE: &str = "–";
 
-/// The measurements of all configurations, for printing.
 pub struct SynthesisReport<'a> {
     pub measured: Vec<Measurement<'a>>,
     /// The targets that were not measured, each with the reason.
@@ -66,7 +65,7 @@ fn print(measured: &[Measurement], notes: &[String]) {
     }
 }
 
-/// Returns the figures of a target in one line. For example, `ECP5: 367 LUT, 1 DSP, 0 RAM, 112.30 MHz`.
+/// Gives the figures in the form `ECP5: 367 LUT, 1 DSP, 0 RAM, 112.30 MHz`.
 pub fn in_a_line(figures: &Figures) -> String {
     let area = &figures.area;
     let mut parts: Vec<String> = Vec::new();
@@ -84,7 +83,6 @@ pub fn in_a_line(figures: &Figures) -> String {
     format!("{}: {}", figures.target.title(), parts.join(", "))
 }
 
-/// Returns a count as text, or [`NONE`].
 fn count(number: Option<u64>) -> String {
     match number {
         Some(number) => number.to_string(),
@@ -92,7 +90,7 @@ fn count(number: Option<u64>) -> String {
     }
 }
 
-/// Returns a number as text with `digits` digits after the decimal point, or [`NONE`].
+/// Writes `digits` digits after the decimal point.
 fn decimal(number: Option<f64>, digits: usize) -> String {
     match number {
         Some(number) => format!("{number:.digits$}"),

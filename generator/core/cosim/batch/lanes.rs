@@ -1,7 +1,7 @@
 //! Computes many points (sets of operands) with the built-in simulator.
 //!
-//! [`RustHdl`] has one simulator for each thread. A simulator runs 32 instances of the design side by side, one in each lane,
-//! and each instance computes a point of its own.
+//! [`RustHdl`] has one simulator for each thread. Each of the 32 lanes of a simulator runs an instance of the design, which
+//! computes a point of its own.
 
 use std::array;
 use std::collections::VecDeque;
@@ -19,8 +19,7 @@ use glint_rtl::netlist::{Design, NetId, Role};
 /// The number of clocks after which a computation counts as a computation that never ends.
 const LIMIT: u64 = 1 << 16;
 
-/// An [`Engine`] that simulates the design with rust_hdl: one simulator for each thread, with an instance of the design in each
-/// lane.
+/// An [`Engine`] that simulates the design with rust_hdl.
 pub struct RustHdl {
     teams: Vec<Team>,
 }
@@ -53,32 +52,24 @@ impl Engine for RustHdl {
     }
 }
 
-/// The instances of one thread.
 struct Team {
     instances: Instances<LANES>,
     /// The number of clocks from a point to its result, if the design is a pipeline; otherwise `None`.
     latency: Option<u64>,
-    /// The output `in_ready` of a pipeline, which is 1 if the pipeline takes a point. The output has the same value in all
-    /// instances. `None` if the design has no such port.
+    /// The output `in_ready` of a pipeline, which is 1 if the pipeline takes a point. It is the same in all instances.
     in_ready: Option<NetId>,
 }
 
-/// A computation that one instance has taken and not finished.
 struct LaneTask {
     point: usize,
-    /// The number of results that the instance has given so far.
     shown: usize,
-    /// The number of the clock in which the instance took the point.
+    /// The clock in which the instance took the point.
     taken: u64,
 }
 
 impl Team {
-    /// Returns the raw outputs of the points in `range`, in the order of the points. Every instance takes the next point as
-    /// soon as it can: a core when it is free, and a pipeline when it is ready.
-    ///
-    /// # Errors
-    /// Fails if the simulation fails, if a computation gives more or fewer results than `points` states, or if it takes [`LIMIT`]
-    /// clocks or more. Fails if a result of a pipeline does not come after the latency.
+    /// Returns the raw outputs of the points in `range`, in their order. Every instance takes the next point as soon as it
+    /// can: a core when it is free, and a pipeline when it is ready.
     fn compute(&mut self, points: &Points, range: Range<usize>) -> Result<Vec<i64>> {
         let Self { instances, latency, in_ready } = self;
         let width = instances.ports.results.len();

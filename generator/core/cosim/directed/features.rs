@@ -32,8 +32,7 @@ enum Watched {
     Pair(NetId, NetId),
 }
 
-/// Observes the nets of a simulated design. For each lane, the struct records the features that the lane's computation has
-/// exercised, such as an input of a mux or an outcome of a comparison.
+/// Observes the nets of a simulated design, and records the features that the computation of each lane exercises.
 pub struct Watch {
     watched: Vec<Watched>,
     done: Vec<[u64; LANES]>,
@@ -44,7 +43,7 @@ pub struct Watch {
 }
 
 impl Watch {
-    /// Prepares to observe all features of `design`. Every net of the design must have a name; see [`observable`].
+    /// Prepares to observe all features of `design`. Every net must have a name; see [`observable`].
     pub fn new(design: &Design) -> Self {
         let mut watched = Vec::new();
         for (id, net) in design.iter() {
@@ -87,13 +86,12 @@ impl Watch {
         }
     }
 
-    /// Returns the number of features, in all brightness classes together. The function reserves 64 features in each class for
-    /// everything that is observed. Reads of ROM words are not counted.
+    /// Returns the number of features in all brightness classes. Everything that is observed has 64 features in each class.
+    /// ROM words are not counted.
     pub fn count(&self) -> usize {
         64 * CLASSES * self.watched.len()
     }
 
-    /// Records the features that the nets have in this clock, and the ROM words that are read, in the lanes of the set `busy`.
     pub fn note(&mut self, machine: &Machine<LANES>, busy: Lanes) {
         for (watched, done) in self.watched.iter().zip(&mut self.done) {
             let mut add = |of: &dyn Fn(usize) -> u64| {
@@ -148,8 +146,7 @@ impl Watch {
         self.note_words(machine, busy);
     }
 
-    /// Records only the ROM words that are read in this clock, in the lanes of the set `busy`. Reads beyond the end of a ROM
-    /// are ignored.
+    /// Records only the ROM words that are read in this clock, in the lanes of the set `busy`.
     pub fn note_words(&mut self, machine: &Machine<LANES>, busy: Lanes) {
         for &(address, first, count) in &self.addresses {
             let bits = machine.lanes(address);
@@ -162,9 +159,8 @@ impl Watch {
         }
     }
 
-    /// Returns the features that the computation in `lane` has exercised, as features of the brightness class `class`, and the
-    /// words that it has read. Words are numbered through all ROMs of the design; the words are in ascending order, each once.
-    /// The record of the lane is empty afterwards.
+    /// Returns the features that the computation in `lane` has exercised, for the brightness class `class`, and the words that
+    /// it has read. Words are numbered through all ROMs, ascend, and occur once. The record of the lane is empty afterwards.
     pub fn take(&mut self, lane: usize, class: usize) -> (Vec<u32>, Vec<u32>) {
         let mut features = Vec::new();
         for (at, done) in self.done.iter_mut().enumerate() {

@@ -9,11 +9,10 @@ use glint_rtl::sim::Machine;
 
 /// The ROMs of a design after each lane got its own copy of them, with the position of each word in the copy of each lane.
 pub struct Memories {
-    /// The input port that selects the copy that a lane reads. The caller must drive it with the number of the lane.
+    /// Selects the copy that a lane reads. The caller must drive this input with the number of the lane.
     pub lane: NetId,
-    /// For each ROM, three numbers. The first number is the number of the ROM's first word through all ROMs of the original
-    /// design, and the second number is the same in the design with copies. The third number is the distance in words from one
-    /// lane's copy to the copy of the next lane.
+    /// Each ROM has the number of its first word in the original design and in the design with copies. The third number is the
+    /// distance in words from one lane's copy to the next.
     roms: Vec<(u32, usize, usize)>,
 }
 
@@ -50,8 +49,8 @@ impl Memories {
         Self { lane, roms }
     }
 
-    /// Inverts the bits in the mask `bits` of one ROM word in the copy of lane `lane`. A second call with the same arguments
-    /// restores the word. `word` is the number of the word through all ROMs of the original design.
+    /// Inverts the bits in the mask `bits` of one ROM word in the copy of lane `lane`. A second call restores the word. `word`
+    /// is the number of the word through all ROMs of the original design.
     pub fn invert<const LANES: usize>(
         &self,
         machine: &mut Machine<LANES>,
@@ -65,7 +64,6 @@ impl Memories {
     }
 }
 
-/// Adds a net of `bits` bits without a sign to the design, and returns the net.
 fn add(design: &mut Design, name: &str, bits: u32, driver: Driver) -> NetId {
     let like = design.net(design.roms[design.control.rom.index()].address);
     let (name, format) =

@@ -40,11 +40,10 @@ use side_by_side::{LANES, OutputTrace, SideBySide};
 /// The number of computations that must exercise each feature. If the pool has fewer for a feature, all of them are chosen.
 const TIMES: u8 = 2;
 
-/// The largest number of clocks of all chosen computations up to which a computation is added for its features. Computations that
+/// The chosen computations may take this number of clocks before a computation is added for its features. Computations that
 /// are chosen for ROM words do not obey this limit.
 const MOST_CLOCKS: u32 = 20_000;
 
-/// A computation of the pool, with the results of its simulation.
 struct PoolComputation {
     operands: Vec<i64>,
     shown: OutputTrace,
@@ -55,25 +54,23 @@ struct PoolComputation {
     read: Vec<u32>,
 }
 
-/// A cache of chosen computations. The key is the design without its name, together with the contract. A core and the pipeline
-/// that is made from it therefore share their computations.
+/// A cache of chosen computations by design, without its name, and contract. A core and the pipeline that is made from it
+/// therefore share their computations.
 #[derive(Default)]
 pub struct ComputationCache(Mutex<HashMap<String, Arc<Mutex<Option<Computations>>>>>);
 
-/// The computations that were chosen for a test bench.
 #[derive(Clone, Default)]
 pub struct Computations {
     /// The raw operands of each computation, in the order of `Contract::operands`.
     pub operands: Vec<Vec<i64>>,
-    /// The distance between two ROM words whose inverted bits a computation detects, in words. For example, 1 means that every
-    /// word has such a computation, and 2 that every second word has one.
+    /// The distance between two ROM words whose inverted bits a computation detects. For example, 2 means that every second
+    /// word has such a computation.
     pub word_stride: usize,
 }
 
 impl ComputationCache {
-    /// Returns the result of [`computations`] for a design from the cache. If the cache does not have this result, the function
-    /// chooses the computations, and adds them to the cache. The name of the design does not matter. `contract_digest` must be
-    /// different for different contracts.
+    /// Returns the result of [`computations`] for a design, from the cache if it is there. The name of the design does not
+    /// matter. `contract_digest` must be different for different contracts.
     ///
     /// # Errors
     /// Fails as [`computations`] does. A failure is not cached.
@@ -165,9 +162,8 @@ pub fn computations(design: &Design, contract: &dyn Contract) -> Result<Computat
     Ok(Computations { operands, word_stride: of_words.word_stride })
 }
 
-/// Returns the indices in `lines` of lines that read many words of tables. The first line, which is the longest, is always
-/// chosen. Another line is chosen if the number of new words that the line reads exceeds half of its clocks. A word is new if no
-/// line chosen before reads the word.
+/// Chooses lines that read many words of tables, by their indices in `lines`. The first line, which is the longest, is always
+/// chosen. Another line is chosen if the number of words that it is the first to read exceeds half of its clocks.
 fn sweeps(lines: &[PoolComputation]) -> Vec<usize> {
     let mut read = HashSet::new();
     let mut chosen = Vec::new();
@@ -181,8 +177,7 @@ fn sweeps(lines: &[PoolComputation]) -> Vec<usize> {
     chosen
 }
 
-/// Returns the class of the brightest result: 0 if all outputs are 0, 2 if an output is larger than a sixteenth of its largest
-/// value, and otherwise 1.
+/// Returns the class of the brightest result; see [`features::CLASSES`].
 fn class(contract: &dyn Contract, shown: &OutputTrace) -> usize {
     let mut class = 0;
     for (_, outputs) in &shown.results {
@@ -194,9 +189,9 @@ fn class(contract: &dyn Contract, shown: &OutputTrace) -> usize {
     class
 }
 
-/// Adds candidates to `chosen`, always the candidate that exercises the most missing features per clock. The function leaves out
-/// a candidate with which all chosen computations would exceed [`MOST_CLOCKS`], and ends when no other candidate adds a missing
-/// feature. Features from number `words` on are ROM words, which must be read once; `count` is the number of all features.
+/// Adds candidates to `chosen`, always the candidate that exercises the most missing features per clock, as long as
+/// [`MOST_CLOCKS`] allows. Features from number `words` on are ROM words, which must be read only once; `count` is the number
+/// of all features.
 fn choose(candidates: &[PoolComputation], words: usize, count: usize, chosen: &mut Vec<usize>) {
     let mut coverage = FeatureCoverage { wanted: vec![TIMES; count], clocks: 0 };
     coverage.wanted[words..].fill(1);
@@ -225,14 +220,12 @@ fn choose(candidates: &[PoolComputation], words: usize, count: usize, chosen: &m
 
 /// The number of times that each feature must still be exercised, and the clocks of the chosen computations.
 struct FeatureCoverage {
-    /// How many more times each feature must be shown.
+    /// How many more times each feature must be exercised.
     wanted: Vec<u8>,
-    /// The clocks of all chosen computations.
     clocks: u32,
 }
 
 impl FeatureCoverage {
-    /// Adds a computation: its clocks, and one execution of each of its features.
     fn add(&mut self, computation: &PoolComputation) {
         self.clocks += computation.shown.clocks;
         for &feature in &computation.features {

@@ -1,7 +1,6 @@
 //! Draws the candidates from which `directed` chooses the computations of a test bench.
 //!
-//! The pool depends only on the device's contract. The pool has the corners of the domain, random computations, computations that
-//! read ROM words, and long lines for devices that compute lines of points.
+//! The pool depends only on the device's contract.
 
 use crate::cosim::{PointSource, Random};
 use glint_golden::{Contract, Highlight};
@@ -20,8 +19,8 @@ const SHOWN: usize = 3840;
 /// at most this number of values.
 const MOST_VALUES: u64 = 4096;
 
-/// The distances from the lowest value of the operands without fraction bits, which choose a table. A line through the
-/// highlight is drawn for each of them, and for each number of bits of the line's length.
+/// Distances from the lowest value of the operands without fraction bits, which choose a table. A line through the highlight
+/// is drawn for each distance, and for each number of bits of the line's length.
 const FIRST_VALUES: [i64; 6] = [0, 1, 2, 3, 7, 15];
 const LINE_BITS: std::ops::RangeInclusive<u32> = 8..=12;
 
@@ -43,16 +42,15 @@ pub struct Pool {
     /// computations, at an end of its format. The length operand of a line is at most 2. There are at most 128 of these
     /// computations.
     pub corners: Vec<Vec<i64>>,
-    /// Random computations. The search for a test bench records all features that these computations exercise.
+    /// Random computations, whose features are all recorded.
     pub drawn: Vec<Vec<i64>>,
-    /// Further random computations. The search for a test bench records only the ROM words that these computations read.
+    /// Further random computations. The pool records only their ROM words.
     pub readers: Vec<Vec<i64>>,
     /// Lines from the peak to the edge of the highlight, which read the words of a table one after another. Empty for a device
-    /// that does not compute a line of points after one `start`.
+    /// without lines.
     pub sweeps: Vec<Vec<i64>>,
 }
 
-/// Draws the candidates for a contract. The same contract always gets the same candidates.
 pub fn pool(contract: &dyn Contract) -> Pool {
     let mut random = Random::new(1);
     let mut points = PointSource::new(contract);
@@ -110,7 +108,7 @@ pub fn pool(contract: &dyn Contract) -> Pool {
     Pool { corners: corners(&points), drawn, readers, sweeps }
 }
 
-/// Sets the colours in `values`, which follow the control operands, to their largest values.
+/// Sets the colours, which follow the control operands, to their largest values.
 fn brighten(points: &PointSource<'_>, values: &mut [i64]) {
     let operands = points.operands();
     let control = operands.iter().filter(|operand| !operand.colour).count();
@@ -120,7 +118,7 @@ fn brighten(points: &PointSource<'_>, values: &mut [i64]) {
 }
 
 /// Moves operands with fraction bits toward the ends of their domains, by a distance of random magnitude. Half of them move to
-/// the upper end, a quarter to the lower end, and the rest keep their values.
+/// the upper end, and a quarter to the lower end.
 fn near_ends(points: &PointSource<'_>, random: &mut Random, values: &mut [i64]) {
     for (value, operand) in values.iter_mut().zip(points.operands()) {
         let (low, high) = operand.domain;
@@ -134,9 +132,8 @@ fn near_ends(points: &PointSource<'_>, random: &mut Random, values: &mut [i64]) 
     }
 }
 
-/// Draws the control operands from their whole formats, also beyond the domains. Then moves them to where the formula has a
-/// random value from 0 to 1. A ROM word that is read only far from the peak for operands in the domain may be read near the
-/// peak for such operands, and then shows more in the results.
+/// Draws the control operands from their whole formats, and moves them to where the formula has a random value from 0 to 1. A
+/// ROM word that operands of the domain read only far from the peak is then read near it, and shows more in the results.
 fn anywhere(points: &PointSource<'_>, random: &mut Random, values: &mut [i64]) {
     let control = points.operands().iter().filter(|operand| !operand.colour).count();
     for (value, operand) in values[..control].iter_mut().zip(points.operands()) {
@@ -146,9 +143,8 @@ fn anywhere(points: &PointSource<'_>, random: &mut Random, values: &mut [i64]) {
     points.to_value(&mut values[..control], random.unit());
 }
 
-/// Returns combinations of the ends of the control operands' domains, with the largest colours. The ends of the operands'
-/// formats are included if there are at most [`MOST_CORNERS`] combinations with them. Returns the first [`MOST_CORNERS`]
-/// combinations at most.
+/// Returns at most [`MOST_CORNERS`] combinations of the ends of the control operands' domains, with the largest colours. The
+/// ends of the operands' formats are included if all these combinations are few enough.
 fn corners(points: &PointSource<'_>) -> Vec<Vec<i64>> {
     let mut ends = corner_values(points, true);
     if combinations(&ends) > MOST_CORNERS {
@@ -169,9 +165,8 @@ fn corners(points: &PointSource<'_>) -> Vec<Vec<i64>> {
     corners
 }
 
-/// Returns the values of each operand in the corners: the ends of its domain, and also the ends of its format if `with_format` is
-/// true. A colour has only its largest value, and the length of a line only [`CORNER_LENGTH`], or the largest length if it is
-/// smaller.
+/// Returns the values of each operand in the corners: the ends of its domain, and also of its format if `with_format` is true.
+/// A colour has only its largest value, and the length of a line at most [`CORNER_LENGTH`].
 fn corner_values(points: &PointSource<'_>, with_format: bool) -> Vec<Vec<i64>> {
     let mut all = Vec::new();
     for (at, operand) in points.operands().iter().enumerate() {
@@ -193,7 +188,6 @@ fn corner_values(points: &PointSource<'_>, with_format: bool) -> Vec<Vec<i64>> {
     all
 }
 
-/// Returns the number of combinations of one value for each operand.
 fn combinations(values: &[Vec<i64>]) -> usize {
     let mut product: usize = 1;
     for values in values {
@@ -202,10 +196,9 @@ fn combinations(values: &[Vec<i64>]) -> usize {
     product
 }
 
-/// Draws lines from the peak to the edge of the highlight, which read the words of a table one after another. There is a line
-/// for each value in [`FIRST_VALUES`] of the operands that choose a table, and for each number of bits in [`LINE_BITS`] of the
-/// line's length. There is no line if the formula does not fall on it. A length beyond its domain is replaced by the end of the
-/// domain. The longest lines are first.
+/// Draws lines from the peak to the edge of the highlight, the longest first. There is a line for each value in
+/// [`FIRST_VALUES`] and each number of bits in [`LINE_BITS`], unless the formula does not fall on the line. A length beyond
+/// its domain becomes the end of the domain.
 fn lines(highlight: &Highlight, points: &PointSource, length: usize) -> Vec<Vec<i64>> {
     let mut random = Random::new(2);
     let mut lines = Vec::new();

@@ -26,13 +26,14 @@ pub type Lanes = u32;
 pub struct OutputTrace {
     /// The number of clocks from the computation's `start` to the first clock in which the core is not busy.
     pub clocks: u32,
-    /// For each clock in which `valid` is high: the number of clocks since `start`, and the bit patterns of the result outputs.
+    /// For each clock in which `valid` is high: the number of clocks since `start`, and the bit patterns of the result
+    /// outputs.
     pub results: Vec<(u32, Vec<u64>)>,
 }
 
 impl OutputTrace {
-    /// Returns how much the results of two traces differ: the sum of the absolute differences of their bit patterns. Returns
-    /// the largest `u64` if the traces differ in the number of clocks or of results.
+    /// Returns the sum of the absolute differences of the bit patterns. Returns the largest `u64` if the traces differ in the
+    /// number of clocks or of results.
     pub fn differs(&self, from: &Self) -> u64 {
         if self.results.len() != from.results.len() || self.clocks != from.clocks {
             return u64::MAX;
@@ -47,20 +48,18 @@ impl OutputTrace {
     }
 }
 
-/// A simulated core whose lanes run one computation each. The simulator writes all operands in the clock of `start`. In all
-/// later clocks, the operand ports carry the complemented bits, so that a core that reads an operand too late computes a wrong
-/// result.
+/// A simulated core whose lanes run one computation each. After the clock of `start`, the operand ports carry the complemented
+/// bits. A core that reads an operand too late therefore computes a wrong result.
 pub struct SideBySide {
     pub machine: Machine<LANES>,
     ports: Ports,
     busy: NetId,
     inputs: Vec<[u64; LANES]>,
-    /// The copies of the ROMs, if each lane reads its own copy.
     copies: Option<Memories>,
 }
 
 impl SideBySide {
-    /// Makes the simulator of a design from `machine`, which must have been compiled from the same design, and resets it.
+    /// Resets the simulator `machine`, which must have been compiled from `design`.
     ///
     /// # Errors
     /// Fails if the design is a pipeline or lacks a port of the handshake. Fails also if design and contract do not have the
@@ -91,8 +90,8 @@ impl SideBySide {
         Ok(self)
     }
 
-    /// Runs computations as [`SideBySide::run`] does, but with inverted bits in one ROM word: lane i inverts the bits in the
-    /// mask `faults[i]`. `word` is the number of the word through all ROMs. The word is restored afterwards.
+    /// Runs computations as [`SideBySide::run`] does, but inverts the bits `faults[i]` of one ROM word in lane i. `word` is
+    /// the number of the word through all ROMs. The word is restored afterwards.
     ///
     /// # Errors
     /// Fails as [`SideBySide::run`] does.
@@ -115,9 +114,8 @@ impl SideBySide {
         }
     }
 
-    /// Runs one computation in each lane to its end, from raw operands in the order of `Contract::operands`, and returns their
-    /// outputs in the same order. There must be at most [`LANES`] computations. The function calls `see` before each clock edge
-    /// with the simulator and the set of the lanes that are busy.
+    /// Runs at most [`LANES`] computations to their ends, from raw operands in the order of `Contract::operands`, and returns
+    /// their outputs. The function calls `see` before each clock edge with the simulator and the set of busy lanes.
     ///
     /// # Errors
     /// Fails if a computation does not end within 65536 clocks.
@@ -173,7 +171,6 @@ impl SideBySide {
     }
 }
 
-/// Returns the set of the lanes in which a net of one bit is 1.
 fn lanes(bits: [u64; LANES]) -> Lanes {
     bits.iter().enumerate().fold(0, |set, (lane, &bit)| set | (bit as Lanes & 1) << lane)
 }

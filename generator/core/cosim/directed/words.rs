@@ -1,8 +1,8 @@
 //! Finds computations that detect faults in the words of a design's ROMs.
 //!
-//! A computation detects a fault if its results change when a bit in the upper half of a word is inverted. The search first
-//! tries the candidates of the pool that read the word. If no candidate detects a bit, the search tries other computations with
-//! similar operands, and gives up after twelve rounds.
+//! A computation detects a fault if its results change when a bit in the upper half of a word is inverted. The search tries
+//! the candidates of the pool that read the word, and then computations with similar operands. It gives up after twelve
+//! rounds.
 
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
@@ -28,29 +28,27 @@ pub const LONGEST: u32 = 64;
 /// simulates in five seconds.
 const MOST_CLOCKS: u64 = 40_000;
 
-/// The number of rounds that try other computations for a word, if no candidate detects a fault in it. These rounds use
-/// operands within their domains; then `ROUNDS_BEYOND` rounds use operands from their whole formats.
+/// The number of rounds that try other computations for a word, if no candidate detects a fault in it. Operands stay in their
+/// domains for `ROUNDS` rounds, and then in their formats for `ROUNDS_BEYOND` rounds.
 const ROUNDS: usize = 6;
 const ROUNDS_BEYOND: usize = 6;
 
-/// The number of tried computations that are kept after each round. A fault in the word changes the results of these computations
-/// most, and the next round tries computations near them.
+/// The number of tried computations that survive a round: a fault in the word changes their results most. The next round tries
+/// computations near them.
 const KEPT: usize = 8;
 
 /// The computations that were chosen because they detect faults in ROM words.
 #[derive(Default)]
 pub struct Chosen {
-    /// The indices of the chosen candidates.
     pub chosen: BTreeSet<usize>,
-    /// The raw operands of further computations that the search has found.
+    /// The raw operands of computations that the search has added.
     pub found: Vec<Vec<i64>>,
-    /// The distance between two ROM words with a computation that detects faults, in words. For example, 1 means that every
-    /// word has such a computation, and 2 that every second word has one.
+    /// As [`Computations::word_stride`](super::Computations::word_stride).
     pub word_stride: usize,
 }
 
-/// Chooses computations that detect inverted bits in the upper halves of ROM words. The function chooses among the `candidates`
-/// and further computations near them, and leaves out the words with the numbers in `known` and the control ROM.
+/// Chooses among the `candidates` and further computations near them. The words with the numbers in `known` and the control
+/// ROM need no computation.
 ///
 /// # Errors
 /// Fails if the design cannot be simulated, if it does not belong to the contract, or if a computation does not end.
@@ -84,16 +82,15 @@ pub fn chosen(
     Ok(search.result)
 }
 
-/// Returns the smallest stride with which the chosen words take at most about [`MOST_CLOCKS`] clocks, at one computation for each
-/// word. Returns at least 1.
+/// Returns the smallest stride with which one computation for each chosen word takes at most about [`MOST_CLOCKS`] clocks.
 fn word_stride(candidates: &[PoolComputation], readers: &BTreeMap<u32, Vec<usize>>) -> usize {
     let first = readers.values().filter_map(|readers| readers.first());
     let clocks: u64 = first.map(|&at| u64::from(candidates[at].shown.clocks)).sum();
     clocks.div_ceil(MOST_CLOCKS).max(1) as usize
 }
 
-/// Returns, for each word that is read, the indices of the candidates that read the word, brightest first. Each list has at most
-/// [`LANES`] candidates, and no candidate with more than [`LONGEST`] clocks.
+/// Returns, for each word that is read, at most [`LANES`] candidates that read it, brightest first, without the candidates
+/// that take more than [`LONGEST`] clocks.
 fn readers(candidates: &[PoolComputation]) -> BTreeMap<u32, Vec<usize>> {
     let mut order: Vec<usize> = (0..candidates.len()).collect();
     order.retain(|&at| candidates[at].shown.clocks <= LONGEST);
@@ -119,11 +116,8 @@ struct WordSearch<'a> {
 }
 
 impl WordSearch<'_> {
-    /// Chooses computations that detect the bits in the mask `left` of a word. `readers` has the candidates that read the word.
-    /// A fault in a bit is detected if the outputs change.
-    ///
-    /// # Errors
-    /// Fails if the simulation fails.
+    /// Chooses computations that detect the bits in the mask `left` of a word. `readers` has the candidates that read the
+    /// word.
     fn word(&mut self, word: u32, mut left: u64, readers: &[usize]) -> Result<()> {
         let candidates = self.candidates;
         for at in readers {
@@ -161,14 +155,12 @@ impl WordSearch<'_> {
         self.climb(word, left, least, nearest.iter().map(|operands| operands.to_vec()).collect())
     }
 
-    /// Searches for computations that detect the bits in the mask `left` of a word. The function starts from the computations
-    /// `nearest`, which detect the bit `probe`, and goes on, for a limited number of rounds, to computations near them in which
-    /// a fault of this bit changes the results more and more. Within the domain, some words are read only far from any
-    /// highlight. The last rounds therefore take operands from their whole formats, where the golden model still predicts the
-    /// device.
+    /// Searches for computations that detect the bits in the mask `left` of a word. The search starts from `nearest`, which
+    /// detect the bit `probe`. It moves on to computations near them in which a fault of this bit changes the results more and
+    /// more.
     ///
-    /// # Errors
-    /// Fails if the simulation fails.
+    /// Within the domain, some words are read only far from any highlight. The last rounds therefore take operands from their
+    /// whole formats, where the golden model still predicts the device.
     fn climb(
         &mut self,
         word: u32,
@@ -204,21 +196,14 @@ impl WordSearch<'_> {
         Ok(())
     }
 
-    /// Returns the outputs of computations with the bits in the mask `bits` of a word inverted. A mask of 0 gives the outputs
-    /// without a fault.
-    ///
-    /// # Errors
-    /// Fails if the simulation fails.
+    /// Returns the outputs of computations with the bits in the mask `bits` of a word inverted.
     fn run(&mut self, computations: &[&[i64]], word: u32, bits: u64) -> Result<Vec<OutputTrace>> {
         let faults: Vec<u64> = vec![bits; computations.len()];
         self.device.run_with(computations, word, &faults)
     }
 
-    /// Returns the bits in the mask `bits` of a word that a computation detects, when one bit is inverted at a time. `right`
-    /// must be the output of the computation without a fault.
-    ///
-    /// # Errors
-    /// Fails if the simulation fails.
+    /// Returns which bits in the mask `bits` of a word a computation detects, one at a time. `right` must be its output
+    /// without a fault.
     fn noticed(
         &mut self,
         word: u32,
@@ -240,9 +225,8 @@ impl WordSearch<'_> {
         Ok(noticed)
     }
 
-    /// Draws one computation for each lane near the computations in `kept`. [`moved`] draws each operand; the length of a line
-    /// stays as it is. A quarter of the computations are then moved to where the formula has a random value from 0 to 1. If
-    /// `beyond` is true, control operands may leave their domains.
+    /// Draws one computation for each lane near the computations in `kept`. A quarter of them are then moved to where the
+    /// formula has a random value from 0 to 1. If `beyond` is true, control operands may leave their domains.
     fn near(&mut self, kept: &[(u64, Vec<i64>)], beyond: bool) -> Vec<Vec<i64>> {
         let Self { points, random, .. } = self;
         let operands = points.operands();
@@ -264,9 +248,9 @@ impl WordSearch<'_> {
     }
 }
 
-/// Returns a value near `raw` for an operand. A control operand moves by a random magnitude in half of the cases, and otherwise
-/// keeps its value. A control operand without fraction bits may also get a new random value. The value stays within its domain,
-/// or within its format if `beyond` is true. A colour is at most an eighth of its domain below its largest value.
+/// Returns a value near `raw` for an operand. A control operand moves by a random magnitude in half of the cases. A control
+/// operand without fraction bits may also get a new random value. A colour is at most an eighth of its domain below its
+/// largest value.
 fn moved(random: &mut Random, operand: &Operand, raw: i64, beyond: bool) -> i64 {
     let (low, high) = if beyond && !operand.colour {
         (operand.format.min_raw() as i64, operand.format.max_raw() as i64)

@@ -10,11 +10,10 @@ use anyhow::{Result, ensure};
 use glint_base::text::grouped;
 use glint_golden::{Contract, Sweep, Values};
 
-/// The largest number of values that an operand may have. A longer list is probably a typing error.
+/// A longer list is probably a typing error.
 const MOST_VALUES: usize = 1 << 20;
 
-/// The raw values of one operand that the user gives for an exhaustive check. For example,
-/// `cos_dgamma=908094,950000..960000/1000` has a single value, and a range with both ends and a step.
+/// The raw values of one operand that the user gives for an exhaustive check.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AxisValues {
     name: String,
@@ -50,8 +49,7 @@ impl FromStr for AxisValues {
     }
 }
 
-/// Parses first value, last value and step from `5`, `0..1000` or `0..1000/10`. For example, `0..1000/10` gives (0, 1000, 10),
-/// and `5` gives (5, 5, 1). Returns `None` if a part is no integer, or if the step is not at least 1.
+/// Parses first value, last value and step. For example, `0..1000/10` gives (0, 1000, 10), and `5` gives (5, 5, 1).
 fn range(item: &str) -> Option<(i64, i64, usize)> {
     let Some((first, rest)) = item.split_once("..") else {
         let value = item.parse().ok()?;
@@ -65,9 +63,8 @@ fn range(item: &str) -> Option<(i64, i64, usize)> {
     Some((first.parse().ok()?, last.parse().ok()?, step))
 }
 
-/// Returns the contract's sweep: the operand values that an exhaustive check visits. The values in `others` replace the
-/// contract's own values of the same operand. If these values leave out a part of a range, `omits` in the returned sweep names
-/// the operand.
+/// Returns the operand values that an exhaustive check visits. The values in `others` replace the contract's own values of the
+/// same operand. If they leave out a part of a range, `omits` in the returned sweep names the operand.
 ///
 /// # Errors
 /// Fails if an operand is named twice, if the contract's sweep does not have it, or if a value is outside the operand's domain.

@@ -1,8 +1,7 @@
 //! Finds the evidence for the error bound that a contract states.
 //!
-//! A device of Glint has a proof in the Rust code of its golden model. For another device, the evidence is the record of an
-//! exhaustive check by `glint cosim --exhaustive`, or the record of a proof by `glint certify`. Without any of these, only the
-//! author states the bound. Datasheets and reports print the evidence next to the bound.
+//! A device of Glint has a proof in the Rust code of its golden model. For another device, the evidence is a record of `glint
+//! cosim --exhaustive` or of `glint certify`. Datasheets and reports print the evidence next to the bound.
 
 use std::fmt;
 use std::path::Path;
@@ -18,19 +17,19 @@ use glint_golden::Contract;
 /// The folder with the records of `glint certify`, inside the directory of the records.
 const CERTIFICATES: &str = "certificates";
 
-/// The largest difference between the recorded bound and the bound that the contract states, in units.
+/// The largest accepted difference between the recorded and the stated bound, in units.
 const SAME: f64 = 1e-9;
 
 /// The evidence for the error bound that a contract states.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Backing {
-    /// The bound is proved by Rust code in the golden model of a device of the catalogue.
+    /// Rust code in the golden model of a device of the catalogue proves the bound.
     Catalogue,
-    /// The record of an exhaustive check of every combination of operands proves the bound. The text is the path of the record.
+    /// The record of an exhaustive check proves the bound. The text is the path of the record.
     Exhaustive(String),
     /// The record of statements that the prover Gappa accepted proves the bound. The text is the path of the record.
     Certificate(String),
-    /// Only the author of the contract states the bound; no proof is known.
+    /// Only the author of the contract states the bound.
     Author,
 }
 
@@ -47,7 +46,6 @@ pub struct Certificate {
     pub bound: f64,
     /// Whether the prover Gappa accepted all statements.
     pub certified: bool,
-    /// The number of statements that were given to Gappa.
     #[serde(default)]
     pub statements: usize,
     /// A digest of the Gappa scripts with these statements, SHA-256 in hexadecimal. `glint certify --out` writes the scripts.
@@ -56,9 +54,8 @@ pub struct Certificate {
 }
 
 impl Backing {
-    /// Returns the evidence for the bound of a contract that is not in the catalogue, from the records in `directory`. `digest`
-    /// identifies the contract: [`crate::core::Core::contract_digest`]. A record of an exhaustive check comes before a
-    /// certificate; without a record that proves the bound, the evidence is the author's statement.
+    /// Finds the evidence for a contract that is not in the catalogue, from the records in `directory`. `digest` is
+    /// [`crate::core::Core::contract_digest`]. A record of an exhaustive check comes before a certificate.
     ///
     /// # Errors
     /// Fails if the directory or a record cannot be read, or if the record of the exhaustive check belongs to another sweep.
@@ -79,7 +76,6 @@ impl Backing {
         Ok(found.next().map_or(Self::Author, Self::Certificate))
     }
 
-    /// Returns a sentence about the evidence, for pages that print it before the terms of the bound.
     pub fn sentence(&self) -> String {
         match self {
             Self::Catalogue => "The bound is proven, not measured".to_owned(),

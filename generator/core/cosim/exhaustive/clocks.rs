@@ -32,7 +32,7 @@ const RUN: u64 = 512;
 /// The number of combinations in a block.
 const BLOCK: u64 = RUN * LANES as u64;
 
-/// The progress of a shard, which is one machine's part of the check of all combinations.
+/// The progress of a shard in the clock-by-clock comparison.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Steps {
     /// The number of finished blocks, which are the first blocks of the shard.
@@ -42,7 +42,6 @@ pub struct Steps {
     pub differs: Option<u64>,
 }
 
-/// The first combination for which model and hardware differ.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Difference {
     /// The number of the combination, which is its position in the order of the check.
@@ -72,16 +71,13 @@ impl fmt::Display for Difference {
     }
 }
 
-/// The check of a design against its golden model for every combination of operands. A core computes one combination after
+/// The comparison of a design with its golden model for every combination of operands. A core computes one combination after
 /// another; a pipeline takes a combination in every clock in which it is ready.
 pub struct Clocks<'a> {
     binding: Binding<'a>,
 }
 
 impl<'a> Clocks<'a> {
-    /// Matches the golden model with the ports and registers of a design by name.
-    ///
-    /// # Errors
     /// Fails if the model predicts a signal that the design does not have, or if the design has an architectural register or an
     /// output that the model does not predict. Fails also if design and contract do not have the same operands and outputs.
     pub fn new(
@@ -92,19 +88,17 @@ impl<'a> Clocks<'a> {
         Ok(Self { binding: Binding::new(design, model, contract)? })
     }
 
-    /// Fixes operands at raw values, given as pairs of a name and a value. The combinations then cover only the other operands.
+    /// Fixes operands at raw values, so that the combinations cover only the other operands.
     #[must_use]
     pub fn holding(self, held: &[(String, i64)]) -> Self {
         Self { binding: self.binding.holding(held) }
     }
 
-    /// Returns the total number of bits of the operands that the combinations cover.
     pub fn bits(&self) -> u32 {
         self.binding.space.bits()
     }
 
-    /// Returns the number of combinations, or 0 if there are too many to run all. For example, operands of 20 bits in total have
-    /// 1048576 combinations, and operands of 27 bits give 0.
+    /// Returns the number of combinations, or 0 if there are too many to run all.
     pub fn count(&self) -> u64 {
         match self.bits() {
             bits @ ..=MOST_BITS => 1 << bits,
@@ -112,8 +106,7 @@ impl<'a> Clocks<'a> {
         }
     }
 
-    /// Returns a phrase about the cases that the check does not cover. The phrase says why the combinations are not run, or which
-    /// inputs only random tests cover.
+    /// Says what the check does not cover: why the combinations are not run, or which inputs only random tests cover.
     pub fn omits(&self) -> String {
         match self.count() {
             0 => format!(
@@ -130,7 +123,6 @@ impl<'a> Clocks<'a> {
         }
     }
 
-    /// Returns the number of blocks into which the combinations are divided. Returns 0 if there are too many combinations.
     pub fn blocks(&self) -> u64 {
         self.count().div_ceil(BLOCK)
     }
@@ -139,14 +131,13 @@ impl<'a> Clocks<'a> {
         block * BLOCK..((block + 1) * BLOCK).min(self.count())
     }
 
-    /// Returns the number of combinations in the given blocks.
     pub(super) fn visits(&self, blocks: impl Iterator<Item = u64>) -> u64 {
         blocks.map(|block| self.of_block(block)).map(|places| places.end - places.start).sum()
     }
 
-    /// Checks the blocks with the given numbers on all threads of rayon's pool; the numbers must be in ascending order. Returns
-    /// the number of the first combination in these blocks for which model and hardware differ, or `None` if they always agree.
-    /// The function calls `progress` with the number of combinations in each finished block.
+    /// Checks the blocks with the given numbers, which must ascend, on all threads of rayon's pool. Returns the number of the
+    /// first combination for which model and hardware differ. The function calls `progress` with the number of combinations in
+    /// each finished block.
     ///
     /// # Errors
     /// Fails if the design cannot be simulated, if its signals do not settle in a clock, or if the golden model of a pipeline
@@ -162,11 +153,6 @@ impl<'a> Clocks<'a> {
         found.transpose()
     }
 
-    /// Returns the first of some consecutive combinations at which a signal differs, or `None` if no signal differs. Each lane
-    /// runs at most 512 combinations from power-up on.
-    ///
-    /// # Errors
-    /// Fails as [`Clocks::check`] does.
     fn first(&self, places: Range<u64>) -> Result<Option<u64>> {
         let runs =
             places.clone().step_by(RUN as usize).map(|first| (first, RUN.min(places.end - first)));
@@ -184,7 +170,7 @@ impl<'a> Clocks<'a> {
     }
 
     /// Runs combination number `place` again, for which [`Clocks::check`] found a difference, and returns the details. The run
-    /// begins with the first combination of the same lane.
+    /// must begin with the first combination of the same lane, because registers keep values between computations.
     ///
     /// # Errors
     /// Fails if there is no combination `place`, if nothing differs for it, or as [`Clocks::check`] fails.
@@ -202,8 +188,8 @@ impl<'a> Clocks<'a> {
         })
     }
 
-    /// Writes a waveform, in the VCD format, that ends with the difference in combination number `place`. The waveform begins
-    /// with clock `from`, counted from the power-up of the simulated instance.
+    /// Writes a waveform (VCD) that ends with the difference in combination number `place`, and begins with clock `from` after
+    /// power-up.
     ///
     /// # Errors
     /// Fails if there is no combination `place`, if the design cannot be simulated, or if the file cannot be written. If nothing
@@ -212,10 +198,7 @@ impl<'a> Clocks<'a> {
         self.alone(place)?.trace(from, file)
     }
 
-    /// Returns a runner with a simulator of its own, which runs the combinations of the lane up to and including `place`.
-    ///
-    /// # Errors
-    /// Fails if there is no combination `place`, or if the design cannot be simulated.
+    /// Returns a runner of one instance for the combinations of the lane up to and including `place`.
     fn alone(&self, place: u64) -> Result<Runner<'_, 1>> {
         ensure!(place < self.count(), "there is no combination {place}");
         let first = place - place % RUN;
@@ -223,10 +206,6 @@ impl<'a> Clocks<'a> {
         Runner::new(&self.binding, [course])
     }
 
-    /// Measures how long one combination takes on one thread.
-    ///
-    /// # Errors
-    /// Fails as [`Clocks::check`] does.
     pub(super) fn pace(&self) -> Result<Duration> {
         let places = 0..self.count().min(BLOCK / 8);
         let count = places.end as u32;

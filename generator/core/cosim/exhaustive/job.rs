@@ -19,18 +19,16 @@ use super::places::{BLOCK, Peak, Places};
 use glint_base::text::grouped;
 use glint_golden::{Contract, Sweep};
 
-/// The largest number of shards of a job. A larger number is probably a typing error.
+/// A larger number is probably a typing error.
 pub const MOST_SHARDS: u64 = 1_000_000;
 
 /// The largest number of missing shards that an error message names.
 const NAMED: usize = 10;
 
-/// The number of blocks for each thread that are checked between two calls of `look` in [`Job::run`]. These blocks take some
-/// tenths of a second.
+/// The number of blocks for each thread between two calls of `look` in [`Job::run`]. They take some tenths of a second.
 const CHUNK: u64 = 4;
 
-/// A shard: one part of a job that is divided among machines. For example, `2/4` is the second of four shards, and has the blocks
-/// 1, 5, 9 and so on.
+/// One part of a job that is divided among machines. For example, `2/4` is the second of four shards.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Shard {
     /// The number of this shard, from 1.
@@ -40,15 +38,13 @@ pub struct Shard {
 }
 
 impl Shard {
-    /// The only shard of a job that is not divided.
     pub const WHOLE: Self = Self { number: 1, of: 1 };
 
-    /// Returns whether the number is from 1 to the number of shards, and the number of shards from 1 to [`MOST_SHARDS`].
     fn is_valid(self) -> bool {
         (1..=MOST_SHARDS).contains(&self.of) && (1..=self.of).contains(&self.number)
     }
 
-    /// Returns how many of all `blocks` blocks the shard has. For example, shard 1 of 4 has 3 of 10 blocks, and shard 4 has 2.
+    /// Shard 1 of 4 has 3 of 10 blocks, for example, and shard 4 has 2.
     fn count(self, blocks: u64) -> u64 {
         (blocks + self.of - self.number) / self.of
     }
@@ -58,8 +54,8 @@ impl Shard {
         self.number - 1 + at * self.of
     }
 
-    /// Returns the next blocks to check, by their number among all blocks. `done` of the shard's `count` blocks are done already.
-    /// Also returns how many blocks are done after these blocks.
+    /// Returns the next blocks to check after the first `done` of the shard's `count` blocks, and how many are done
+    /// afterwards.
     fn chunk(self, done: u64, count: u64) -> (u64, Vec<u64>) {
         let end = (done + CHUNK * rayon::current_num_threads() as u64).min(count);
         (end, (done..end).map(|at| self.block(at)).collect())
@@ -88,8 +84,8 @@ impl FromStr for Shard {
     }
 }
 
-/// Returns the number of places in the blocks of a shard after its first `done` blocks. The function visits no block, because a
-/// sweep of 2^48 combinations has 2^31 of them.
+/// Returns the number of places in the blocks of a shard after its first `done` blocks. The function computes it without
+/// visiting the blocks, because a sweep of 2^48 combinations has 2^31 of them.
 fn places_remaining(places: &Places<'_>, shard: Shard, done: u64) -> u64 {
     let blocks = places.blocks();
     let count = shard.count(blocks);
@@ -101,13 +97,11 @@ fn places_remaining(places: &Places<'_>, shard: Shard, done: u64) -> u64 {
     u64::try_from(all).unwrap_or(u64::MAX)
 }
 
-/// The progress of a shard in one of the two error measurements: the errors of `f`, or the rounding errors of the products with
-/// colours.
+/// The progress of a shard in one of the two error measurements.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Progress {
     /// The number of finished blocks, which are the first blocks of the shard.
     pub done: u64,
-    /// The largest error in the finished blocks.
     pub peak: Peak,
 }
 
@@ -117,18 +111,17 @@ pub struct Progress {
 pub struct ShardState {
     /// A digest of the configuration and of the checking code: [`crate::core::Core::fingerprint`].
     pub digest: String,
-    /// The shard whose progress this is.
     pub shard: Shard,
-    /// The progress in the measurement of the errors of `f`.
+    /// The errors of `f`.
     pub f: Progress,
-    /// The progress in the measurement of the products of every word `f` with every colour.
+    /// The products of every word `f` with every colour.
     pub colours: Progress,
-    /// The progress in the comparison of model and hardware clock by clock.
+    /// The comparison of model and hardware clock by clock.
     pub clocks: Steps,
 }
 
 impl ShardState {
-    /// Makes the state of a shard that has done no work yet. `digest` identifies the check: [`crate::core::Core::fingerprint`].
+    /// `digest` is [`crate::core::Core::fingerprint`].
     pub fn new(digest: &str, shard: Shard) -> Self {
         let nothing = Progress { done: 0, peak: Peak::NONE };
         Self {
@@ -141,32 +134,29 @@ impl ShardState {
     }
 }
 
-/// An exhaustive check of a configuration, divided into blocks.
 pub struct Job<'a> {
     /// The operand combinations at which the errors of `f` are measured, or of the outputs of a device that is no highlight.
     pub f: Places<'a>,
     /// The combinations of a word `f` with a colour, at which the rounding errors of products are measured.
     pub colours: Places<'a>,
-    /// The operand combinations in which model and hardware are compared clock by clock. `None` if the job does not compare
-    /// them.
+    /// The comparison of model and hardware clock by clock, if the job has one.
     pub clocks: Option<Clocks<'a>>,
 }
 
 impl<'a> Job<'a> {
-    /// Makes the check of a contract's error bound, for the operand values in the contract's own sweep. The check does not
-    /// compare clock by clock; [`Job::with`] adds this comparison.
+    /// Makes the check of a contract's error bound, for the contract's own sweep. [`Job::with`] adds the comparison clock by
+    /// clock.
     pub fn new(contract: &'a dyn Contract) -> Self {
         Self::of_sweep(contract, contract.sweep())
     }
 
-    /// Makes the check of a contract's error bound, for the operand values in `sweep`.
     pub fn of_sweep(contract: &'a dyn Contract, sweep: Sweep) -> Self {
         let (f, colours) = (Places::of_sweep(contract, sweep), Places::of_colours(contract));
         Self { f, colours, clocks: None }
     }
 
-    /// Returns a phrase with the number of evaluations that the check makes, for example "1 000 evaluations of f and 500 colour
-    /// products", or "1 000 evaluations of the outputs" for a device without colours.
+    /// Names the number of evaluations, for example "1 000 evaluations of f and 500 colour products". For a device without
+    /// colours it is "1 000 evaluations of the outputs".
     pub fn words(&self) -> String {
         let places = grouped(self.f.count());
         match self.colours.count() {
@@ -177,30 +167,26 @@ impl<'a> Job<'a> {
         }
     }
 
-    /// Adds the comparison of model and hardware clock by clock, for every combination of operands. If there are too many
-    /// combinations, [`Clocks::count`] is 0, and nothing is compared.
+    /// Adds the comparison of model and hardware clock by clock. If there are too many combinations, it compares nothing.
     #[must_use]
     pub fn with(mut self, clocks: Clocks<'a>) -> Self {
         self.clocks = Some(clocks);
         self
     }
 
-    /// Returns the number of blocks of the comparison clock by clock. Returns 0 without this comparison.
     fn blocks_of_clocks(&self) -> u64 {
         self.clocks.as_ref().map_or(0, Clocks::blocks)
     }
 
-    /// Returns the number of combinations that the shard has still to visit, in all parts of the check together.
+    /// Returns the number of combinations that the shard has still to visit.
     pub fn remaining(&self, state: &ShardState) -> u64 {
         self.parts_remaining(state).into_iter().fold(0, u64::saturating_add)
     }
 
-    /// Returns the number of combinations that the shard has still to visit in each part: for `f`, for the colours, and clock
-    /// by clock.
+    /// Does the same for each part: for `f`, for the colours, and clock by clock.
     fn parts_remaining(&self, state: &ShardState) -> [u64; 3] {
         let f = places_remaining(&self.f, state.shard, state.f.done);
         let colours = places_remaining(&self.colours, state.shard, state.colours.done);
-        // The blocks that are left after the first `done` blocks of the shard.
         let left = |done: u64, blocks: u64| {
             let count = state.shard.count(blocks);
             (done.min(count)..count).map(|at| state.shard.block(at))
@@ -213,8 +199,8 @@ impl<'a> Job<'a> {
     }
 
     /// Checks that a state from a file can be a state of this job. The numbers must be in range, and the recorded largest
-    /// errors must be in blocks that are done. The function computes the largest errors again, at the recorded operands, and
-    /// compares them with the recorded errors.
+    /// errors must be in blocks that are done. Computed again at the recorded operands, these errors must be the recorded
+    /// ones.
     ///
     /// # Errors
     /// Fails if any of these conditions is violated.
@@ -272,7 +258,7 @@ impl<'a> Job<'a> {
         Ok(())
     }
 
-    /// Estimates how long the remaining work of the shard takes on `threads` threads, by timing a short sample of each part.
+    /// Estimates the time of the shard's remaining work on `threads` threads from a short sample of each part.
     ///
     /// # Errors
     /// Fails if the design cannot be simulated, or if its signals do not settle in a clock.
@@ -293,9 +279,8 @@ impl<'a> Job<'a> {
     }
 
     /// Continues a shard from `state` to its end, and updates `state`. The comparison clock by clock ends at its first
-    /// difference. The function calls `look` with the state after every few blocks. The function returns `ControlFlow::Break`
-    /// as soon as `look` returns it, and `ControlFlow::Continue` when the shard is done. The function calls `progress` with the
-    /// number of combinations in each finished block.
+    /// difference. After every few blocks, the function calls `look` with the state, and returns `ControlFlow::Break` if
+    /// `look` does. The function calls `progress` with the number of combinations in each finished block.
     ///
     /// # Errors
     /// Fails if the design cannot be simulated, if its signals do not settle in a clock, or if the golden model of a pipeline
@@ -337,8 +322,8 @@ impl<'a> Job<'a> {
         Ok(ControlFlow::Continue(()))
     }
 
-    /// Merges the results of all shards of one job into the state of an undivided job. `names` gives a name for each of the
-    /// `states`, in the same order, for error messages.
+    /// Merges the results of all shards of one job into the state of an undivided job. Error messages use `names`, which has a
+    /// name for each of the `states`.
     ///
     /// # Errors
     /// Fails if `states` is empty, if the shards belong to different jobs or divisions, or if a shard is missing, duplicated,
@@ -395,7 +380,6 @@ impl<'a> Job<'a> {
     }
 }
 
-/// The two parts of a job that measure errors.
 #[derive(Clone, Copy)]
 enum JobPart {
     F,

@@ -31,19 +31,16 @@ pub use record::Record;
 use super::outcome::ROUNDING_OF_F64;
 use glint_golden::{Contract, Sweep};
 
-/// The default directory of the records of exhaustive checks, relative to the working directory.
+/// The default directory of the records, relative to the working directory.
 pub const PROOFS: &str = "records/proofs";
 
-/// The result of an exhaustive check of the error bound.
 #[derive(Clone, Debug)]
 pub struct Proof {
-    /// Whether the check measures the error of the reflectance `f` of a highlight, and not the error of the outputs themselves.
+    /// Whether the check measures the error of the reflectance `f`, not of the outputs themselves.
     of_f: bool,
-    /// The largest error of `f` as an absolute number. For a device that is no highlight, the largest error of an output, in
-    /// units of the output's last bit.
+    /// The largest error of `f` as an absolute number; otherwise of an output, in units of the output's last bit.
     pub f: Peak,
-    /// The error of `f` in output units, for the largest colour: `f.error` times the largest colour operand. For a device that
-    /// is no highlight, the same as `f.error`.
+    /// The same error in output units: for `f`, the error times the largest colour operand.
     pub f_units: f64,
     /// The largest rounding error of a product of `f` with a colour, in output units; 0 for a device that is no highlight.
     pub colours: Peak,
@@ -52,8 +49,8 @@ pub struct Proof {
 }
 
 impl Proof {
-    /// Compares two largest errors with the contract's bound: `f` is the largest error of `f`, and `colours` the largest
-    /// rounding error of the products with colours, in output units.
+    /// Compares two largest errors with the contract's bound: the error of `f`, and the rounding error of the products with
+    /// colours, in output units.
     pub fn new(contract: &dyn Contract, f: Peak, colours: Peak) -> Self {
         let colour = contract.operands().iter().find(|operand| operand.colour);
         let largest = colour.map_or(1.0, |operand| operand.domain.1 as f64);
@@ -85,9 +82,8 @@ impl Proof {
         proof
     }
 
-    /// Returns the verdict of the check in words. "proved" means that the errors are within the bound, that the bound keeps the
-    /// accuracy contract, and that `sweep` leaves out no operand that determines `f`, and none of its values. The other
-    /// verdicts are "FAILS", "no bound is stated", "within its bound, outside the contract" and "passed, not proved".
+    /// Returns the verdict of the check in words. "proved" means that the errors are within the bound, that the bound keeps
+    /// the accuracy contract, and that `sweep` leaves out no operand that determines `f`, and none of its values.
     pub fn verdict(&self, contract: &dyn Contract, sweep: &Sweep) -> &'static str {
         if !self.failures.is_empty() {
             "FAILS"
@@ -102,8 +98,7 @@ impl Proof {
         }
     }
 
-    /// Returns a phrase with the largest errors. The text `at`, for example the operands of the largest error, is inserted
-    /// after this error; `at` may be empty.
+    /// States the largest errors. The text `at`, for example the operands of the largest error, follows this error.
     pub fn words(&self, at: &str) -> String {
         if !self.of_f {
             return format!("the error of an output is at most {:.3} units{at}", self.together());
@@ -118,9 +113,8 @@ impl Proof {
         )
     }
 
-    /// Returns an upper bound, over the checked combinations, of the error of an output in units. For a highlight, the bound is
-    /// the largest error of `f` times the largest colour, plus the largest rounding error of a product with a colour. For any
-    /// other device, it is the largest error of an output.
+    /// Returns an upper bound of the error of an output over the checked combinations, in units. For a highlight, it is the
+    /// largest error of `f` times the largest colour, plus the largest rounding error of a product.
     pub fn together(&self) -> f64 {
         self.f_units + self.colours.error
     }

@@ -23,18 +23,16 @@ pub struct Peak {
     /// The absolute error; infinite if the formula has no value for the operands.
     #[serde(deserialize_with = "or_infinite")]
     pub error: f64,
-    /// The number of the operand combination, by the numbering of [`Places`].
     pub place: u64,
 }
 
-/// Reads a number, or `null`, which JSON has in place of an infinite number and which gives infinity. Fails for any other JSON.
+/// JSON has no infinite number, and `null` in its place.
 fn or_infinite<'de, D: Deserializer<'de>>(number: D) -> Result<f64, D::Error> {
     Ok(Option::deserialize(number)?.unwrap_or(f64::INFINITY))
 }
 
 impl Peak {
-    /// The start of a search for the largest error, when no combination was visited. [`Peak::join`] with any visited
-    /// combination replaces it.
+    /// The start of a search, before any combination was visited. [`Peak::join`] with any visited combination replaces it.
     pub const NONE: Self = Self { error: 0.0, place: u64::MAX };
 
     /// Returns the larger of two peaks; if their errors are equal, the peak with the smaller place.
@@ -45,7 +43,6 @@ impl Peak {
     }
 }
 
-/// The quantity that is measured at a place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum PlaceMeasure {
     /// The error that [`Contract::sweep_error`] returns: for a highlight, the error of `f`.
@@ -54,8 +51,7 @@ enum PlaceMeasure {
     Colour,
 }
 
-/// The operand combinations that a check of the error bound visits. Each has a number, its place; the last operand changes
-/// fastest.
+/// The operand combinations that a check of the error bound visits; see the head of this module.
 pub struct Places<'a> {
     contract: &'a dyn Contract,
     measure: PlaceMeasure,
@@ -68,13 +64,12 @@ impl<'a> Places<'a> {
         Self::of_sweep(contract, contract.sweep())
     }
 
-    /// Numbers the operand combinations of `sweep`, at which the error of `f` is measured.
     pub fn of_sweep(contract: &'a dyn Contract, sweep: Sweep) -> Self {
         Self { contract, measure: PlaceMeasure::F, sweep }
     }
 
-    /// Numbers the combinations of every word `f` with every value of a colour operand. All colour operands are alike, so the
-    /// first represents all. A device without colours has no combinations.
+    /// Numbers the combinations of every word `f` with every value of a colour operand. One colour operand represents all,
+    /// because they are alike. A device without colours has no combinations.
     pub fn of_colours(contract: &'a dyn Contract) -> Self {
         let colour = contract.operands().iter().find(|operand| operand.colour);
         let values = match contract.highlight().zip(colour) {
@@ -99,25 +94,21 @@ impl<'a> Places<'a> {
         }
     }
 
-    /// Returns the operands with their values. The field `omits` names the operands and values that the check leaves out.
     pub fn sweep(&self) -> &Sweep {
         &self.sweep
     }
 
-    /// Returns the number of operand combinations that the check visits, or the largest number of 64 bits if there are more. For
-    /// example, four operands of 16 bits have 2^64 combinations; a count that wraps to 0 would prove a bound without a single
-    /// evaluation.
+    /// Returns the number of operand combinations, or the largest number of 64 bits if there are more. For example, four
+    /// operands of 16 bits have 2^64 combinations; a count that wraps to 0 would prove a bound without a single evaluation.
     pub fn count(&self) -> u64 {
         self.sweep.axes.iter().map(|axis| axis.values.count()).fold(1, u64::saturating_mul)
     }
 
-    /// Returns the number of blocks into which the combinations are divided. The last block may be smaller.
     pub fn blocks(&self) -> u64 {
         self.count().div_ceil(BLOCK)
     }
 
-    /// Returns the raw operand values of combination `number`, counted from 0. For example, with operands of 2 and of 3 values,
-    /// combination 4 has the second value of each operand.
+    /// Returns the raw operand values of combination `number`.
     pub fn place(&self, mut number: u64) -> Vec<i64> {
         let mut values: Vec<i64> = self
             .sweep
@@ -135,8 +126,7 @@ impl<'a> Places<'a> {
         values
     }
 
-    /// Returns the names and raw values of the operands in combination `number`, as text. For example, `cos_gamma = 1044480,
-    /// exponent = 20`.
+    /// Returns the operands of combination `number` as text. For example, `cos_gamma = 1044480, exponent = 20`.
     pub fn words(&self, number: u64) -> String {
         let pairs = self.sweep.axes.iter().zip(self.place(number));
         let words: Vec<String> =
@@ -145,14 +135,13 @@ impl<'a> Places<'a> {
     }
 
     /// Returns the error for combination `number`: the absolute error of `f`, the error of an output in units, or the rounding
-    /// error of a product, depending on the kind of these places. The error is infinite if the formula has no value for the
-    /// operands.
+    /// error of a product. It is infinite if the formula has no value for the operands.
     pub fn error(&self, number: u64) -> f64 {
         self.error_at(&self.place(number))
     }
 
-    /// Returns the errors for 4096 to 8191 combinations that are spread evenly over all, or for all combinations if there are
-    /// fewer. Callers use these errors as a fingerprint of the golden model.
+    /// Returns the errors for 4096 to 8191 evenly spread combinations, or for all if there are fewer. Callers use these errors
+    /// as a fingerprint of the golden model.
     pub fn glimpse(&self) -> Vec<f64> {
         let step = (self.count() / SAMPLE).max(1);
         (0..self.count()).step_by(step as usize).map(|place| self.error(place)).collect()
@@ -170,22 +159,18 @@ impl<'a> Places<'a> {
         if error.is_nan() { f64::INFINITY } else { error }
     }
 
-    /// Returns the number of the block that contains a place.
     pub(super) fn block_of(place: u64) -> u64 {
         place / BLOCK
     }
 
-    /// Returns the places of block number `block`.
     fn of_block(&self, block: u64) -> Range<u64> {
         block * BLOCK..((block + 1) * BLOCK).min(self.count())
     }
 
-    /// Returns the total number of places in the given blocks.
     pub(super) fn visits(&self, blocks: impl Iterator<Item = u64>) -> u64 {
         blocks.map(|block| self.of_block(block)).map(|places| places.end - places.start).sum()
     }
 
-    /// Measures how long the check of one place takes on one thread.
     pub(super) fn pace(&self) -> Duration {
         let count = self.count().min(SAMPLE);
         let first = (self.count() - count) / 2;
@@ -194,7 +179,7 @@ impl<'a> Places<'a> {
         begin.elapsed() / count.max(1) as u32
     }
 
-    /// Returns the largest error among consecutive places, with the first place that has this error.
+    /// Returns the first place with the largest error.
     fn peak(&self, places: Range<u64>) -> Peak {
         let mut peak = Peak::NONE;
         let Some(inner) = self.sweep.axes.last() else {
@@ -220,9 +205,8 @@ impl<'a> Places<'a> {
         peak
     }
 
-    /// Measures the errors for all combinations in the given blocks on all threads of rayon's pool, and returns the largest
-    /// error. Returns [`Peak::NONE`] without blocks. The function calls `progress` with the number of combinations in each
-    /// finished block.
+    /// Returns the largest error in the given blocks, or [`Peak::NONE`] without blocks, by all threads of rayon's pool. The
+    /// function calls `progress` with the number of combinations in each finished block.
     pub fn check(
         &self,
         blocks: impl IntoParallelIterator<Item = u64>,

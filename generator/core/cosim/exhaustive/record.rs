@@ -1,10 +1,7 @@
 //! Reads the records of exhaustive checks, which `glint cosim --exhaustive --json` writes.
 //!
-//! An exhaustive check computes the error of a device for every combination of operand values that its contract lists. The
-//! digest of the contract in a record tells to which configuration the record belongs.
-//!
-//! Glint does not simply trust a record. [`Record::proves`] computes the error again at the operands with the largest error in
-//! the record, and compares the result with the recorded error.
+//! The digest of the contract in a record tells to which configuration the record belongs. Glint does not simply trust a
+//! record: [`Record::proves`] computes the recorded largest error again, at the recorded operands, and compares.
 
 use std::path::{Path, PathBuf};
 
@@ -19,7 +16,6 @@ use glint_golden::{Axis, Contract, Sweep, Values};
 /// The largest difference between a recorded figure and the same figure when Glint computes it again.
 const SAME: f64 = 1e-9;
 
-/// The record of an exhaustive check of a configuration.
 #[derive(Clone, Debug, Deserialize)]
 pub struct Record {
     axes: Vec<RecordedAxis>,
@@ -31,24 +27,21 @@ pub struct Record {
     pub f: RecordedPeak,
     /// The largest error of a colour multiplier, in output units.
     colour_units: f64,
-    /// The upper bound that the check gives for the error of an output, in output units: the error of `f` for the largest colour
-    /// plus the largest rounding error of a product with a colour.
+    /// The upper bound of the error of an output, in output units. It is the error of `f` for the largest colour plus the
+    /// largest rounding error of a product with a colour.
     pub together: f64,
     /// Whether the errors at all recorded operands were within the contract's bound.
     pub holds: bool,
-    /// The file that contains the record.
     #[serde(skip)]
     pub path: PathBuf,
 }
 
-/// The largest error of `f` in a record.
 #[derive(Clone, Copy, Debug, Deserialize)]
 pub struct RecordedPeak {
-    /// The absolute error of `f`, without a unit. For a device that is no highlight, the error of an output in units.
+    /// The absolute error of `f`. For a device that is no highlight, the error of an output in units.
     pub error: f64,
-    /// The error of `f` in output units, for the largest colour. For a device that is no highlight, the same as `error`.
+    /// The error of `f` in output units, for the largest colour.
     pub units: f64,
-    /// The number of the operand combination with this error.
     place: u64,
 }
 
@@ -62,8 +55,8 @@ struct RecordedAxis {
 }
 
 impl RecordedAxis {
-    /// Returns whether the recorded check visited every value of `axis`. A recorded list may have more values than the axis; a
-    /// range must be the same.
+    /// Returns whether the recorded check visited every value of `axis`. A recorded list may have further values; a range must
+    /// be the same.
     fn covers(&self, axis: &Axis) -> bool {
         self.name == axis.name
             && match &axis.values {
@@ -83,14 +76,13 @@ impl RecordedAxis {
 
 #[derive(Deserialize)]
 struct Report {
-    /// The results by configuration. The entry `configuration` of each identifies the checked contract:
-    /// [`crate::core::Core::contract_digest`].
+    /// The results by configuration. Their entry `configuration` is a [`crate::core::Core::contract_digest`].
     configurations: Vec<serde_json::Value>,
 }
 
 impl Record {
-    /// Returns the record for the contract with this digest, from the JSON files in `directory`. Returns `None` if the directory
-    /// does not exist, or has no such record. The function ignores files that are no records.
+    /// Returns the record for the contract with this digest, from the JSON files in `directory`. Files that are no records are
+    /// ignored.
     ///
     /// # Errors
     /// Fails if the directory or a file in it cannot be read, if a record is damaged, or if the record leaves out a part of the
@@ -109,19 +101,14 @@ impl Record {
         Ok(None)
     }
 
-    /// Returns the sweep of the recorded check: the operand values that the check visited. The sweep has at least the values of
-    /// the contract's own sweep.
+    /// Returns the operand values that the recorded check visited, at least the values of the contract's own sweep.
     pub fn sweep(&self, contract: &dyn Contract) -> Sweep {
         let axes = self.axes.iter().map(RecordedAxis::axis).collect();
         Sweep { axes, omits: contract.sweep().omits }
     }
 
-    /// Checks that the record leaves out no part of the contract's sweep. The bound in the record does not matter here:
-    /// [`Record::proves`] compares the recorded errors with the contract's present bound.
-    ///
-    /// # Errors
-    /// Fails if the record leaves out a part of the sweep. The error names the file of the record, and the command that makes a
-    /// new record.
+    /// Fails if the record leaves out a part of the contract's sweep. The error names the file and the command that makes a
+    /// new record. [`Record::proves`] compares the errors with the contract's present bound.
     fn is_of(&self, contract: &dyn Contract) -> Result<()> {
         let sweep = contract.sweep();
         let same_axes = self.axes.len() == sweep.axes.len()
@@ -136,8 +123,8 @@ impl Record {
     }
 
     /// Returns whether the record proves the contract's bound. The recorded check must have visited every combination of
-    /// operands, and its errors must be within the bound that the contract states today. The record names the combination with
-    /// the largest error of `f`; the function computes this error again, and it must equal the recorded error up to 1e-9.
+    /// operands, and its errors must be within the bound that the contract states today. The largest error of `f`, computed
+    /// again, must equal the recorded error up to 1e-9.
     pub fn proves(&self, contract: &dyn Contract) -> bool {
         let sweep = self.sweep(contract);
         let is_whole = sweep.omits.is_empty();
@@ -152,24 +139,21 @@ impl Record {
         Proof::new(contract, f, Peak { error: self.colour_units, place: 0 })
     }
 
-    /// Returns a phrase with the largest errors of the record, in the form of [`Proof::words`].
     pub fn words(&self, contract: &dyn Contract) -> String {
         self.proof(contract).words("")
     }
 
-    /// Returns the number of evaluations that [`Record::recheck`] reports to its `progress`, if it gets the same `places`.
-    /// `places` must not be 0.
+    /// Returns the number of evaluations that [`Record::recheck`] reports for the same `places`, which must not be 0.
     pub fn steps(&self, contract: &dyn Contract, places: u64) -> u64 {
         let f = Places::of_sweep(contract, self.sweep(contract));
         let colours = Places::of_colours(contract);
         f.visits(part(&f, places).into_iter()) + colours.count()
     }
 
-    /// Computes a part of the recorded check again and compares it with the record. The part is about `places` evenly spread
-    /// operand combinations, the combination with the largest error, and all products with colours. `places` must not be 0.
-    /// Returns the number of combinations at which the function computed `f`, and a sentence for each difference from the record
-    /// and for each error above the contract's bound. No sentence means that the record is right. The function calls `progress`
-    /// with the number of evaluations in each finished block.
+    /// Computes a part of the recorded check again. The part has about `places` (not 0) evenly spread operand combinations,
+    /// the combination with the largest error, and all products with colours. Returns the number of combinations at which the
+    /// function computed `f`. The second result has a sentence for each difference from the record, and for each error above
+    /// the contract's bound. The function calls `progress` with the number of evaluations in each finished block.
     pub fn recheck(
         &self,
         contract: &dyn Contract,

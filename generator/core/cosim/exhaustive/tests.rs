@@ -11,8 +11,8 @@ use glint_golden::{Axis, Bound, Bounds, Operand, Output, Sweep, Term, Values};
 static OUTPUT: LazyLock<Output> =
     LazyLock::new(|| Output { name: "place".to_owned(), format: Format::unsigned(20, 1) });
 
-/// A contract with one output, which is never computed. Its "error" is the number of the place, 0, 1, 2 and so on, and its largest value occurs at many
-/// places.
+/// A contract with one output, which is never computed. Its "error" is the number of the place, and its largest value occurs
+/// at many places.
 struct Counting;
 
 impl Contract for Counting {
@@ -87,7 +87,6 @@ fn without_colours_there_are_no_products() {
     assert_eq!(Places::of_colours(&Counting).count(), 0);
 }
 
-/// Runs a shard from `state` to its end.
 fn completed(mut state: ShardState) -> ShardState {
     let end = Job::new(&Counting).run(&mut state, &|_| (), &mut |_| ControlFlow::Continue(()));
     assert_eq!(end.unwrap(), ControlFlow::Continue(()));

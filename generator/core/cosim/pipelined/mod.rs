@@ -44,7 +44,7 @@ pub(super) struct Pipe {
     pub(super) taken: bool,
 }
 
-/// A signal that is compared. Results are numbered in the order of the ports, and checkpoints in the order of the pipeline.
+/// Results are numbered in the order of the ports, and checkpoints in the order of the pipeline.
 #[derive(Clone, Copy)]
 enum ComparedValue {
     OutValid,
@@ -55,8 +55,8 @@ enum ComparedValue {
 }
 
 impl Pipe {
-    /// Returns a pipeline without points. Also returns the nets whose values are compared after each clock, in the order in
-    /// which differences are reported, and the nets of the results among them.
+    /// Returns a pipeline without points, the nets that are compared after each clock, and the nets of the results among them.
+    /// The nets are in the order in which differences are reported.
     ///
     /// # Errors
     /// Fails if the model does not predict a result, a checkpoint's register, `word_address`, `busy` or `valid`, or if it does
@@ -102,11 +102,8 @@ impl Pipe {
         Ok((pipe, nets, results))
     }
 
-    /// Advances the points by one clock with the given inputs, and counts a result in `seen` if the receiver takes one. A point
-    /// that is taken gets the number `place`. If `measure` is given, the function measures the error of the result.
-    ///
-    /// # Errors
-    /// Fails if the golden model does not finish a computation.
+    /// Advances the points by one clock with the given inputs, and counts a result in `seen` if the receiver takes one. A
+    /// point that is taken gets the number `place`. `measure` measures the error of the result.
     pub(super) fn clock(
         &mut self,
         ports: &Ports,
@@ -138,9 +135,8 @@ impl Pipe {
         Ok(())
     }
 
-    /// Returns the predicted value of the compared net number `at` after the latest clock, or `None` if the value is not
-    /// predicted. The value of a point's signal is not predicted if no point is in its stage, or if the computation of the
-    /// point does not reach the checkpoint.
+    /// Returns the predicted value of the compared net number `at` after the latest clock. There is no prediction if no point
+    /// is in the net's stage, or if the computation of the point does not reach the checkpoint.
     #[inline]
     pub(super) fn expected(&self, at: usize) -> Option<u64> {
         let (column, stage) = self.columns[at];
@@ -155,17 +151,16 @@ impl Pipe {
     }
 
     /// Returns the number of the point in the stage of the compared net number `at`, and the clock in which the pipeline took
-    /// the point. Returns `None` if no point is in that stage.
+    /// it.
     pub(super) fn point(&self, at: usize) -> Option<(u64, u64)> {
         self.stages.stage(self.columns[at].1).map(|point| (point.place, point.taken))
     }
 
-    /// Returns whether the pipeline takes a point in the next clock, provided that the receiver takes the results.
+    /// Assumes that the receiver takes the results.
     pub(super) fn is_ready(&self) -> bool {
         self.stages.takes(true)
     }
 
-    /// Returns whether a point with a number below `place` is in the pipeline.
     pub(super) fn has_before(&self, place: u64) -> bool {
         self.stages.points().any(|(_, point)| point.place < place)
     }

@@ -21,19 +21,17 @@ pub(super) struct Reference {
     results: Vec<usize>,
     /// For each checkpoint, the index of its register among the model's signals.
     registers: Vec<usize>,
-    /// For each microinstruction, its checkpoints: how often the microinstruction was executed before, and the index of the
-    /// checkpoint.
+    /// For each microinstruction, its checkpoints: how often the microinstruction was executed before, and the checkpoint's
+    /// index.
     due: Vec<Vec<(usize, usize)>>,
     visits: Vec<usize>,
 }
 
-/// The values that a pipeline must show for a point.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Expected {
     /// The bit patterns of the first results that the computation shows.
     pub results: Vec<u64>,
-    /// For each checkpoint, the value of its register, or `None` if the computation does not reach the checkpoint's
-    /// microinstruction.
+    /// For each checkpoint, the value of its register; `None` if the computation does not reach its microinstruction.
     pub registers: Vec<Option<u64>>,
 }
 
@@ -69,8 +67,7 @@ impl Reference {
         })
     }
 
-    /// Computes one point from the bit patterns of its operands, in the order of the ports. Returns its results, and its
-    /// register values at the checkpoints.
+    /// Computes one point from the bit patterns of its operands, in the order of the ports.
     ///
     /// # Errors
     /// Fails if the golden model does not finish the computation within 8192 clocks.

@@ -2,7 +2,6 @@ use crate::cosim::{Lockstep, Outcome};
 use crate::registry::{Device, OpenedConfig, Registry};
 use glint_config::{Config, Value};
 
-/// Returns the default configuration of a device as a pipeline, but with these keys.
 fn pipelined(device: &Device, keys: &[(&str, Value)]) -> OpenedConfig {
     let mut values = vec![("architecture".to_owned(), Value::Text("pipelined".to_owned()))];
     values.extend(keys.iter().map(|(name, value)| ((*name).to_owned(), value.clone())));
@@ -10,7 +9,6 @@ fn pipelined(device: &Device, keys: &[(&str, Value)]) -> OpenedConfig {
     device.open(config.expect("keys that there are")).expect("keys that can be opened")
 }
 
-/// Compares `points` results of the pipeline of a device with its golden model, in a configuration with these keys.
 fn outcome(device: &Device, keys: &[(&str, Value)], points: u64) -> Outcome {
     let opened = pipelined(device, keys);
     let design = opened.design().unwrap_or_else(|wrong| panic!("{wrong}"));
@@ -19,7 +17,6 @@ fn outcome(device: &Device, keys: &[(&str, Value)], points: u64) -> Outcome {
     lockstep.run_alone(points).unwrap()
 }
 
-/// Returns the devices that compute one point after each `start`.
 fn devices() -> Vec<Device> {
     let registry = Registry::catalogue();
     let lines = ["quad-cosine", "cosine-squared"];

@@ -1,6 +1,4 @@
-//! Generates a Verilog test bench that sends a list of points through a pipeline.
-//!
-//! The bench reads the operands of each point from one file and writes the results to another.
+//! Generates a Verilog test bench that sends the points of a file through a pipeline, and writes the results to another file.
 
 use anyhow::{Context, Result};
 use glint_base::fill;
@@ -11,8 +9,8 @@ use glint_rtl::verilog::text::{Names, literal};
 
 fresh_names!(Variables { points, results, read, clocks, offered, total, tick, dut });
 
-/// Returns the test bench that sends points (sets of operands) through a pipeline. The simulation ends with `FAIL` if the
-/// last results do not come within `limit` clocks after the last point.
+/// Returns the bench. The simulation ends with `FAIL` if the last results do not come within `limit` clocks after the last
+/// point.
 ///
 /// # Errors
 /// Fails if the design lacks the reset, `in_valid` or `out_valid`, which every pipeline has, or if the template fails.

@@ -28,11 +28,10 @@ struct LitexCore<'a> {
     idle: Vec<&'a TopPort>,
 }
 
-/// A result of a core, as status registers show it.
 struct LitexResult {
     name: String,
     width: u32,
-    /// The number of bits of the status register: the result, with copies of its sign up to 32 or 64 bits if it has one.
+    /// The number of bits of the status register: a result with a sign is extended to 32 or 64 bits.
     status_width: u32,
 }
 
@@ -43,13 +42,12 @@ struct LitexOperand {
 }
 
 impl LitexResult {
-    /// Returns whether the status register has more bits than the result.
     fn is_extended(&self) -> bool {
         self.status_width > self.width
     }
 }
 
-/// A core between two streams, with the widths of the streams in bits.
+/// Widths are in bits.
 struct LitexStream<'a> {
     top: &'a Top,
     input: u32,
@@ -59,9 +57,6 @@ struct LitexStream<'a> {
     last: bool,
 }
 
-/// Adds the LiteX module of a core.
-///
-/// # Errors
 /// Fails if the core is a pipeline or computes lines of points, and the configuration does not ask for a stream.
 pub fn file(job: &EmitJob, tops: &[Top], files: &mut OutputFiles) -> Result<()> {
     let (name, design, is_line) = (job.name(), job.design, job.is_line());
@@ -145,7 +140,7 @@ fn streamed(top: &Top) -> LitexStream<'_> {
     }
 }
 
-/// Converts a name to the name of a Python class. For example, `cosine_power` gives `CosinePower`, and `_1` gives `Core1`.
+/// Makes the name of a Python class. For example, `cosine_power` gives `CosinePower`, and `_1` gives `Core1`.
 fn camel(name: &str) -> String {
     let mut joined = String::new();
     for part in name.split('_') {

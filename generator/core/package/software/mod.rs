@@ -1,8 +1,7 @@
 //! Generates `software/<name>/`: a bit-exact model of the core in C, register headers and other files for the author of a driver.
 //!
 //! The author of a driver can start with these files before there is hardware. Glint generates the C model from the netlist
-//! and its microprogram. The golden model does not read the netlist. Tests compare both models, which can find mistakes in
-//! either.
+//! and its microprogram, which the golden model does not read. Tests compare both models and so find mistakes in either.
 
 mod litex;
 mod model;
@@ -19,8 +18,7 @@ use super::output_files::OutputFiles;
 use super::tops::Top;
 pub use recompute::check as check_recomputation;
 
-/// Adds the software files that the configuration asks for: the C model, the program that recomputes all results, functions for
-/// lines, register headers, stream functions and the LiteX module.
+/// Adds the software files that the configuration asks for.
 ///
 /// # Errors
 /// Fails if the core cannot be written in one of these forms. For example, no C function can wait for a second `start`.

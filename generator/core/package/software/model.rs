@@ -1,8 +1,8 @@
 //! Generates the bit-exact model of a core in C: a header, the functions, and an example in Python that calls them.
 //!
-//! A function computes the raw results of one point, or of a line of points, from raw operands. The module `print` prints the
-//! function from the unrolled microprogram, or for a line from one clock of the core. A core that waits for a second `start`
-//! within a computation has no model.
+//! A function computes the raw results of one point, or of a line of points, from raw operands. The module `print` prints it
+//! from the unrolled microprogram, or for a line from one clock of the core. A core that waits for a second `start` within a
+//! computation has no model.
 
 use glint_base::fill;
 use std::collections::BTreeMap;
@@ -25,20 +25,16 @@ use glint_rtl::verilog::text::{Names, ascii, constant_name, statement};
 /// An operand or a result as a member of a C structure.
 #[derive(Clone)]
 pub struct CField {
-    /// The name of the member in the C structure.
     pub name: String,
-    /// The prefix of the port's constants in C: the names of module and port in upper case. For example, `ROUGH_COS_GAMMA`.
+    /// The prefix of the port's constants in C. For example, `ROUGH_COS_GAMMA`.
     constant: String,
-    /// The C type of the member, which holds the raw integer.
+    /// The C type of the raw integer.
     pub kind: &'static str,
-    /// The fixed-point format of the port.
     pub format: Format,
-    /// A comment with the format and the meaning.
     pub doc: String,
 }
 
 impl CField {
-    /// Makes the member of a structure for a port.
     pub fn new(design: &Design, port: &Port) -> Self {
         let net = design.net(port.net);
         Self {
@@ -59,7 +55,6 @@ impl CField {
         }
     }
 
-    /// Returns the smallest raw integer as a C expression.
     fn least(&self) -> String {
         let (least, suffix) = (self.format.min_raw(), self.suffix());
         match (self.format.signed, self.format.width()) {
@@ -70,12 +65,10 @@ impl CField {
         }
     }
 
-    /// Returns the largest raw integer as a C literal.
     fn most(&self) -> String {
         format!("{}{}", self.format.max_raw(), self.suffix())
     }
 
-    /// Returns the suffix of a C literal of the member's type. For example, `ull` for `uint64_t`.
     fn suffix(&self) -> &'static str {
         match (self.format.signed, self.format.width() <= 32) {
             (false, true) => "u",
@@ -85,18 +78,16 @@ impl CField {
         }
     }
 
-    /// Returns the inverse of the lowest bit's weight as a C double, exactly 2^F for F fraction bits. For example, `u1.20`
-    /// gives `1048576.0`.
+    /// Returns 2^F for F fraction bits as a C double, exactly. For example, `u1.20` gives `1048576.0`.
     pub fn scale(&self) -> String {
         format!("{:?}", glint_base::fixed::exp2(self.format.frac))
     }
 
-    /// Returns the number of fraction bits as a C expression.
     fn fraction_bits(&self) -> String {
         c_integer(self.format.frac)
     }
 
-    /// Returns the weight of the lowest bit as a C double: exactly 2^-F, with F fraction bits.
+    /// Returns 2^−F for F fraction bits as a C double, exactly.
     fn unit(&self) -> String {
         format!("{:?}", glint_base::fixed::exp2(-self.format.frac))
     }
@@ -107,12 +98,10 @@ impl CField {
         (format!("{:?}", low as f64), format!("{:?}", high as f64))
     }
 
-    /// Returns the type of the member in Python's ctypes. For example, `c_uint32`.
     fn ctype(&self) -> String {
         format!("c_{}", self.kind.trim_end_matches("_t"))
     }
 
-    /// Returns the type of the member in NumPy. For example, `u4` for `uint32_t`.
     fn dtype(&self) -> &'static str {
         match self.kind {
             "uint32_t" => "u4",
@@ -123,8 +112,8 @@ impl CField {
     }
 }
 
-/// Adds the C model: a header, the functions, and an example in Python if there is a worked example. Returns the ROMs whose
-/// words the model contains. The model is generated from the sequential netlist and its microprogram.
+/// Adds a header, the functions, and an example in Python if there is a worked example. Returns the ROMs whose words the model
+/// contains. The model comes from the sequential netlist and its microprogram, also for a pipeline.
 ///
 /// # Errors
 /// Fails if the core cannot become a C function. A core that computes single points must not wait for a second `start`, have
@@ -187,8 +176,7 @@ pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<Vec<RomId>> {
     Ok(read)
 }
 
-/// Returns the raw operands of the worked example as text, in the order of the ports. The example itself may have another
-/// order.
+/// Returns the raw operands in the order of the ports, which may differ from the order in the example.
 fn example_values(design: &Design, example: &WorkedExample) -> Vec<String> {
     let mut values = Vec::new();
     for port in design.inputs() {
@@ -205,11 +193,8 @@ fn result_ports(design: &Design) -> impl Iterator<Item = &Port> {
     design.outputs().filter(|port| port.role == Role::Result)
 }
 
-/// Returns the lines of the C function that computes one point, and the ROMs that the function reads. `tables` has the names of
-/// the arrays with their words.
-///
-/// # Errors
-/// Fails if the microprogram cannot be unrolled.
+/// Returns the lines of the C function that computes one point, and the ROMs that it reads. `tables` has the names of the
+/// arrays with their words. Fails if the microprogram cannot be unrolled.
 fn of_point(design: &Design, tables: &[String]) -> Result<(Vec<String>, Vec<RomId>)> {
     let unrolled = unroll_in_powers(design)?;
     let results: Vec<(&Port, NodeId)> = results_of(design, &unrolled).collect();
@@ -239,7 +224,7 @@ fn of_point(design: &Design, tables: &[String]) -> Result<(Vec<String>, Vec<RomI
     Ok((body, roms(&unrolled.graph, &wanted)))
 }
 
-/// Returns the result ports of a design, each with the node of its value in the unrolled computation.
+/// Returns the result ports, each with the node of its value in the unrolled computation.
 fn results_of<'a>(
     design: &'a Design,
     of: &'a Unrolled,
@@ -250,11 +235,8 @@ fn results_of<'a>(
     })
 }
 
-/// Returns the lines of the C function that computes a line of points, and the ROMs that the function reads. The function
-/// executes the core clock by clock until `done` is 1.
-///
-/// # Errors
-/// Fails if the design has no output `valid` or `done`.
+/// Returns the lines of the C function that computes a line of points, and the ROMs that it reads. The function executes the
+/// core clock by clock until `done` is 1.
 fn of_line(design: &Design, tables: &[String]) -> Result<(Vec<String>, Vec<RomId>)> {
     let Cycle { unrolled, held } = any_cycle(design);
     let graph = &unrolled.graph;
@@ -322,8 +304,7 @@ fn of_line(design: &Design, tables: &[String]) -> Result<(Vec<String>, Vec<RomId
 }
 
 /// Returns the C statements of a rising edge: the variables `states` of the registers and memories in `kept` take their new
-/// values. A new value that depends on the old values is computed first, so that the order of the assignments does not
-/// matter.
+/// values.
 fn clocked(
     graph: &Graph,
     printer: &Printer,
@@ -352,8 +333,8 @@ fn clocked(
     lines
 }
 
-/// Returns the C statement that converts `pattern`, an expression with the bit pattern of a result, to a number, and assigns
-/// it to the member of the result. For example, `red_out = pattern;`.
+/// Returns the C statement that converts `pattern`, the bit pattern of a result, to a number, and assigns it to the result's
+/// member. For example, `red_out = pattern;`.
 fn assigned(design: &Design, port: &Port, pattern: &str) -> String {
     let net = design.net(port.net);
     let kind = CField::new(design, port).kind;
@@ -369,7 +350,7 @@ fn assigned(design: &Design, port: &Port, pattern: &str) -> String {
     format!("{} = {value};", field(&net.name))
 }
 
-/// Returns the ROMs that the values `wanted` depend on. A ROM that is read several times occurs several times.
+/// A ROM that is read several times occurs several times.
 fn roms(graph: &Graph, wanted: &[NodeId]) -> Vec<RomId> {
     let mut roms = Vec::new();
     for id in graph.cone(wanted.iter().copied()) {
@@ -380,13 +361,12 @@ fn roms(graph: &Graph, wanted: &[NodeId]) -> Vec<RomId> {
     roms
 }
 
-/// Returns the name of the C array with the words of each ROM, in the order of the design's ROMs.
+/// Returns the name of each ROM's C array, in the order of the design's ROMs.
 pub fn table_names(design: &Design) -> Vec<String> {
     let mut names = Names::new(design.nets.iter().map(|net| net.name.as_str()));
     design.roms.iter().map(|rom| names.fresh(&format!("{}_table", rom.name))).collect()
 }
 
-/// Returns the lines that define the C arrays of the ROMs in `read`.
 fn tables(design: &Design, names: &[String], read: &[RomId]) -> Vec<String> {
     let mut lines = Vec::new();
     for (at, rom) in design.roms.iter().enumerate() {
@@ -419,7 +399,7 @@ fn tables(design: &Design, names: &[String], read: &[RomId]) -> Vec<String> {
     lines
 }
 
-/// Returns an integer as a C expression that keeps its value inside any other expression: a negative one is in parentheses.
+/// Returns a C expression that keeps its value inside any other expression: a negative integer is in parentheses.
 pub(super) fn c_integer(value: i32) -> String {
     if value < 0 { format!("({value})") } else { value.to_string() }
 }

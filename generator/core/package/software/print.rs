@@ -21,24 +21,23 @@ const TAKEN: &str = "
     INT32_C INT64_C UINT32_C UINT64_C
     operands results points count capacity at point";
 
-/// Returns the names that a generated function or structure must not use for its own variables.
 pub fn taken() -> Names {
     Names::new(TAKEN.split_ascii_whitespace())
 }
 
-/// Returns the name of a structure's member for a port: the port's name, with a number added if C or the generated code uses this
-/// name. For example, `int` becomes `int_2`.
+/// Returns the port's name as a structure's member, with a number added if C or the generated code uses this name. For
+/// example, `int` becomes `int_2`.
 pub fn field(port: &str) -> String {
     taken().fresh(port)
 }
 
-/// Returns the type of a bit pattern. For example, a value of 21 bits has `uint32_t`.
+/// Returns the type of a bit pattern: a value of 21 bits has `uint32_t`.
 pub fn pattern_type(width: u32) -> &'static str {
     if width <= 32 { "uint32_t" } else { "uint64_t" }
 }
 
-/// Returns the C literal of a bit pattern of `width` bits, in the type that [`pattern_type()`] gives. For example, 9 in 8 bits
-/// is `9u`, and 4096 in 40 bits is `UINT64_C(0x1000)`.
+/// Returns a literal of `width` bits in the type of [`pattern_type()`]. For example, 9 in 8 bits is `9u`, and 4096 in 40 bits
+/// is `UINT64_C(0x1000)`.
 pub fn literal(bits: u64, width: u32) -> String {
     match (width <= 32, bits < 1024) {
         (true, true) => format!("{bits}u"),
@@ -48,41 +47,37 @@ pub fn literal(bits: u64, width: u32) -> String {
     }
 }
 
-/// A C expression, and whether it can be the operand of any operator without parentheses.
+/// A C expression, and whether it needs no parentheses as an operand of any operator.
 struct CExpression(String, bool);
 
 impl CExpression {
-    /// Returns the expression as an operand of any operator, in parentheses if necessary.
     fn inner(self) -> String {
         if self.1 { self.0 } else { format!("({})", self.0) }
     }
 }
 
-/// Prints the values of an unrolled computation as C.
 pub struct Printer<'a> {
     graph: &'a Graph,
     design: &'a Design,
-    /// The nets of the operand ports, in the order of the ports.
+    /// The operand ports in their order.
     operands: &'a [NetId],
     /// The name of the C array with the words of each ROM, in the order of the design's ROMs.
     tables: &'a [String],
-    /// The names of the C variables that statements have defined, by the value that they hold.
+    /// The C variables that statements have defined, by the value that they hold.
     locals: BTreeMap<NodeId, String>,
-    /// The names of the C variables with the contents of registers and memories before a clock, by the value.
+    /// The C variables with the contents of registers and memories before a clock, by the value.
     states: BTreeMap<NodeId, String>,
 }
 
-/// A C statement, with the microinstruction whose value it computes.
 pub struct CStatement {
-    /// The number of the executed microinstruction in the computation, counted from 0.
+    /// The number of the executed microinstruction in the computation.
     pub step: usize,
-    /// The text of the statement, without indentation.
+    /// The text without indentation.
     pub text: String,
 }
 
 impl<'a> Printer<'a> {
-    /// Makes a printer of the values of a computation. `tables` has the name of the C array of each ROM. `states` has a name
-    /// for each value in registers and memories.
+    /// `tables` has the name of the C array of each ROM, and `states` a name for each value in registers and memories.
     pub fn new(
         design: &'a Design,
         of: &'a Unrolled,
@@ -94,8 +89,7 @@ impl<'a> Printer<'a> {
     }
 
     /// Returns the C statements that the expressions of the values `wanted` need. An operand, a named value, and a value that
-    /// is used several times get a statement and a variable each, with a name from `names`. Constants, relabelled values and
-    /// values extended with zeros get none.
+    /// is used several times get a variable each, with a name from `names`.
     pub fn lines(&mut self, names: &mut Names, wanted: &[NodeId]) -> Vec<CStatement> {
         let graph = self.graph;
         let needed = graph.cone(wanted.iter().copied());
@@ -128,14 +122,13 @@ impl<'a> Printer<'a> {
         lines
     }
 
-    /// Returns whether the expression of a value still has the same value after C statements have assigned new values to
-    /// registers and memories. Returns true if the value is constant or has its own C variable.
+    /// Returns whether a value is constant or has its own variable. Its expression then stays the same after C statements have
+    /// assigned new values to registers and memories.
     pub fn is_settled(&self, id: NodeId) -> bool {
         self.locals.contains_key(&id) || self.graph.constant_of(id).is_some()
     }
 
-    /// Returns the C expression of a value: the name of its variable if [`Printer::lines`] made one, otherwise the
-    /// operation.
+    /// Returns the C expression of a value: the variable of [`Printer::lines`], if there is one, or the operation.
     pub fn text(&self, id: NodeId) -> String {
         self.value(id).0
     }
@@ -147,7 +140,6 @@ impl<'a> Printer<'a> {
         }
     }
 
-    /// Prints a value, converted to the C type of a bit pattern with `width` bits.
     fn in_type(&self, id: NodeId, width: u32) -> CExpression {
         let (from, to) = (pattern_type(self.graph.width(id)), pattern_type(width));
         let text = self.value(id);
@@ -157,8 +149,7 @@ impl<'a> Printer<'a> {
         if from == to { text } else { CExpression(format!("({to}){}", text.inner()), true) }
     }
 
-    /// Returns the value of the expression `text` with all bits from bit `width` on set to 0. A width of 32 or 64 bits needs
-    /// no mask, because the C type has no further bits.
+    /// Sets all bits of the expression `text` from bit `width` on to 0. A C type of 32 or 64 bits has no further bits.
     fn masked(&self, text: String, width: u32) -> CExpression {
         match width {
             32 | 64 => CExpression(text, false),
@@ -178,7 +169,6 @@ impl<'a> Printer<'a> {
         }
     }
 
-    /// Prints a value as a condition.
     fn condition(&self, id: NodeId) -> String {
         match (&self.graph.node(id).cell, self.locals.get(&id)) {
             (
@@ -191,7 +181,6 @@ impl<'a> Printer<'a> {
         }
     }
 
-    /// Returns the C condition of a comparison, or of the reduction `Any` or `All`.
     fn comparison(&self, op: &NodeOp) -> String {
         let text = |id: NodeId| self.value(id).inner();
         match op {
@@ -213,7 +202,7 @@ impl<'a> Printer<'a> {
         }
     }
 
-    /// Returns the C expression that computes a value from its operands, even if the value has a variable.
+    /// Returns the expression that computes a value from its operands, even if the value has a variable.
     fn expression(&self, id: NodeId) -> CExpression {
         let node = self.graph.node(id);
         let width = node.format.width();
@@ -245,7 +234,6 @@ impl<'a> Printer<'a> {
         }
     }
 
-    /// Returns the C expression of an operation with a result of `width` bits.
     fn operation(&self, op: &NodeOp, width: u32) -> CExpression {
         let graph = self.graph;
         let text = |id: NodeId| self.value(id).inner();
@@ -330,7 +318,6 @@ impl<'a> Printer<'a> {
     }
 }
 
-/// Returns a C comment of one line.
 pub fn comment(text: &str) -> String {
     // Nothing in a heading may end the comment.
     format!("/* {} */", ascii(text).replace("*/", "* /").replace("/*", "/ *"))

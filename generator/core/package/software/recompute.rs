@@ -2,10 +2,9 @@
 //! with the formulas.
 //!
 //! The program evaluates the formulas with the multiple-precision library MPFR, so that its verdict does not depend on Glint's
-//! own arithmetic. For a core with one formula of one operand, it uses MPFR at every operand. For a core of the device
-//! `expression`, it evaluates the formulas in double precision first, and uses MPFR only if rounding errors leave the verdict
-//! open. There is no program for an expression with more than 2^32 combinations, for a core with a result that wraps, or for
-//! any other contract: [`check`] refuses it.
+//! own arithmetic. A formula of one operand is evaluated with MPFR at every operand. For the device `expression`, the program
+//! first evaluates in double precision, and uses MPFR only if rounding errors leave the verdict open. [`check`] refuses all
+//! other contracts, results that wrap, and more than 2^32 combinations.
 
 use std::sync::Arc;
 
@@ -25,8 +24,7 @@ use glint_rtl::netlist::{Design, RomId};
 use glint_rtl::verilog::naming::Naming;
 use glint_rtl::verilog::text::{ascii, statement};
 
-/// The number of intervals with MPFR limits that the program reserves for each part of a formula, such as a sum or an
-/// operand.
+/// The number of intervals with MPFR limits that the program reserves for each part of a formula, such as a sum.
 const VALUES: usize = 8;
 
 /// The largest number of combinations of operands that a program computes.
@@ -82,22 +80,19 @@ impl<'f> RecomputedContract<'f> {
     }
 }
 
-/// Returns the error of the key `package.recomputation`: nothing recomputes the core `name`, for the reason `why`.
+/// `why` says why nothing recomputes the core `name`.
 fn recomputation_error(name: &str, why: &str) -> ConfigError {
     let message = format!("no program can recompute `{name}`: {why}");
     ConfigError::new("package.recomputation", message, "remove package.recomputation")
 }
 
-/// Checks that the program can be written for a core.
-///
-/// # Errors
 /// Fails if a result wraps, or if the operands of an expression have more than 2^32 combinations. Fails if the contract is
 /// neither one formula of one operand nor the formulas of an expression.
 pub fn check(name: &str, facts: &ContractFacts) -> Result<(), ConfigError> {
     RecomputedContract::new(name, facts).map(drop)
 }
 
-/// Adds the C program that recomputes all results to `files`. `read` are the ROMs that the C model reads.
+/// Adds the program. `read` are the ROMs that the C model reads.
 ///
 /// # Errors
 /// Fails as [`check`] does.
@@ -123,9 +118,9 @@ pub fn file(job: &EmitJob, read: &[RomId], files: &mut OutputFiles) -> Result<()
 
 /// The memory files that the program compares with the tables of the C model.
 struct CheckedMemories {
-    /// For each memory file its name, the name of the table, and the number of words.
+    /// The memory file, the name of the table, and the number of words.
     files: Vec<(String, String, usize)>,
-    /// The sentence that the program prints if there are no memory files to compare.
+    /// The program prints this sentence if there are no memory files to compare.
     why_none: &'static str,
 }
 
@@ -150,7 +145,6 @@ impl CheckedMemories {
     }
 }
 
-/// Returns the port `port` as a member of the C model's structures. Fails if the design has no such port.
 fn field(name: &str, design: &Design, port: &str) -> Result<CField, ConfigError> {
     let mut ports = design.ports.iter();
     let found = ports.find(|found| design.net(found.net).name == port);
@@ -162,21 +156,16 @@ fn field(name: &str, design: &Design, port: &str) -> Result<CField, ConfigError>
     })
 }
 
-/// Returns the number of nodes of a formula's tree. For example, `x * x + 1` has five: the sum, the product, `x`, `x`, and
-/// `1`.
+/// Returns the number of nodes of a formula's tree. For example, `x * x + 1` has five.
 fn part_count(formula: &Expression) -> usize {
     formula.size() as usize
 }
 
-/// Returns `text` for a C comment: without `*/`, which would end the comment.
+/// Removes `*/`, which would end a C comment.
 fn in_comment(text: &str) -> String {
     ascii(text).replace("*/", "* /")
 }
 
-/// Returns the program for a formula of one operand.
-///
-/// # Errors
-/// Fails if the formula cannot be parsed, if the design lacks the operand or the result, or if the template fails.
 fn function_program(
     job: &EmitJob,
     design: &Design,
@@ -207,23 +196,21 @@ fn function_program(
     })
 }
 
-/// An operand in the program for an expression.
 struct ProgramOperand {
     field: CField,
     first: i64,
     last: i64,
-    /// The exponent of the weight of the last bit, which is 2^`exponent`.
+    /// The weight of the last bit is 2^`exponent`.
     exponent: i32,
-    /// The weight of the last bit, as a C double.
+    /// The same weight as a C double.
     unit: String,
 }
 
-/// A result in the program for an expression.
 struct ProgramResult {
     field: CField,
     exponent: i32,
     unit: String,
-    /// The proved bound of the error as a C double, in units of the last place.
+    /// The proved bound in units of the last place, as a C double.
     bound: String,
     formula: ProgramFormula,
     /// The comparison under which the error is promised.
@@ -246,7 +233,6 @@ impl ProgramFormula {
     }
 }
 
-/// Returns the lines of a C function that returns `value`, an expression that may read the operands `x`.
 fn c_return(value: &str) -> Vec<String> {
     let mut lines = Vec::new();
     if !value.contains("x[") {
@@ -257,7 +243,7 @@ fn c_return(value: &str) -> Vec<String> {
     lines
 }
 
-/// Returns the formula with the operands renamed to `x[0]`, `x[1]` and so on, in the order of the contract's domain.
+/// Renames the operands to `x[0]`, `x[1]` and so on, in the order of the contract's domain.
 fn with_numbered_operands(formula: &Expression, facts: &ContractFacts) -> Expression {
     formula.with_operands(&|name| {
         let number = facts.domain.iter().position(|(operand, _)| operand == name)?;
@@ -265,10 +251,6 @@ fn with_numbered_operands(formula: &Expression, facts: &ContractFacts) -> Expres
     })
 }
 
-/// Returns the program for formulas of several operands.
-///
-/// # Errors
-/// Fails if a formula cannot be parsed, if the design lacks an operand or a result, or if the template fails.
 fn expression_program(
     job: &EmitJob,
     design: &Design,

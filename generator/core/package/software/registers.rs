@@ -1,7 +1,6 @@
 //! Generates descriptions of a core's bus registers for software: a C header, a Rust module without `std`, and SystemRDL.
 //!
-//! All three files describe the registers of the same [`Map`]. The C header and the Rust module also have functions that
-//! convert a number to the raw integer of an operand.
+//! The C header and the Rust module also have functions that convert a number to the raw integer of an operand.
 
 use anyhow::Result;
 use glint_base::fill;
@@ -15,18 +14,16 @@ use crate::package::output_files::OutputFiles;
 use glint_base::fixed::Format;
 use glint_rtl::verilog::text::{ascii, constant_name};
 
-/// A register as the templates print it.
 struct Printed<'a> {
     register: &'a BusRegister,
-    /// The name of the register in upper case, for constants in C and Rust.
+    /// The name in upper case, for constants in C and Rust.
     constant: String,
     fields: Vec<BitField<'a>>,
 }
 
-/// A field of a register as the templates print it.
 struct BitField<'a> {
     bits: &'a RegisterBits,
-    /// The name of the field in upper case, for constants in C and Rust.
+    /// The name in upper case, for constants in C and Rust.
     constant: String,
 }
 
@@ -39,7 +36,6 @@ impl BitField<'_> {
         self.bits.low + self.bits.width - 1
     }
 
-    /// Returns the access of software and hardware, in SystemRDL.
     fn rdl(&self) -> &'static str {
         match (self.bits.access, self.bits.name.as_str()) {
             (Access::Read, _) if self.bits.reset != 0 => "sw = r; hw = na;",
@@ -59,12 +55,12 @@ struct OperandConversion {
 }
 
 impl OperandConversion {
-    /// Returns the number of bits, 32 or 64, of the registers that hold the raw integer.
+    /// The registers that hold the raw integer have 32 or 64 bits.
     fn bits(&self) -> u32 {
         if self.format.width() <= 32 { 32 } else { 64 }
     }
 
-    /// Returns the smallest and the largest raw integer as C expressions of 64 bits. The largest is at most 2^63 − 1.
+    /// Returns C expressions of 64 bits. The largest is at most 2^63 − 1.
     fn limits(&self) -> (String, String) {
         let least = match self.format.min_raw() {
             least if least == i64::MIN.into() => "(-9223372036854775807 - 1)".to_owned(),
@@ -83,9 +79,6 @@ impl OperandConversion {
     }
 }
 
-/// Adds the C header, the Rust module and the SystemRDL file of the bus registers.
-///
-/// # Errors
 /// Fails if a template fails.
 pub fn files(job: &EmitJob, bus: &Bus, map: &Map, files: &mut OutputFiles) -> Result<()> {
     let (name, regenerate, bus) = (job.name(), job.regenerate(), bus.title);

@@ -1,8 +1,8 @@
 //! Generates the host's part of a device that computes a line of points, in C and in Python.
 //!
-//! The host starts such a device once for a whole line. A device with other operands than these formulas give has no such
-//! functions. The generated functions compute the operands of a line from the vectors or angles at its two ends. The functions
-//! use the same formulas as `render::setup`, and tests compare the results.
+//! The host starts such a device once for a whole line. The generated functions compute the operands of the line from the
+//! vectors or angles at its two ends. They use the formulas of `render::setup`, and tests compare the results. A device with
+//! other operands has no such functions.
 
 use anyhow::Result;
 use glint_base::fill;
@@ -15,39 +15,36 @@ use glint_base::fixed::exp2;
 use glint_rtl::netlist::Role;
 use glint_rtl::verilog::text::constant_name;
 
-/// The operands that the generated functions can compute. The device must have all of them; only `exponent` may be missing.
+/// The device must have all of these operands; only `exponent` may be missing.
 const KNOWN: [&str; 5] = ["delta_zeta", "zeta_start", "exponent", "length", "amplitude"];
 
-/// The data for the templates of the three files.
 struct LineSetup<'a> {
     name: &'a str,
     prefix: String,
     regenerate: &'a str,
     /// `zeta_start` and `delta_zeta`.
     angles: Vec<CField>,
-    /// The domain of the operand `exponent`. Without this operand, the functions multiply the angles by √(n/2).
+    /// The domain of `exponent`. Without this operand, the functions multiply the angles by √(n/2).
     exponent: Option<(i64, i64)>,
-    /// The largest number of intervals of a line.
     longest: i64,
-    /// The largest amplitude, which full light has, as a real number. `amplitude_scale` is 2^F for the F fraction bits of
-    /// the amplitude's format.
+    /// The largest amplitude, which full light has, as a real number. `amplitude_scale` is 2^F for the F fraction bits of its
+    /// format.
     full: f64,
     amplitude_scale: String,
-    /// The largest absolute value that an angle along the line may have, in right angles, after its multiplication by √(n/2) for
-    /// a device without exponent. The limit leaves one right angle of the format for rounding errors that add up along the line.
+    /// The largest absolute value of an angle along the line, in right angles, after its multiplication by √(n/2) for a device
+    /// without exponent. It leaves one right angle of the format for rounding errors that add up along the line.
     room: f64,
     order: Vec<String>,
 }
 
 impl LineSetup<'_> {
-    /// Returns the number of raw values of an angle's format as a C literal, 2^width. These values cover a full turn.
+    /// Returns the number of raw values of an angle's format, which cover a full turn.
     fn turn(&self, angle: &CField) -> String {
         exp2(angle.format.width() as i32).to_string()
     }
 }
 
-/// Adds the C and Python functions that compute the operands of a line. Adds nothing if the device computes no line of points, or
-/// if it has other operands than the formulas give.
+/// Adds the C and Python functions. Adds nothing if the device computes no lines, or if it has other operands than these.
 ///
 /// # Errors
 /// Fails if a template fails.

@@ -1,7 +1,7 @@
-//! Generates `<name>_stream.h` and `<name>_stream.py`: functions that pack operands into the bytes of an AXI4-Stream, and unpack
-//! results.
+//! Generates `<name>_stream.h` and `<name>_stream.py`: functions that pack operands into the bytes of an AXI4-Stream, and
+//! unpack results.
 //!
-//! A program uses these functions to fill and to read the memory of a DMA engine that feeds the core's stream wrapper.
+//! A program uses them on the memory of a DMA engine that feeds the core's stream wrapper.
 
 use anyhow::Result;
 use glint_base::fill;
@@ -18,7 +18,7 @@ struct TransferNumber {
     field: CField,
     port: String,
     first: u32,
-    /// The number of bytes that the operand or result occupies.
+    /// The size in bytes.
     size: u32,
 }
 
@@ -27,12 +27,11 @@ impl TransferNumber {
         0..self.size
     }
 
-    /// Returns the C type of the bit pattern of this operand or result.
     fn unsigned(&self) -> &'static str {
         if self.size <= 4 { "uint32_t" } else { "uint64_t" }
     }
 
-    /// Returns the C expression that joins the bytes of this operand or result in `transfer` to a bit pattern.
+    /// Returns the C expression that joins the bytes in `transfer` to a bit pattern.
     fn joined(&self) -> String {
         let kind = self.unsigned();
         let mut bytes = Vec::new();
@@ -46,7 +45,7 @@ impl TransferNumber {
         bytes.join("\n        | ")
     }
 
-    /// Returns the C expression that converts the bit pattern `raw` to a signed number, or `None` if the number has no sign.
+    /// Returns the C expression that converts the bit pattern `raw` to a signed number, if the number has a sign.
     fn value(&self) -> Option<String> {
         let kind = self.field.kind;
         let (sign, suffix) =
@@ -90,15 +89,11 @@ impl Bytes {
         Self { bytes: transfer.bits / 8, filled: transfer.filled() / 8, numbers }
     }
 
-    /// Returns the indices of the unused bytes of a transfer, which are behind the bytes of all numbers.
     fn above(&self) -> std::ops::Range<u32> {
         self.filled..self.bytes
     }
 }
 
-/// Adds the C header and the Python file that pack and unpack the transfers of the streams.
-///
-/// # Errors
 /// Fails if the core has no operands or no results, or if a template fails.
 pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<()> {
     let (name, regenerate) = (job.name(), job.regenerate());

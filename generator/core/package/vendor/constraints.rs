@@ -1,7 +1,6 @@
 //! Generates the clock constraints of a module, `<top>.sdc` for Quartus and open tools, and `<top>.xdc` for Vivado.
 //!
-//! Only the clock is constrained. Delays at ports, for example, depend on the system around the module, which Glint does not
-//! know.
+//! Only the clock is constrained. Other constraints, such as delays at ports, depend on the system around the module.
 
 use anyhow::Result;
 use glint_base::fill;
@@ -11,10 +10,6 @@ use crate::package::file_kind::FileKind;
 use crate::package::output_files::OutputFiles;
 use crate::package::tops::Top;
 
-/// Adds the two constraint files of each module, `<top>.sdc` and `<top>.xdc`, for a clock of `clock_mhz` MHz.
-///
-/// # Errors
-/// Fails if a template fails.
 pub fn files(job: &EmitJob, tops: &[Top], clock_mhz: f64, files: &mut OutputFiles) -> Result<()> {
     for top in tops {
         for (ending, reader) in [
@@ -34,8 +29,8 @@ pub fn files(job: &EmitJob, tops: &[Top], clock_mhz: f64, files: &mut OutputFile
     Ok(())
 }
 
-/// Returns the period of a clock in nanoseconds with three decimals. The period is rounded down, so that the constraint is never
-/// slower than the clock. For example, 130 MHz gives 7.692.
+/// Returns the period in nanoseconds with three decimals, rounded down, so that the constraint is never slower than the clock.
+/// For example, 130 MHz gives 7.692.
 fn period(clock_mhz: f64) -> String {
     let picoseconds = libm::floor(1e6 / clock_mhz);
     format!("{:.3}", picoseconds / 1e3)

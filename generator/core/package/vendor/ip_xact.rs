@@ -27,9 +27,8 @@ struct IpXactComponent<'a> {
 /// A bus interface. ARM published the definitions of the buses, and AMD the definition of an interrupt.
 struct BusInterface {
     name: &'static str,
-    /// Vendor and library of the definition, as attributes.
+    /// The attributes for vendor and library of the definition.
     definition: &'static str,
-    /// The name of the definition.
     bus: &'static str,
     version: &'static str,
     is_slave: bool,
@@ -49,19 +48,17 @@ impl BusInterface {
 }
 
 impl IpXactComponent<'_> {
-    /// Returns a number in hexadecimal digits, which IP-XACT writes behind `'h`. For example, 255 gives `ff`.
+    /// IP-XACT writes the digits behind `'h`. For example, 255 gives `ff`.
     fn hex(&self, number: impl std::fmt::LowerHex) -> String {
         format!("{number:x}")
     }
 
-    /// Returns `text` in ASCII, with the characters `&`, `<` and `>` escaped for XML.
     fn escaped(&self, text: &str) -> String {
         escaped(text)
     }
 }
 
 impl RegisterBits {
-    /// Returns how software can access the bits, as IP-XACT writes it.
     fn ip_xact_access(&self) -> &'static str {
         match self.access {
             Access::Read => "read-only",
@@ -81,10 +78,6 @@ impl RegisterBits {
     }
 }
 
-/// Adds the IP-XACT description `<top>.xml` of each module.
-///
-/// # Errors
-/// Fails if a template fails.
 pub fn files(job: &EmitJob, tops: &[Top], files: &mut OutputFiles) -> Result<()> {
     for top in tops {
         let registers: &[BusRegister] = match (top.face, &job.registers) {
@@ -108,8 +101,8 @@ pub fn files(job: &EmitJob, tops: &[Top], files: &mut OutputFiles) -> Result<()>
     Ok(())
 }
 
-/// Returns the bus interfaces of a module, and the interface of its interrupt output, if it has one. IEEE 1685-2014 does not
-/// define an interrupt. The interrupt therefore has Vivado's definition, which other tools know too.
+/// Returns the bus interfaces of a module, and the interface of its interrupt output. IEEE 1685-2014 defines no interrupt, so
+/// the interrupt has Vivado's definition, which other tools know too.
 fn buses(top: &Top) -> Vec<BusInterface> {
     let mut buses = Vec::new();
     for protocol in top.protocols {
@@ -140,13 +133,11 @@ fn buses(top: &Top) -> Vec<BusInterface> {
     buses
 }
 
-/// Returns `text` in ASCII, with the characters `&`, `<` and `>` escaped for XML.
 fn escaped(text: &str) -> String {
     ascii(text).replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
-/// Returns `text` for an XML comment. Adjacent hyphens are separated by spaces, because XML forbids two adjacent hyphens in a
-/// comment.
+/// XML forbids two adjacent hyphens in a comment; a space separates them here.
 fn comment(text: &str) -> String {
     let mut apart = text.to_owned();
     while apart.contains("--") {

@@ -10,10 +10,6 @@ use super::emit_job::EmitJob;
 use super::output_files::OutputFiles;
 use super::tops::Top;
 
-/// Adds the vendor files that the configuration asks for: constraints, Tcl scripts and IP-XACT descriptions.
-///
-/// # Errors
-/// Fails if a template fails.
 pub fn files(job: &EmitJob, tops: &[Top], files: &mut OutputFiles) -> Result<()> {
     let around = &job.inputs.around;
     if let Some(clock_mhz) = around.clock_mhz {

@@ -9,11 +9,9 @@ use crate::package::output_files::OutputFiles;
 use crate::package::tops::{Top, TopPort};
 use glint_rtl::verilog::text::ascii;
 
-/// The FPGA of the build script for Vivado, unless the user names another FPGA. This FPGA is small and common.
+/// The FPGA of the build script, unless the user names another. This one is small and common.
 const VIVADO_PART: &str = "xc7a35tcsg324-1";
-/// The FPGA family of the build script for Quartus, unless the user names another family.
 const QUARTUS_FAMILY: &str = "Cyclone V";
-/// The FPGA of the build script for Quartus, unless the user names another FPGA.
 const QUARTUS_DEVICE: &str = "5CEBA4F23C7";
 
 /// An interface of Platform Designer.
@@ -22,7 +20,6 @@ struct PlatformInterface<'a> {
     kind: &'static str,
     /// The side of the interface, as Platform Designer names it: `end` receives, `start` sends.
     side: &'static str,
-    /// The ports of the interface, each with its role in the protocol.
     ports: Vec<(&'a TopPort, String)>,
 }
 
@@ -32,10 +29,7 @@ impl TopPort {
     }
 }
 
-/// Adds the scripts for Vivado: `<name>_vivado.tcl` builds the module alone, and `<name>_vivado_ip.tcl` packages it as IP.
-///
-/// # Errors
-/// Fails if a template fails.
+/// Adds `<name>_vivado.tcl`, which builds the module alone, and `<name>_vivado_ip.tcl`, which packages it as IP.
 pub fn vivado(job: &EmitJob, tops: &[Top], files: &mut OutputFiles) -> Result<()> {
     let (name, around) = (job.name(), &job.inputs.around);
     let version = around.version.as_str();
@@ -53,7 +47,7 @@ pub fn vivado(job: &EmitJob, tops: &[Top], files: &mut OutputFiles) -> Result<()
         title: String = quoted(&job.design.about.title),
         regenerate: &'a str = job.regenerate(),
         vendor: &'a str = &around.vendor,
-        // The first two numbers of the version, because Vivado accepts no more.
+        // Vivado accepts only two numbers.
         version: &'a str = version.rsplit_once('.').map_or(version, |(two, _)| two),
         tops: &'a [Top],
         memories: &'a [String] = &memories,
@@ -63,10 +57,7 @@ pub fn vivado(job: &EmitJob, tops: &[Top], files: &mut OutputFiles) -> Result<()
     Ok(())
 }
 
-/// Adds the scripts for Quartus: `<name>_quartus.tcl` builds the module alone, and `<top>_hw.tcl` describes each module as IP.
-///
-/// # Errors
-/// Fails if a template fails.
+/// Adds `<name>_quartus.tcl`, which builds the module alone, and `<top>_hw.tcl`, which describes each module as IP.
 pub fn quartus(job: &EmitJob, tops: &[Top], files: &mut OutputFiles) -> Result<()> {
     let (name, around) = (job.name(), &job.inputs.around);
     let build = fill!("quartus.tcl" {
@@ -92,8 +83,7 @@ pub fn quartus(job: &EmitJob, tops: &[Top], files: &mut OutputFiles) -> Result<(
     Ok(())
 }
 
-/// Returns the interfaces of a module for Platform Designer, without clock and reset. A module without a standard interface
-/// has one conduit, an interface without a protocol, with all ports except clock and reset.
+/// Returns the interfaces of a module for Platform Designer, without clock and reset.
 fn interfaces(top: &Top) -> Vec<PlatformInterface<'_>> {
     if top.protocols.is_empty() {
         // A conduit is an interface without a protocol.
@@ -109,7 +99,6 @@ fn interfaces(top: &Top) -> Vec<PlatformInterface<'_>> {
     interfaces.collect()
 }
 
-/// Escapes a text for use between the quotation marks of a Tcl word.
 fn quoted(text: &str) -> String {
     let mut quoted = String::new();
     for c in ascii(text).chars() {

@@ -15,20 +15,19 @@ use crate::package::map::{Access, INTERRUPT_PENDING, Map, PortBits, PortPlacemen
 use crate::package::output_files::OutputFiles;
 use glint_base::fixed::mask;
 
-/// The largest number of points (sets of operands) that a bench of a bus wrapper computes. If the vectors have more points,
-/// the bench uses every second point, or every third, and so on.
+/// The largest number of points (sets of operands) that a bench of a bus wrapper computes. Of more points it uses every
+/// second, or every third, and so on.
 const ON_A_BUS: usize = 256;
 
-/// A bus register of an operand or of results, as a bench accesses it: its address, the word to write or to expect as a
-/// Verilog expression, and a mask with 1 at the bits of the port.
+/// A bus register of an operand or of results. It has an address, the Verilog of the word to write or to expect, and a mask
+/// with 1 at the bits of the port.
 struct BenchRegister {
     at: String,
     word: String,
     mask: String,
 }
 
-/// Adds the test benches of the core's wrappers and the files that they read. Adds nothing if no computation in `vectors`
-/// runs to its end.
+/// Adds the benches and the files that they read. Adds nothing if no computation in `vectors` runs to its end.
 ///
 /// # Errors
 /// Fails if the core lacks its handshake, operands or results, or if a template fails.
@@ -70,8 +69,7 @@ pub fn files(job: &EmitJob, vectors: &Vectors, files: &mut OutputFiles) -> Resul
     }
     if let Some((bus, map)) = &job.registers {
         let top = format!("{name}_{}", bus.suffix);
-        // The addresses of registers that are neither operands nor results, with the values that are read there after a
-        // reset.
+        // Registers that are neither operands nor results, with the values after a reset.
         let (constants, read_only) = fixed(map);
         let text = fill!("registers_tb.v" {
             name: &'a str,
@@ -101,10 +99,7 @@ pub fn files(job: &EmitJob, vectors: &Vectors, files: &mut OutputFiles) -> Resul
     Ok(())
 }
 
-/// Adds the bench of a wrapper in Python, if the core has a bench in Python too.
-///
-/// # Errors
-/// Fails if the template fails.
+/// Adds nothing if the core has no bench in Python.
 fn add_python(job: &EmitJob, wrapper: &str, tests: &[&str], files: &mut OutputFiles) -> Result<()> {
     if job.inputs.example.is_some() && job.inputs.accuracy.is_some() {
         let name = job.name();
@@ -116,13 +111,13 @@ fn add_python(job: &EmitJob, wrapper: &str, tests: &[&str], files: &mut OutputFi
     Ok(())
 }
 
-/// Returns the byte address of the register with the word address `place`, as a Verilog literal. For example, 8 gives `32'h20`.
+/// Returns a Verilog literal in bytes. For example, 8 gives `32'h20`.
 fn address(place: u32) -> String {
     format!("32'h{:02x}", 4 * place)
 }
 
-/// Returns two lists: the addresses of the registers before the operands, with their values after a reset, and the addresses
-/// of all registers that cannot be written.
+/// Returns the addresses of the registers before the operands, with their values after a reset, and the addresses of all
+/// registers that cannot be written.
 fn fixed(map: &Map) -> (Vec<(String, String)>, Vec<String>) {
     let (mut own, mut read_only) = (Vec::new(), Vec::new());
     for register in &map.registers {
@@ -137,8 +132,7 @@ fn fixed(map: &Map) -> (Vec<(String, String)>, Vec<String>) {
     (own, read_only)
 }
 
-/// Returns the bus registers of `ports`. `fields` gives the positions of the ports in the bench's variable `net`: a point or a
-/// result.
+/// Returns the bus registers of `ports`. `fields` gives their positions in the bench's variable `net`.
 fn accesses(ports: &[PortPlacement], fields: &[StreamField], net: &str) -> Vec<BenchRegister> {
     let mut accesses = Vec::new();
     for (port, field) in ports.iter().zip(fields) {
@@ -156,8 +150,7 @@ fn access(part: &PortBits, field: &StreamField, net: &str) -> BenchRegister {
     let low = field.low + part.low;
     let all = format!("{net}[{}:{low}]", low + bits - 1);
     let top = format!("{net}[{}]", low + bits - 1);
-    // The bits above an operand may have any value. The bits above a signed result are copies of its sign bit; the bits above
-    // any other result are 0.
+    // The bits above an operand may have any value. The bits above a signed result are copies of its sign bit, otherwise 0.
     let above = match net {
         "point" => format!("{net}[0]"),
         _ if field.signed => top,
@@ -170,8 +163,8 @@ fn access(part: &PortBits, field: &StreamField, net: &str) -> BenchRegister {
     BenchRegister { at: address(part.place), word, mask: format!("32'h{:08x}", mask(part.width)) }
 }
 
-/// Returns the bus registers of the results. If several results share one register, the list has one entry, in which the results
-/// are adjacent, each in whole bytes, as in a stream.
+/// Returns the bus registers of the results. If results share one register, the list has one entry, in which they are
+/// adjacent, each in whole bytes, as in a stream.
 fn of_results(map: &Map, fields: &[StreamField]) -> Vec<BenchRegister> {
     if map.last() > map.last_operand() + 1 || fields.len() == 1 {
         return accesses(&map.results, fields, "result");

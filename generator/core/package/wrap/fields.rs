@@ -17,12 +17,12 @@ pub struct StreamField {
     pub width: u32,
     /// The lowest bit of the value in the transfer.
     pub low: u32,
-    /// The name of the write strobe, the input that writes the operand, if the core has a microprogram; otherwise empty.
+    /// The input that writes the operand, if the core has a microprogram; otherwise empty.
     pub strobe: String,
 }
 
 impl StreamField {
-    /// Returns the number of bits of the field, including the padding of its last byte. For example, a cosine of 21 bits has 24.
+    /// Returns the width with the padding of the last byte. For example, a cosine of 21 bits has 24.
     pub fn padded(&self) -> u32 {
         self.width.next_multiple_of(8)
     }
@@ -31,7 +31,7 @@ impl StreamField {
         self.low + self.width - 1
     }
 
-    /// Returns the part-select of the value in the transfer. For example, `[28:8]`, and `[8]` for a value of one bit.
+    /// Returns the part-select of the value, for example `[28:8]`, or `[8]` for one bit.
     pub fn bits(&self) -> String {
         match self.width {
             1 => format!("[{}]", self.low),
@@ -39,8 +39,8 @@ impl StreamField {
         }
     }
 
-    /// Returns the parts of a Verilog concatenation that extends the net `net` to whole bytes, the upper part first. The
-    /// padding has copies of the sign bit, or zeros if the value has no sign.
+    /// Returns the parts of a Verilog concatenation that extends the net `net` to whole bytes by its sign or zeros, the upper
+    /// part first.
     fn packed(&self, net: &str) -> Vec<String> {
         match (self.padded() - self.width, self.signed) {
             (0, _) => vec![net.to_owned()],
@@ -51,7 +51,7 @@ impl StreamField {
     }
 }
 
-/// Returns the fields of the operands, in the order of the ports.
+/// Returns the fields in the order of the ports.
 pub fn operands(design: &Design) -> Vec<StreamField> {
     let ports = design.inputs().filter_map(|port| match port.role {
         Role::Operand { strobe } => Some((port, design.net(strobe).name.clone())),
@@ -61,14 +61,13 @@ pub fn operands(design: &Design) -> Vec<StreamField> {
     side_by_side(design, ports)
 }
 
-/// Returns the fields of the results, in the order of the ports. For example, three colours of 8 bits begin at bits 0, 8 and 16.
+/// Returns the fields in the order of the ports. For example, three colours of 8 bits begin at bits 0, 8 and 16.
 pub fn results(design: &Design) -> Vec<StreamField> {
     let ports = design.outputs().filter(|port| port.role == Role::Result);
     side_by_side(design, ports.map(|port| (port, String::new())))
 }
 
-/// Returns the fields of some ports, each in whole bytes behind the one before. Each port comes with the name of its strobe, or
-/// an empty text.
+/// Places some ports in whole bytes, one behind the other. Each port comes with the name of its strobe, or an empty text.
 fn side_by_side<'a>(
     design: &Design,
     ports: impl Iterator<Item = (&'a Port, String)>,
@@ -98,18 +97,12 @@ pub struct Transfer {
 }
 
 impl Transfer {
-    /// Returns the layout of a transfer to the core, which carries the operands.
-    ///
-    /// # Errors
-    /// Fails if the core has no operands.
+    /// Returns the layout of a transfer to the core, which carries the operands. Fails if the core has none.
     pub fn sent(job: &EmitJob) -> Result<Self> {
         Self::new(job, operands(job.design))
     }
 
-    /// Returns the layout of a transfer from the core, which carries the results.
-    ///
-    /// # Errors
-    /// Fails if the core has no results.
+    /// Returns the layout of a transfer from the core, which carries the results. Fails if the core has none.
     pub fn received(job: &EmitJob) -> Result<Self> {
         Self::new(job, results(job.design))
     }
@@ -121,7 +114,6 @@ impl Transfer {
         Ok(Self { fields, bits })
     }
 
-    /// Returns the number of the highest bit of the transfer.
     pub fn high(&self) -> u32 {
         self.bits - 1
     }
@@ -131,18 +123,16 @@ impl Transfer {
         self.fields.last().map_or(0, |last| last.low + last.padded())
     }
 
-    /// Returns the field of the port `name`, or `None` if the transfer has no such field.
     pub fn field(&self, name: &str) -> Option<&StreamField> {
         self.fields.iter().find(|field| field.name == name)
     }
 
-    /// Returns whether any field is padded with copies of its sign bit.
     pub fn has_signs(&self) -> bool {
         self.fields.iter().any(|field| field.signed && field.padded() > field.width)
     }
 
-    /// Returns the parts of a Verilog concatenation that forms the whole transfer, from the top bits down: zeros above all
-    /// fields, then the last field, and the first field at the end. `prefix` is put before the name of each port.
+    /// Returns the parts of a Verilog concatenation that forms the whole transfer, from the top bits down. `prefix` is put
+    /// before the name of each port.
     pub fn packed(&self, prefix: &str) -> Vec<String> {
         let mut parts = Vec::new();
         let above = self.bits - self.filled();
@@ -155,8 +145,8 @@ impl Transfer {
         parts
     }
 
-    /// Returns the bits of a transfer that belong to no value, as part-selects of the net `net`. For example,
-    /// `operands[23:21]` above a value of 21 bits.
+    /// Returns the bits of a transfer that belong to no value, as part-selects of the net `net`. Above a value of 21 bits, for
+    /// example, these are `operands[23:21]`.
     pub fn padding(&self, net: &str) -> Vec<String> {
         let mut ranges = Vec::new();
         for field in &self.fields {
@@ -175,8 +165,7 @@ impl Transfer {
     }
 }
 
-/// Returns Verilog that declares a wire which reads all nets in `unused`, so that linters do not warn of unread nets.
-/// Returns no lines if `unused` is empty.
+/// Returns Verilog of a wire that reads all nets in `unused`, so that linters do not warn of unread nets.
 pub fn sink(unused: &[String]) -> Vec<String> {
     match unused {
         [] => Vec::new(),

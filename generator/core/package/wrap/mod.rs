@@ -18,8 +18,7 @@ use glint_rtl::netlist::{Design, Port, Role};
 use glint_rtl::verilog::rows::separated;
 use glint_rtl::verilog::text::range;
 
-/// Adds the wrappers that the configuration asks for. If there are test vectors, the function also adds the wrappers' benches and
-/// proofs.
+/// Adds the wrappers that the configuration asks for, and with test vectors also their benches and proofs.
 ///
 /// # Errors
 /// Fails if the core cannot have a wrapper that the configuration asks for. For example, a pipeline without stalls cannot
@@ -43,12 +42,8 @@ pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<()> {
 }
 
 /// Adds the formal properties `text` of the module `wrapper`, and the Yosys commands that prepare them for a solver. Adds
-/// nothing if the configuration has no test vectors, and so no bench. `stubs` names the modules that `text` defines in place
-/// of modules that the wrapper instantiates. For example, the proof of `rough_axis` has a simple module `rough` in place of
-/// the core.
-///
-/// # Errors
-/// Fails if the template fails.
+/// nothing without test vectors. `stubs` names the modules that `text` defines in place of modules that the wrapper
+/// instantiates. For example, the proof of `rough_axis` has a simple module `rough` in place of the core.
 fn add_proof(
     job: &EmitJob,
     wrapper: &str,
@@ -66,9 +61,8 @@ fn add_proof(
     Ok(())
 }
 
-/// Returns the port connections of the core's instance, the clock first. `to` returns the net for a port, given the port's role
-/// and name. If `to` returns `None`, an input is connected to `1'b0`, and an output to the wire that [`core_wire`] declares. For
-/// example, `.busy(core_busy)`.
+/// Returns the port connections of the core's instance, the clock first. `to` returns the net for a port. If it returns
+/// `None`, an input is connected to `1'b0`, and an output to the wire of [`core_wire`]. For example, `.busy(core_busy)`.
 fn connected(
     design: &Design,
     clock: &str,
@@ -85,14 +79,14 @@ fn connected(
     separated(std::iter::once(format!(".clk({clock})")).chain(ports).collect())
 }
 
-/// Returns the declaration of the wire that an output of the core drives. For example, `wire [7:0] core_red_out;`.
+/// Returns a declaration such as `wire [7:0] core_red_out;`.
 fn core_wire(design: &Design, port: &Port) -> String {
     let net = design.net(port.net);
     format!("wire {} core_{};", range(net.format.width()), net.name).replace("  ", " ")
 }
 
-/// Returns Verilog for the stub, the module that replaces the core in a proof. This Verilog lets the solver choose any values for
-/// the results and status bits of the stub in each clock.
+/// Returns the part of a stub, which replaces the core in a proof, that lets the solver choose results and status bits in each
+/// clock.
 fn stub_free(design: &Design) -> Vec<String> {
     let mut lines = Vec::new();
     for port in &design.ports {
@@ -106,7 +100,7 @@ fn stub_free(design: &Design) -> Vec<String> {
     lines
 }
 
-/// Returns the ports of the stub, which replaces the core in a proof, in the order of the core's ports.
+/// Returns the ports of a stub in the order of the core's ports.
 fn stub_ports(design: &Design) -> Vec<String> {
     let mut ports = vec!["input wire clk".to_owned()];
     for port in &design.ports {
@@ -120,8 +114,8 @@ fn stub_ports(design: &Design) -> Vec<String> {
     separated(ports)
 }
 
-/// Returns the Verilog declaration with which a proof reads a net inside the proved module, the instance `dut`. The
-/// parameters are the net's path below `dut`, for example `core.run`, and its width in bits.
+/// Returns the declaration with which a proof reads a net inside the instance `dut`: its path, for example `core.run`, and its
+/// width in bits.
 fn seen_inside((net, width): (String, u32)) -> String {
     format!("(* hierconn *) wire {} \\dut.{net} ;", range(width)).replace("  ", " ")
 }

@@ -1,5 +1,4 @@
-//! Generates `<name>_axis.v` for a pipeline: a wrapper that takes operands from one AXI4-Stream and puts results on another
-//! AXI4-Stream. The module also generates the formal properties of the wrapper.
+//! Generates `<name>_axis.v` for a pipeline, a wrapper between two AXI4-Streams, and the formal properties of this wrapper.
 
 use anyhow::{Result, ensure};
 use glint_base::fill;
@@ -13,24 +12,20 @@ use glint_rtl::netlist::{Pipeline, Role};
 use glint_rtl::verilog::rows::separated;
 use glint_rtl::verilog::text::literal;
 
-/// The positions of a stage's tlast and tuser in the register or memory of the wrapper with these bits of all stages: the
-/// lowest and the highest bit.
+/// The lowest and the highest bit of a stage's tlast and tuser, in the wrapper's register or memory with these bits of all
+/// stages.
 struct SideBits {
     low: u32,
     high: u32,
 }
 
-/// The position of a result in the concatenation of all results without padding. For example, three colours of 8 bits are at
-/// bits 0, 8 and 16.
+/// The position of a result in the concatenation of all results without padding.
 struct ResultBits<'a> {
     name: &'a str,
     low: u32,
     width: u32,
 }
 
-/// Adds the stream wrapper of a pipeline and its proof.
-///
-/// # Errors
 /// Fails if the pipeline has no stall (`pipeline.stall` = "none"), or if it has no operands or no results.
 pub fn modules(job: &EmitJob, pipeline: &Pipeline, files: &mut OutputFiles) -> Result<()> {
     let (name, design) = (job.name(), job.design);
@@ -121,7 +116,6 @@ pub fn modules(job: &EmitJob, pipeline: &Pipeline, files: &mut OutputFiles) -> R
         raw_high: u32 = raw_bits - 1,
         packed: Vec<String> = separated(results.packed("dut.core.")),
         checks: Vec<String> = operands.fields.iter().map(check).collect(),
-        // Declarations of the inner nets that the proof reads.
         inside: Vec<String> = nets.into_iter().map(seen_inside).collect(),
         stages: usize,
         memory: Option<u32>,

@@ -15,16 +15,15 @@ use glint_rtl::netlist::{Design, Port, Role};
 /// The largest number of results in the list. A computation with which the list would exceed this number is left out.
 const RESULTS: usize = 4096;
 
-/// A finished computation from the vectors of a test bench: the bit patterns of its operands and results, in the order of the
-/// ports.
+/// The bit patterns of a finished computation, in the order of the ports.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BenchPoint {
     pub operands: Vec<u64>,
     pub results: Vec<Vec<u64>>,
 }
 
-/// Returns the computations in `vectors` that run to their end, in the order in which they end. The computations in the list
-/// have at most 4096 results together; a computation with which they would have more is left out.
+/// Returns the computations in `vectors` that run to their end, in the order in which they end. A computation with which they
+/// would have more than 4096 results together is left out.
 ///
 /// # Errors
 /// Fails if the design lacks its handshake.
@@ -48,7 +47,6 @@ pub fn points(design: &Design, vectors: &Vectors) -> Result<Vec<BenchPoint>> {
     Ok(points)
 }
 
-/// The values of all ports in one clock of the vectors.
 struct PortValues<'a> {
     design: &'a Design,
     inputs: &'a [u64],
@@ -56,7 +54,6 @@ struct PortValues<'a> {
 }
 
 impl PortValues<'_> {
-    /// Returns the ports whose role satisfies `is`, with their values.
     fn all(&self, is: impl Fn(Role) -> bool) -> Vec<(&Port, u64)> {
         let inputs = self.design.inputs().zip(self.inputs);
         let mut ports = Vec::new();
@@ -72,7 +69,6 @@ impl PortValues<'_> {
         self.all(is).into_iter().map(|(_, value)| value).collect()
     }
 
-    /// Returns whether the port of this role is 1, or `None` if the design has no such port.
     fn high(&self, role: Role) -> Option<bool> {
         self.values(|it| it == role).first().map(|value| *value == 1)
     }
@@ -82,9 +78,9 @@ impl PortValues<'_> {
     }
 }
 
-/// Returns the finished computations of a core with a microprogram. Strobes write the operands one by one, and `start` begins a
-/// computation with the operands that are written by then. A computation is left out if a reset interrupts it, or if an operand
-/// has not been written since the latest reset. Returns `None` if the design lacks a signal of the handshake.
+/// Returns the finished computations of a core with a microprogram. Strobes write the operands one by one, and `start` takes
+/// them. A computation is left out if a reset interrupts it, or if an operand has not been written since the latest reset.
+/// Returns `None` if the design lacks a signal of the handshake.
 fn computed<'a>(
     design: &Design,
     rows: impl Iterator<Item = PortValues<'a>>,
@@ -131,7 +127,7 @@ fn computed<'a>(
     Some(done)
 }
 
-/// Returns the finished computations of a pipeline, whose results leave in the order in which the points entered. A reset
+/// Returns the finished computations of a pipeline. Results leave in the order in which the points entered, and a reset
 /// removes the points inside. Returns `None` if the design lacks a signal of the handshake, or if a result has no point.
 fn streamed<'a>(rows: impl Iterator<Item = PortValues<'a>>) -> Option<Vec<BenchPoint>> {
     let mut done = Vec::new();
@@ -156,9 +152,8 @@ fn streamed<'a>(rows: impl Iterator<Item = PortValues<'a>>) -> Option<Vec<BenchP
     Some(done)
 }
 
-/// Returns the input file of the wrapper's bench: for each computation a word with all operands, each padded to whole bytes. The
-/// padding bits are alternately zeros for one computation and ones for the next computation, because the wrapper must ignore
-/// these bits.
+/// Returns the input file of the wrapper's bench: for each computation a word with all operands, each padded to whole bytes.
+/// The padding alternates between zeros and ones from computation to computation, because the wrapper must ignore it.
 pub fn sent(points: &[BenchPoint], operands: &Transfer) -> String {
     let mut text = String::new();
     for (number, point) in points.iter().enumerate() {
@@ -172,9 +167,8 @@ pub fn sent(points: &[BenchPoint], operands: &Transfer) -> String {
     text
 }
 
-/// Returns the output file of the wrapper's bench: a line for each result, with all outputs padded to whole bytes. A signed
-/// output is padded with copies of its sign bit, and any other output with zeros. If `is_line` is set, a further digit in front
-/// is 1 for the last result of a computation, and 0 for every other result.
+/// Returns the output file of the wrapper's bench: a line for each result, with all outputs padded to whole bytes by their
+/// sign or zeros. If `is_line` is set, a further digit in front is 1 for the last result of a computation.
 pub fn received(points: &[BenchPoint], results: &Transfer, is_line: bool) -> String {
     let mut text = String::new();
     for point in points {
@@ -192,9 +186,8 @@ pub fn received(points: &[BenchPoint], results: &Transfer, is_line: bool) -> Str
     text
 }
 
-/// Returns a line of a file for `$readmemh`: the `values` of a transfer's fields in hexadecimal, each in whole bytes, the
-/// last field first. The bytes above all fields are filled with ones if `ones` is set, otherwise with zeros. `top` is a
-/// further digit in front of the line, if any.
+/// Returns a line for `$readmemh`: the `values` of a transfer's fields in hexadecimal, each in whole bytes, the last field
+/// first. `ones` says how the bytes above all fields are filled. `top` is a further digit in front of the line.
 fn word(values: Vec<u64>, transfer: &Transfer, ones: bool, top: Option<u64>) -> String {
     let (mut row, mut widths) = (Vec::new(), Vec::new());
     for (value, field) in values.into_iter().zip(&transfer.fields) {

@@ -1,8 +1,7 @@
-//! Generates the bus wrapper of a core: `<name>_registers.v` with the registers, and `<name>_axil.v` or `<name>_wb.v` with the
-//! bus.
+//! Generates the bus wrapper of a core: `<name>_registers.v` with the registers, `<name>_axil.v` or `<name>_wb.v` with the
+//! bus, and the formal properties of both.
 //!
-//! A host writes the operands to registers, starts the core and reads the results. The module also generates the formal
-//! properties of both files.
+//! A host writes the operands to registers, starts the core and reads the results.
 
 use anyhow::Result;
 use glint_base::fill;
@@ -27,21 +26,17 @@ struct OperandWords {
     lanes: Vec<ByteLane>,
 }
 
-/// The bits of an operand that one byte of a bus register writes. `number` is the word address of the register, and `word`
-/// is the same as a Verilog literal. `byte` is the number of the byte in the register, from 0 for the lowest.
+/// The bits of an operand that one byte of a bus register writes. `number` and `word` are the word address of the register, as
+/// a Verilog literal in `word`. `byte` is the number of the byte in the register, from 0 for the lowest.
 struct ByteLane {
     word: String,
     number: u32,
     byte: u32,
-    /// The part-select of the bits in the operand; `data` is their part-select in the written word.
+    /// The part-selects of the bits in the operand and in the written word.
     bits: String,
     data: String,
 }
 
-/// Adds the module of the registers, the module of their bus, and the proofs of both.
-///
-/// # Errors
-/// Fails if a template fails.
 pub fn modules(job: &EmitJob, bus: &Bus, map: &Map, files: &mut OutputFiles) -> Result<()> {
     let [module, module_proof] =
         (bus.module)(job.name(), job.regenerate(), map.address_bits() - 1)?;
@@ -55,7 +50,6 @@ pub fn modules(job: &EmitJob, bus: &Bus, map: &Map, files: &mut OutputFiles) -> 
     add_proof(job, &registers, vec![core], proof(job, map)?, files)
 }
 
-/// Returns the Verilog of the module with the registers. Fails if the template fails.
 fn block(job: &EmitJob, map: &Map) -> Result<String> {
     let design = job.design;
     let word_bits = map.address_bits() - 2;
@@ -82,12 +76,11 @@ fn block(job: &EmitJob, map: &Map) -> Result<String> {
     fill!("registers.v" {
         name: &'a str = job.name(),
         regenerate: &'a str = job.regenerate(),
-        // The map, as comments.
         map: Vec<String> = described(map),
         address_high: u32 = map.address_bits() - 1,
         word_high: u32 = word_bits - 1,
         operands: Vec<OperandWords> = operands(map),
-        // The words that a read returns: `constants` for the registers that never change, and `words` for all other registers.
+        // `constants` are read from the registers that never change, and `words` from all other registers.
         constants: Vec<String> = constants(map),
         words: Vec<Word> = words(design, map),
         last_number: u32 = map.last(),
@@ -106,7 +99,7 @@ fn block(job: &EmitJob, map: &Map) -> Result<String> {
     })
 }
 
-/// Returns the register map as lines of a Verilog comment: each register, and each of its fields that has a name of its own.
+/// Returns lines of a Verilog comment: each register, and each of its fields that has a name of its own.
 fn described(map: &Map) -> Vec<String> {
     let mut lines = Vec::new();
     for register in &map.registers {
@@ -123,13 +116,11 @@ fn described(map: &Map) -> Vec<String> {
     lines
 }
 
-/// Returns a text as lines of a Verilog comment, indented below the name of a register.
 fn indented(text: &str) -> Vec<String> {
     let lines = comment(12, text).into_iter();
     lines.map(|line| line.trim_start().replacen("//", "//          ", 1)).collect()
 }
 
-/// Returns the operands of the map, each with the byte lanes that write its bits.
 fn operands(map: &Map) -> Vec<OperandWords> {
     let word_bits = map.address_bits() - 2;
     let mut words = Vec::new();
@@ -159,8 +150,8 @@ fn operands(map: &Map) -> Vec<OperandWords> {
     words
 }
 
-/// Returns the Verilog assertion about the word that a read of a register returns. The word must have the value of each
-/// field at the field's bits, and 0 elsewhere. A register of a result must read as 0 until a computation has finished.
+/// Returns the Verilog assertion about a read: the word must have the value of each field at the field's bits, and 0
+/// elsewhere. A register of a result must read as 0 until a computation has finished.
 fn read(map: &Map, register: &BusRegister) -> Vec<String> {
     let mut parts = Vec::new();
     let mut above = 32;
@@ -184,7 +175,7 @@ fn read(map: &Map, register: &BusRegister) -> Vec<String> {
     statement(12, &format!("assert (read_data == {value});"))
 }
 
-/// Returns the Verilog expression of the value of a field, as wide as the field.
+/// The expression is as wide as the field.
 fn source(map: &Map, register: &BusRegister, bits: &RegisterBits) -> String {
     if register.place < map::CONSTANTS {
         return literal(bits.reset, bits.width);
@@ -218,7 +209,6 @@ fn source(map: &Map, register: &BusRegister, bits: &RegisterBits) -> String {
     }
 }
 
-/// Returns the formal properties of the module with the registers. Fails if the template fails.
 fn proof(job: &EmitJob, map: &Map) -> Result<String> {
     let word_bits = map.address_bits() - 2;
     let own = [
@@ -257,7 +247,6 @@ fn proof(job: &EmitJob, map: &Map) -> Result<String> {
         reads: Vec<(u32, Vec<String>)> = reads.collect(),
         stub_ports: Vec<String> = stub_ports(job.design),
         stub_free: Vec<String> = stub_free(job.design),
-        // Declarations of the inner nets that the proof reads.
         inside: Vec<String> = inside.into_iter().map(seen_inside).collect(),
     })
 }

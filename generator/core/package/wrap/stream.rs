@@ -1,5 +1,5 @@
-//! Generates `<name>_axis.v` for a core with a microprogram: a wrapper that takes operands from one AXI4-Stream and puts results
-//! on another AXI4-Stream. The module also generates the formal properties of the wrapper.
+//! Generates `<name>_axis.v` for a core with a microprogram, a wrapper between two AXI4-Streams, and the formal properties of
+//! this wrapper.
 
 use anyhow::{Context, Result};
 use glint_base::fill;
@@ -13,9 +13,9 @@ use glint_rtl::netlist::Role;
 use glint_rtl::verilog::rows::separated;
 use glint_rtl::verilog::text::literal;
 
-/// The stream of a core that computes all points along a scan line after one `start`. The wrapper has a buffer for the
-/// results of a line. `length` is the operand with the number of intervals of a line, and `length_low` and `length_high` are
-/// its bits in the input transfer.
+/// The stream of a core that computes all points along a scan line after one `start`. The wrapper buffers the results of a
+/// line. `length` is the operand with the number of intervals, at the bits `length_low` to `length_high` of the input
+/// transfer.
 struct LineStream {
     length: String,
     length_low: u32,
@@ -25,34 +25,30 @@ struct LineStream {
 }
 
 impl LineStream {
-    /// Returns the number of the highest bit of an address of the buffer.
     fn high(&self) -> u32 {
         self.width - 1
     }
 
-    /// Returns 0 as a Verilog literal for counts of results. A count has a bit more than an address of the buffer.
+    /// A count of results has a bit more than an address of the buffer.
     fn zero(&self) -> String {
         literal(0, self.width + 1)
     }
 
-    /// Returns 1 as a Verilog literal for counts of results.
     fn one(&self) -> String {
         literal(1, self.width + 1)
     }
 
-    /// Returns the largest number of points of a line, which is the number of words in the buffer, as a Verilog literal.
+    /// Returns the largest number of points of a line, which is the number of words in the buffer.
     fn places(&self) -> String {
         literal(1 << self.width, self.width + 1)
     }
 
-    /// Returns the highest address of the buffer.
     fn deepest(&self) -> u64 {
         (1 << self.width) - 1
     }
 }
 
-/// Adds the stream wrapper of a core with a microprogram, and its proof. If the core computes several points after one `start`,
-/// the function also adds a buffer for the results.
+/// Adds the stream wrapper of a core with a microprogram, and its proof. A core of lines also gets a buffer for the results.
 ///
 /// # Errors
 /// Fails if the core lacks the handshake of a microprogram, operands or results.
@@ -133,7 +129,6 @@ pub fn modules(job: &EmitJob, files: &mut OutputFiles) -> Result<()> {
         stub_free: Vec<String> = stub_free(design),
         stub_packed: Vec<String> = separated(results.packed("dut.core.")),
         stub_checks: Vec<String> = operands.fields.iter().map(check).collect(),
-        // Declarations of the inner nets that the proof reads.
         inside: Vec<String> = inside(&operands, &results, line.as_ref(), user_bits)?,
         strobes: Vec<&'a String> = operands.fields.iter().map(|field| &field.strobe).collect(),
         line: Option<&'a LineStream> = line.as_ref(),
@@ -146,8 +141,8 @@ pub fn modules(job: &EmitJob, files: &mut OutputFiles) -> Result<()> {
     add_proof(job, &format!("{name}_axis"), stubs, text, files)
 }
 
-/// Returns the Verilog declarations of the nets inside the wrapper that the proof reads. Yosys needs these declarations to
-/// find the nets by their paths. `user` is the number of bits of `tuser`.
+/// Returns the declarations of the nets inside the wrapper that the proof reads, by which Yosys finds them. `user` is the
+/// number of bits of `tuser`.
 fn inside(
     operands: &Transfer,
     results: &Transfer,
@@ -192,8 +187,8 @@ fn inside(
     Ok(nets.into_iter().map(seen_inside).collect())
 }
 
-/// Returns the facts about the lines of a core, or `None` if the core computes single points. Fails if the operand with the
-/// length of a line is not among the operands.
+/// Returns `None` if the core computes single points. Fails if the operand with the length of a line is not among the
+/// operands.
 fn line(job: &EmitJob, operands: &Transfer) -> Result<Option<LineStream>> {
     let length = job.inputs.accuracy.as_ref().and_then(|accuracy| accuracy.length.as_ref());
     let Some(length) = length else {

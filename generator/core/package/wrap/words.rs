@@ -7,19 +7,18 @@ use glint_rtl::verilog::text::{literal, statement};
 
 /// A bus register, with the Verilog expression that a read of it returns.
 pub struct Word {
-    /// The address of the register in words of 32 bits.
+    /// The address in words of 32 bits.
     pub number: u64,
-    /// The address of the register as a Verilog literal.
     pub index: String,
-    /// A Verilog expression of 32 bits, the word that a read returns.
+    /// A Verilog expression of 32 bits.
     pub read: String,
-    /// Whether the register holds a result. A read of such a register returns 0 until a computation has finished.
+    /// Whether the register holds a result, which reads as 0 until a computation has finished.
     pub is_result: bool,
 }
 
 /// Returns the Verilog of a wire that is 1 if the byte address in the net `at` lies from word `first` to word `last`, both
-/// included. Words have `word_bits` address bits. The Verilog compares upper address bits with constants, because a
-/// comparison by size would take an adder. For example, words 8 to 11 are the words whose upper address bits are 2.
+/// included. Words have `word_bits` address bits. The Verilog compares upper address bits with constants, because a comparison
+/// by size would take an adder. For example, words 8 to 11 are the words whose upper address bits are 2.
 pub fn within(wire: &str, at: &str, (first, last): (u32, u32), word_bits: u32) -> Vec<String> {
     let mut terms = Vec::new();
     let mut place = first;
@@ -41,8 +40,8 @@ pub fn within(wire: &str, at: &str, (first, last): (u32, u32), word_bits: u32) -
     statement(4, &format!("wire {wire} = {};", terms.join(" | ")))
 }
 
-/// Returns the part-select of bits `low` to `high` of a net with `width` bits, or an empty text if it selects the whole net. For
-/// example, bits 4 to 7 of 32 give `[7:4]`.
+/// Returns the part-select of bits `low` to `high` of a net with `width` bits. For example, bits 4 to 7 of 32 give `[7:4]`,
+/// and all bits an empty text.
 pub fn select(width: u32, low: u32, high: u32) -> String {
     match (low, high) {
         (0, high) if high + 1 == width => String::new(),
@@ -51,7 +50,7 @@ pub fn select(width: u32, low: u32, high: u32) -> String {
     }
 }
 
-/// Returns the values of the registers that never change, as Verilog literals of 32 bits, in the order of their addresses.
+/// Returns Verilog literals of 32 bits, in the order of the addresses.
 pub fn constants(map: &Map) -> Vec<String> {
     let mut constants = Vec::new();
     for register in &map.registers[..map::CONSTANTS as usize] {
@@ -61,7 +60,7 @@ pub fn constants(map: &Map) -> Vec<String> {
     constants
 }
 
-/// Returns the bus registers whose values can change, with the expressions that a read returns.
+/// Leaves out the registers that never change.
 pub fn words(design: &Design, map: &Map) -> Vec<Word> {
     let word_bits = map.address_bits() - 2;
     let start_pad = literal(0, 24 - word_bits);
@@ -97,8 +96,7 @@ pub fn words(design: &Design, map: &Map) -> Vec<Word> {
     words
 }
 
-/// Returns the Verilog expression of one part of a port, extended to 32 bits. A signed result is extended with copies of its sign
-/// bit, and any other port with zeros.
+/// Returns one part of a port, extended to 32 bits: a signed result by its sign bit, and any other port with zeros.
 fn extended(port: &PortPlacement, part: &PortBits, net: &str, is_result: bool) -> String {
     let width = port.format.width();
     let bits = format!("{net}{}", select(width, part.low, part.low + part.width - 1));

@@ -1,18 +1,17 @@
 //! Finds a minimum cut in a netlist: a set of nets with the fewest bits that together determine some wanted nets.
 //!
-//! For example, a sum of 5 bits is a smaller cut than its two operands of 4 bits each. The caller names nets that must not be
-//! in the cut, because the fault changes them. The method is a maximum flow whose capacities are the bits of the nets.
+//! For example, a sum of 5 bits is a smaller cut than its two operands of 4 bits each. The method is a maximum flow whose
+//! capacities are the bits of the nets.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use glint_rtl::netlist::{Design, Driver, NetId};
 
-/// A vertex of the flow graph: a net and one of its two ends. The edge from (net, `false`) to (net, `true`) has the bits of the
-/// net as its capacity.
+/// A net and one of its two ends. The edge from (net, `false`) to (net, `true`) has the bits of the net as its capacity.
 type Vertex = (NetId, bool);
 
-/// Returns a minimum cut of the netlist: the nets with the fewest bits, as `bits` counts them, that together determine the nets
-/// `wanted`. No net of `affected` may be in the cut. Returns `None` if the cut has more than `most` bits, or if a net of
+/// Returns the nets with the fewest bits, as `bits` counts them, that together determine the nets `wanted`. No net of
+/// `affected`, which the fault changes, may be in the cut. Returns `None` if the cut has more than `most` bits, or if a net of
 /// `affected` is driven by neither a cell nor a constant.
 pub(super) fn smallest_cut(
     design: &Design,
@@ -97,12 +96,11 @@ pub(super) fn smallest_cut(
     None
 }
 
-/// Returns whether a net is neither a constant nor the result of a cell.
 fn is_source(design: &Design, net: NetId) -> bool {
     !matches!(design.net(net).driver, Driver::Op(_) | Driver::Constant(_))
 }
 
-/// Returns the index of a vertex: a net has two, `false` at the even index and `true` at the odd one.
+/// A net has two vertices, `false` at the even index and `true` at the odd one.
 fn place((net, through): Vertex) -> usize {
     2 * net.index() + usize::from(through)
 }

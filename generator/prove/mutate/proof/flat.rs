@@ -1,17 +1,16 @@
 //! Makes a copy of a pipeline in which every register passes on its input at once, except the registers of the handshake.
 //!
 //! A multiplier that several products share becomes one multiplier for each product. The copy computes the same results for a
-//! single point (one set of operands), and a proof about a fault can reach across the stages.
+//! single point, and a proof about a fault can reach across the stages.
 
 use std::collections::BTreeMap;
 
 use glint_rtl::netlist::{Design, Driver, Net, NetId, Op, Pipeline};
 
-/// A copy of a pipeline whose data registers pass on their inputs at once, so that a proof can reach over several stages. The
-/// registers of the handshake stay.
+/// A copy of a pipeline whose data registers pass on their inputs at once.
 pub(super) struct Flat {
     pub(super) design: Design,
-    /// For each net of a multiplier that several products share, its copies: one net for each product.
+    /// For each net of a shared multiplier, its copies: one net for each product.
     pub(super) copies: BTreeMap<NetId, Vec<NetId>>,
     /// For each copy, in the order of the nets, the slot (a clock of the interval from one point to the next) in which its
     /// factors are chosen.
@@ -19,7 +18,7 @@ pub(super) struct Flat {
 }
 
 impl Flat {
-    /// Makes the copy of `design`, which must be the pipeline that `pipeline` describes.
+    /// `design` must be the pipeline that `pipeline` describes.
     pub(super) fn of(design: &Design, pipeline: &Pipeline) -> Self {
         let mut flat = Self { design: design.clone(), copies: BTreeMap::new(), chosen: Vec::new() };
         let mut taken = vec![false; design.nets.len()];
@@ -58,14 +57,14 @@ impl Flat {
         flat
     }
 
-    /// Gives each product a multiplier of its own in place of the shared one, whose nets are left without drivers. Returns the
-    /// copies of these nets, by the original net and the slot in which the shared multiplier computes the product. For example,
-    /// at an interval of 4, the copy for slot 0 has the factors that the multiplier chooses in slot 3.
+    /// Gives each product a multiplier of its own in place of the shared one, whose nets lose their drivers. Returns the
+    /// copies by the original net and the slot of the product. For example, at an interval of 4, the copy for slot 0 has the
+    /// factors that the multiplier chooses in slot 3.
     fn unshared(&mut self, pipeline: &Pipeline) -> BTreeMap<(NetId, usize), NetId> {
         let mut made = BTreeMap::new();
         for unit in &pipeline.units {
             for slot in (0..pipeline.interval).filter(|&slot| unit.serves[slot].is_some()) {
-                // The factors are chosen in the slot before.
+                // The multiplier chooses the factors in the slot before.
                 let chosen = (slot + pipeline.interval - 1) % pipeline.interval;
                 let mut own: BTreeMap<NetId, NetId> = BTreeMap::new();
                 for &net in &unit.nets {

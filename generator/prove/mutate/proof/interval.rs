@@ -2,23 +2,22 @@
 //! proofs about faults try only values within these intervals.
 //!
 //! The device's description also states intervals. The module uses them only for registers that are not internal and whose
-//! interval contains 0. The stated interval of an operand of a shared multiplier may hold for some of its products only, and a
-//! register is 0 at power-up.
+//! interval contains 0, because a register is 0 at power-up. The stated interval of an operand of a shared multiplier may hold
+//! for some of its products only.
 
 use super::pairs::{self, Pairs};
 use glint_base::interval::{Interval, fits, hull, of_values};
 use glint_rtl::netlist::interval::of_cell;
 use glint_rtl::netlist::{Design, Driver, NetId, NetlistRegister, Op, RegisterKind};
 
-/// Returns whether the stated interval of a register holds in every clock from power-up on. For example, it is false
-/// for an interval from 1 to 255, because the register is 0 at power-up.
+/// Returns whether the stated interval of a register holds in every clock from power-up on.
 pub(super) fn trusted(design: &Design, register: &NetlistRegister) -> bool {
     let (low, high) = design.net(register.q).range;
     register.kind != RegisterKind::Internal && low <= 0 && high >= 0
 }
 
-/// Returns the interval of raw values that each net of the design can carry, whatever the inputs are. If an operand comes after a
-/// net in the order, it may have any value of its format.
+/// Returns the interval of raw values of each net, whatever the inputs are. An operand that comes after a net in the order may
+/// have any value of its format.
 pub(super) fn of_all(design: &Design, order: &[NetId]) -> Vec<Interval> {
     let mut intervals: Vec<Option<Interval>> = vec![None; design.nets.len()];
     for &id in order {
@@ -29,8 +28,7 @@ pub(super) fn of_all(design: &Design, order: &[NetId]) -> Vec<Interval> {
     intervals.into_iter().map(|it| it.unwrap_or((0, 0))).collect()
 }
 
-/// Returns the interval of raw values that net `id` can carry, from the intervals (`of`) and the possible bits (`known`) of its
-/// operands.
+/// Computes the interval of net `id` from the intervals (`of`) and the possible bits (`known`) of its operands.
 pub(super) fn of(
     design: &Design,
     id: NetId,
@@ -83,7 +81,7 @@ pub(super) fn of(
     }
 }
 
-/// Returns the net whose sign is `bit`, and whether the bit is 1 for a negative value. Returns `None` if the bit is no sign.
+/// Returns the net whose sign is `bit`, and whether the bit is 1 for a negative value.
 fn sign(design: &Design, bit: NetId) -> Option<(NetId, bool)> {
     match &design.net(pairs::named(design, bit)).driver {
         Driver::Op(Op::Not(a)) => {

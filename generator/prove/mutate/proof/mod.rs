@@ -25,13 +25,11 @@ use super::verdict::How;
 use glint_base::fixed::mask;
 use glint_rtl::netlist::{Design, Driver, NetId, RegisterKind};
 
-/// A prover for one design: it proves for a planted fault that no compared output or register ever changes.
+/// Proves for a planted fault that no compared output or register ever changes.
 pub(super) struct Prover<'a> {
     order: Order<'a>,
-    /// For each microinstruction, the values that each net of the fault-free design can have, whatever the inputs
-    /// are.
+    /// For each microinstruction, the values that each net of the fault-free design can have.
     nets: Vec<Vec<Pairs>>,
-    /// For each microinstruction, the microinstructions that may follow it.
     following: Vec<Vec<usize>>,
     /// For each microinstruction, the bits of each net that are compared in it, as a mask.
     compared: Vec<Vec<u64>>,
@@ -41,7 +39,7 @@ pub(super) struct Prover<'a> {
 }
 
 impl<'a> Prover<'a> {
-    /// Prepares proofs about the faults of a design. Returns `None` for a design with a combinational loop.
+    /// Returns `None` for a design with a combinational loop.
     pub(super) fn new(design: &'a Design) -> Option<Self> {
         let length = count(design);
         let compared = compared_bits(design, length);
@@ -56,8 +54,7 @@ impl<'a> Prover<'a> {
         Some(Self { nets, order, following, compared, reloads, windows: Windows::of(design)? })
     }
 
-    /// Tries to prove that the fault at `site` is equivalent: it changes no compared output or register. Returns the method that
-    /// succeeds, or `None`.
+    /// Returns the method that proves the fault at `site` equivalent, if one does.
     pub(super) fn proves(&self, site: &Site) -> Option<How> {
         if self.by_induction(site) {
             Some(How::Induction)
@@ -68,8 +65,7 @@ impl<'a> Prover<'a> {
         }
     }
 
-    /// Returns whether the induction over clocks proves the fault at `site` equivalent. A fault that changes a reset is never
-    /// proved by induction.
+    /// A fault that changes a reset is never proved by induction.
     fn by_induction(&self, site: &Site) -> bool {
         if self.changes_reset(site) {
             return false;
@@ -107,7 +103,7 @@ impl<'a> Prover<'a> {
         true
     }
 
-    /// Returns whether a fault changes the effect of a reset, which is no part of the proof.
+    /// The effect of a reset is no part of the proof.
     fn changes_reset(&self, site: &Site) -> bool {
         let design = self.order.design;
         match site {
@@ -123,15 +119,13 @@ impl<'a> Prover<'a> {
         }
     }
 
-    /// Returns the values of registers and synchronous ROMs among the values of all nets.
     fn held_in(&self, nets: &[Pairs]) -> PairState {
         self.order.held().map(|net| nets[net.index()]).collect()
     }
 }
 
-/// Returns, for each microinstruction (in a pipeline, for each slot), a mask for each net: the bits that are compared in it.
-/// The bits of outputs and of predicted registers are always compared. In a pipeline, the bits of a checkpoint are compared
-/// too, in the slot in which its stage can hold a point.
+/// Returns, for each microinstruction (in a pipeline, for each slot), a mask for each net of the bits that are compared.
+/// Outputs and predicted registers are always compared, and a checkpoint in the slot in which its stage can hold a point.
 fn compared_bits(design: &Design, length: usize) -> Vec<Vec<u64>> {
     let mut always: Vec<NetId> = design.outputs().map(|port| port.net).collect();
     for register in &design.registers {
@@ -155,8 +149,8 @@ fn compared_bits(design: &Design, length: usize) -> Vec<Vec<u64>> {
     compared
 }
 
-/// Returns, for each microinstruction, the state before it, with all values that are possible from power-up on. The state is
-/// `None` for a microinstruction that the design never reaches.
+/// Returns, for each microinstruction, the state before it, with all values that are possible from power-up on. A
+/// microinstruction that the design never reaches has none.
 fn reached_states(order: &Order, following: &[Vec<usize>]) -> Vec<Option<PairState>> {
     let design = order.design;
     let mut reached: Vec<Option<PairState>> = vec![None; following.len()];
@@ -180,8 +174,7 @@ fn reached_states(order: &Order, following: &[Vec<usize>]) -> Vec<Option<PairSta
     reached
 }
 
-/// Returns the union of two states: each bit may have a value of either. For example, a bit that is 0 in one state and 1 in the
-/// other may be 0 or 1.
+/// Returns the union of two states: each bit may have a value of either.
 fn join(one: &PairState, other: &PairState) -> PairState {
     one.iter().zip(other).map(|(one, other)| one.or(*other)).collect()
 }

@@ -1,7 +1,6 @@
-//! Tracks the pairs of values that each bit of a net can have, one in the fault-free design and one in the design with a fault,
-//! through each kind of cell. If an output bit can only have equal pairs, the fault does not reach it.
-//!
-//! For example, an AND with a bit that is 0 in both designs gives 0 in both.
+//! Tracks the pairs of values that each bit of a net can have, through each kind of cell. A pair has the values in the
+//! fault-free design and in the mutant. If an output bit can only have equal pairs, the fault does not reach it. For example,
+//! an AND with a bit that is 0 in both designs gives 0 in both.
 
 use std::array::from_fn;
 
@@ -10,27 +9,24 @@ use glint_base::fixed::{Format, mask};
 use glint_base::interval::Interval;
 use glint_rtl::netlist::{Design, Driver, NetId, Op};
 
-/// For each bit of a net, the pairs (fault-free bit, mutant's bit) that are possible. The four masks are the bits that can be 0
-/// in both, 1 in the fault-free design alone, 1 in the mutant alone, and 1 in both. The number of a pair is the fault-free bit
-/// plus twice the mutant's bit, so that an operation on bits is the same operation on numbers of pairs. For example, pair 2 is
-/// a bit that is 0 in the fault-free design and 1 in the mutant.
+/// For each bit of a net, the possible pairs (fault-free bit, mutant's bit). The four masks are the bits that can be 0 in
+/// both, 1 in the fault-free design alone, 1 in the mutant alone, and 1 in both. The number of a pair is the fault-free bit
+/// plus twice the mutant's bit, so that an operation on bits is the same operation on numbers of pairs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Pairs([u64; 4]);
 
 impl Pairs {
-    /// Makes the pairs for a net that carries the constant `bits`, in the fault-free design and in the mutant.
     pub(super) fn constant(bits: u64, width: u32) -> Self {
         Self([!bits & mask(width), 0, 0, bits & mask(width)])
     }
 
-    /// Makes the pairs for a net that may carry any value, the same in the fault-free design and in the mutant.
+    /// The net may carry any value, the same in both designs.
     pub(super) fn same(width: u32) -> Self {
         Self([mask(width), 0, 0, mask(width)])
     }
 
-    /// Makes the pairs for a net with an interval of values, the same in the fault-free design and in the mutant: the bits that
-    /// every value from `low` to `high` has, and any others. For example, the interval from 4 to 6 in 4 bits has bit 2 at 1 and
-    /// bit 3 at 0. Bits 0 and 1 may have any value.
+    /// The net has the same value from `low` to `high` in both designs. For example, the interval from 4 to 6 in 4 bits has
+    /// bit 2 at 1 and bit 3 at 0. Bits 0 and 1 may have any value.
     pub(super) fn of_interval((low, high): Interval, width: u32) -> Self {
         let (low, high) = (low as u64 & mask(width), high as u64 & mask(width));
         let differ = low ^ high;
@@ -39,17 +35,16 @@ impl Pairs {
         Self::constant(low, width).or(Self::same(width).cut(0, open))
     }
 
-    /// Returns the union: for each bit, the pairs that are possible in `self` or in `other`.
+    /// Returns the union: for each bit, the pairs that are possible in either.
     pub(super) fn or(self, other: Self) -> Self {
         Self(from_fn(|pair| self.0[pair] | other.0[pair]))
     }
 
-    /// Returns the intersection: for each bit, the pairs that are possible in both `self` and `other`.
+    /// Returns the intersection: for each bit, the pairs that are possible in both.
     pub(super) fn and(self, other: Self) -> Self {
         Self(from_fn(|pair| self.0[pair] & other.0[pair]))
     }
 
-    /// Makes every pair possible for the bits that are 1 in the mask `bits`.
     pub(super) fn or_any(self, bits: u64) -> Self {
         Self(self.0.map(|pair| pair | bits))
     }
@@ -60,13 +55,12 @@ impl Pairs {
         Self(from_fn(|pair| sound[pair & 1] & mutant[pair >> 1]))
     }
 
-    /// Keeps the pairs whose fault-free bit is possible in `sound`, and drops all others.
+    /// Keeps the pairs whose fault-free bit is possible in `sound`.
     pub(super) fn within(self, sound: Self) -> Self {
         let sound = sound.fault_free();
         Self(from_fn(|pair| self.0[pair] & sound[pair & 1]))
     }
 
-    /// Plants the fault `how` in bit number `bit`: the mutant's bit of each pair is stuck or inverted.
     pub(super) fn at_fault(self, bit: u32, how: BitChange) -> Self {
         let of_bit = self.cut(0, 1 << bit).0;
         let mut pairs = self.cut(0, !(1 << bit)).0;
@@ -81,34 +75,31 @@ impl Pairs {
         self.0[1] | self.0[2]
     }
 
-    /// Returns two masks: the bits that can be 0 in the fault-free design, and the bits that can be 1.
+    /// Returns a mask of the bits that can be 0, and of the bits that can be 1.
     fn fault_free(self) -> [u64; 2] {
         [self.0[0] | self.0[2], self.0[1] | self.0[3]]
     }
 
-    /// Returns two masks: the bits that can be 0 in the mutant, and the bits that can be 1.
+    /// Does the same as [`Pairs::fault_free`] for the mutant.
     fn mutant(self) -> [u64; 2] {
         [self.0[0] | self.0[1], self.0[2] | self.0[3]]
     }
 
-    /// Returns whether the net can carry the bit pattern `bits` in the mutant.
     pub(super) fn may_be(self, bits: u64) -> bool {
         let [zeros, ones] = self.mutant();
         bits & !ones == 0 && !bits & !zeros & (zeros | ones) == 0
     }
 
-    /// Returns the bit pattern if only one is possible, the same in both designs. Returns `None` otherwise.
+    /// Returns the bit pattern if only one is possible, the same in both designs.
     fn whole(self, width: u32) -> Option<u64> {
         let is_one_pattern = self.differ() == 0 && self.0[0] ^ self.0[3] == mask(width);
         if is_one_pattern { Some(self.0[3]) } else { None }
     }
 
-    /// Returns the bits from `low` up that the mask `all` selects.
     fn cut(self, low: u32, all: u64) -> Self {
         Self(self.0.map(|pair| pair >> low & all))
     }
 
-    /// Inverts the bits of the mask `bits`, in the fault-free design and in the mutant.
     fn inverted(self, bits: u64) -> Self {
         Self(from_fn(|pair| self.0[pair] & !bits | self.0[pair ^ 3] & bits))
     }
@@ -118,8 +109,7 @@ impl Pairs {
         (0..4).filter(move |&pair| self.0[pair] >> bit & 1 == 1)
     }
 
-    /// Returns the pairs that an operation on bits can give. `result` computes the number of a pair from the numbers of the
-    /// operands' pairs.
+    /// `result` computes the number of a pair from the numbers of the operands' pairs.
     fn bitwise(self, other: Self, result: impl Fn(usize, usize) -> usize) -> Self {
         let mut all = [0; 4];
         for (a, left) in self.0.into_iter().enumerate() {
@@ -131,8 +121,8 @@ impl Pairs {
     }
 
     /// Computes bit by bit, from the lowest of `width` bits up. In each bit, `step` takes a bit of each operand and the carry
-    /// from below (`from` at the lowest bit), and gives a bit of the result and the next carry. Returns the pairs of the result
-    /// and of the last carry.
+    /// from below (`from` at the lowest bit), and gives a bit of the result and the next carry. Returns the pairs of the
+    /// result and of the last carry.
     fn rippled(
         self,
         other: Self,
@@ -157,13 +147,11 @@ impl Pairs {
         (result, carry)
     }
 
-    /// Returns the pairs of the sum of `self`, `other` and the carry bit `carry`, in `width` bits.
     fn plus(self, other: Self, carry: Self, width: u32) -> Self {
         self.rippled(other, width, carry, |a, b, c| (a ^ b ^ c, a & b | a & c | b & c)).0
     }
 
-    /// Returns the last carry of a fold from the lowest bit up. `from` is the first carry, and `step` computes each carry from
-    /// a bit of each operand and the carry before.
+    /// Returns the last carry of a fold from the lowest bit up. `from` is the first carry.
     fn folded(
         self,
         other: Self,
@@ -175,8 +163,8 @@ impl Pairs {
     }
 }
 
-/// Returns the pairs of the result of the cell `op`, with `width` bits. `value` gives the pairs of an operand. `same` has, for
-/// each net, the first net with the same value in the fault-free design; the inputs of a mux need it.
+/// Returns the pairs of the result of the cell `op`. `value` gives the pairs of an operand. `same` has, for each net, the
+/// first net with the same value in the fault-free design; the inputs of a mux need it.
 pub(super) fn cell(
     design: &Design,
     op: &Op,
@@ -236,9 +224,8 @@ pub(super) fn cell(
     }
 }
 
-/// Returns the pairs of a mux with a select of `lines` bits. Each input has its pairs and a net; inputs with the same net have
-/// the same value in the fault-free design. For example, if the mutant selects another input with the same net, the result has
-/// only the pairs of that input.
+/// Returns the pairs of a mux with a select of `lines` bits. Inputs with the same net have the same value in the fault-free
+/// design, so the mutant may select another of them without a difference.
 pub(super) fn chosen(select: Pairs, lines: u32, inputs: &[(Pairs, NetId)]) -> Pairs {
     let input = |number: u64| inputs[(number as usize).min(inputs.len() - 1)];
     let mut all = Pairs([0; 4]);
@@ -264,15 +251,14 @@ pub(super) fn chosen(select: Pairs, lines: u32, inputs: &[(Pairs, NetId)]) -> Pa
     all
 }
 
-/// Returns the inputs that a mux with a select of `lines` bits may select in the mutant, from the possible pairs of its
-/// `select`.
+/// Returns the inputs that a mux with a select of `lines` bits may select in the mutant.
 pub(super) fn choices(select: Pairs, lines: u32, inputs: &[NetId]) -> impl Iterator<Item = NetId> {
     let possible = (0..1 << lines).filter(move |&number| select.may_be(number));
     possible.map(|number: u64| inputs[(number as usize).min(inputs.len() - 1)])
 }
 
-/// Returns the pairs of a product that are known. An unsigned product has leading zeros, and a product or square has trailing
-/// zeros. From the lowest bit that may differ in a factor on, any bit of the product may differ.
+/// Returns the known pairs of a product: leading zeros if it is unsigned, and trailing zeros. From the lowest bit that may
+/// differ in a factor on, any bit of the product may differ.
 fn product(
     design: &Design,
     a: NetId,
@@ -305,25 +291,24 @@ fn product(
     Pairs([mask(width), differ, differ & ones, ones])
 }
 
-/// Returns a number that no value of the mutant exceeds, from its possible bits. Returns `None` if a value may be negative.
+/// Returns a number that no value of the mutant exceeds, unless a value may be negative.
 fn largest_unsigned(format: Format, pairs: Pairs) -> Option<u128> {
     let [_, most] = pairs.mutant();
     let may_be_negative = format.signed && most >> (format.width() - 1) & 1 == 1;
     if may_be_negative { None } else { Some(u128::from(most)) }
 }
 
-/// Returns the number of lowest bits that are 0 in every value of the mutant.
 fn trailing_zeros(pairs: Pairs, width: u32) -> u32 {
     let [_, ones] = pairs.mutant();
     ones.trailing_zeros().min(width)
 }
 
-/// Returns whether `a` and `b` are one net under different names, so that their product is a square.
+/// If `a` and `b` are one net under different names, their product is a square.
 pub(super) fn square(design: &Design, a: NetId, b: NetId) -> bool {
     named(design, a) == named(design, b)
 }
 
-/// Follows cells that only rename a net, and returns the net with the original name, which may be `net` itself.
+/// Follows cells that only rename a net.
 pub(super) fn named(design: &Design, mut net: NetId) -> NetId {
     while let Driver::Op(Op::Relabel(of)) = design.net(net).driver {
         net = of;

@@ -19,9 +19,9 @@ enum Load {
 
 /// A register or a synchronous ROM, with everything from which its next value is computed.
 struct Holder {
-    /// The enable; `None` for a holder that takes a value in every clock.
+    /// `None` for a holder that takes a value in every clock.
     enable: Option<NetId>,
-    /// The indices of the registers and synchronous ROMs from which the next value is computed.
+    /// The registers and synchronous ROMs from which the next value is computed.
     holders: BTreeSet<usize>,
     /// The fields of the control word from which the next value is computed.
     fields: BTreeSet<FieldId>,
@@ -29,8 +29,8 @@ struct Holder {
     reads_input: bool,
 }
 
-/// Returns for each microinstruction and each register whether the register's next value certainly equals its present value.
-/// `nets` has the possible values of all nets in each microinstruction, and `following` the microinstructions that may follow each.
+/// Returns for each microinstruction and each register whether the next value certainly equals the present one. `nets` has the
+/// possible values of all nets in each microinstruction, and `following` the microinstructions that may follow.
 pub(super) fn reloads(
     design: &Design,
     nets: &[Vec<Pairs>],
@@ -66,8 +66,8 @@ pub(super) fn reloads(
     facts
 }
 
-/// Returns whether everything from which the next value of `holder` is computed is the same in microinstruction `to` as in `at`,
-/// which comes directly before it. `facts` says which holders would load the values that they have in `at`.
+/// Returns whether everything from which the next value of `holder` is computed is the same in microinstruction `to` as in
+/// `at`, directly before it. `facts` says which holders would load the values that they have in `at`.
 fn follows(
     design: &Design,
     holders: &[Holder],
@@ -94,8 +94,8 @@ fn load(holder: &Holder, nets: &[Pairs]) -> Load {
     }
 }
 
-/// Returns the registers and then the ROMs of a design. A ROM that is no memory of its own, because it is read in the same clock,
-/// is among them too, and never changes by itself.
+/// Returns the registers and then the ROMs. A ROM that is read in the same clock is among them too, and never changes by
+/// itself.
 fn holders(design: &Design) -> Vec<Holder> {
     let mut holders = Vec::new();
     for register in &design.registers {

@@ -1,5 +1,5 @@
-//! Evaluates one microinstruction on pairs of bits that may be unknown, for the fault-free design alone or for a mutant and the
-//! fault-free design together. The proof by induction uses the module.
+//! Evaluates one microinstruction on pairs of bits that may be unknown, for the proof by induction. It does so for the
+//! fault-free design alone, or for a mutant and the fault-free design together.
 //!
 //! A pipeline has no microinstructions; each slot, a clock of the interval from one point to the next, counts as one.
 
@@ -9,8 +9,7 @@ use crate::mutate::fault::Site;
 use glint_base::interval::Interval;
 use glint_rtl::netlist::{Design, Driver, NetId, Op, RegId, RomId};
 
-/// For each register and synchronous ROM of a design, the pairs (fault-free bit, mutant's bit) that its content can have between
-/// two clocks.
+/// The possible pairs of each register and synchronous ROM between two clocks.
 pub(super) type PairState = Vec<Pairs>;
 
 /// A design, with the order in which its nets are evaluated for a proof about a fault.
@@ -20,19 +19,19 @@ pub(super) struct Order<'a> {
     order: Vec<NetId>,
     /// For each net, the first net with the same driver, and so with the same value.
     same: Vec<NetId>,
-    /// The register with the number of the microinstruction; `None` in a pipeline that takes a point every clock.
+    /// The register with the number of the microinstruction. A pipeline that takes a point every clock has none.
     counter: Option<RegId>,
-    /// For a pipeline whose interval is longer than 1: the interval of raw values of each net over all slots. Otherwise empty.
+    /// For a pipeline whose interval is longer than 1: the interval of raw values of each net over all slots.
     in_all_slots: Vec<Interval>,
-    /// For each ROM, the union of its words: for each bit, whether it can be 0 and 1.
+    /// For each ROM, for each bit, whether it can be 0 and 1 in some word.
     words: Vec<Pairs>,
 }
 
-/// The place of a planted fault, and the pairs of every net of the fault-free design in the executed microinstruction.
+/// A planted fault, and the pairs of every net of the fault-free design in the executed microinstruction.
 pub(super) type Injected<'s> = (&'s Site, &'s [Pairs]);
 
 impl<'a> Order<'a> {
-    /// Finds an order in which the nets of the design can be evaluated. Returns `None` for a design with a combinational loop.
+    /// Returns `None` for a design with a combinational loop.
     pub(super) fn of(design: &'a Design) -> Option<Self> {
         let mut order = design.levelise().ok()?;
         let mut in_all_slots = Vec::new();
@@ -62,14 +61,14 @@ impl<'a> Order<'a> {
         Some(Self { design, same: same(design, &order), order, counter, in_all_slots, words })
     }
 
-    /// Returns the nets of a [`PairState`]: first the nets of the registers, then the nets of the ROMs.
+    /// Returns the nets of a [`PairState`]: first the registers, then the ROMs.
     pub(super) fn held(&self) -> impl Iterator<Item = NetId> {
         let registers = self.design.registers.iter().map(|register| register.q);
         registers.chain(self.design.roms.iter().map(|rom| rom.data))
     }
 
     /// Returns the pairs of all nets in microinstruction number `at`. Without a `fault`, both bits of each pair are of the
-    /// fault-free design. With a fault, the pairs compare the fault-free design with the mutant.
+    /// fault-free design.
     pub(super) fn settle(
         &self,
         at: usize,
@@ -143,8 +142,7 @@ impl<'a> Order<'a> {
         nets
     }
 
-    /// Returns the pairs of net `id` if the mutant has another driver for it. `nets` are the pairs of the nets that are already
-    /// evaluated.
+    /// Returns the pairs of net `id` if the mutant has another driver for it. `nets` are evaluated already.
     fn replaced(&self, id: NetId, driver: &Driver, nets: &[Pairs], sound: &[Pairs]) -> Pairs {
         let design = self.design;
         let width = design.width(id);
@@ -162,7 +160,7 @@ impl<'a> Order<'a> {
         }
     }
 
-    /// Returns the pairs of the word that a ROM reads at its address. A fault may change the address or the words.
+    /// A fault may change the address or the words.
     fn read(&self, id: RomId, nets: &[Pairs], fault: Option<Injected>) -> Pairs {
         let rom = self.design.rom(id);
         let width = self.design.width(rom.data);
@@ -198,7 +196,7 @@ impl<'a> Order<'a> {
     }
 
     /// Returns the contents of registers and synchronous ROMs after the rising edge, from the pairs of all nets before it.
-    /// `reloads` says for each register whether its data equal its content in the fault-free design; it is not read without a
+    /// `reloads` says for each register whether its data equal its content in the fault-free design; it is read only with a
     /// fault.
     pub(super) fn next(
         &self,
@@ -259,8 +257,7 @@ impl<'a> Order<'a> {
     }
 }
 
-/// Returns the net whose value a driver passes on: the input of a renaming, or the one input that a mux can select. Returns
-/// `None` otherwise.
+/// Returns the net whose value a driver passes on: the input of a renaming, or the one input that a mux can select.
 fn taken(design: &Design, driver: &Driver, value: &impl Fn(NetId) -> Pairs) -> Option<NetId> {
     match driver {
         Driver::Op(Op::Relabel(a)) => Some(*a),
@@ -273,7 +270,7 @@ fn taken(design: &Design, driver: &Driver, value: &impl Fn(NetId) -> Pairs) -> O
     }
 }
 
-/// Returns the number of microinstructions of a design; for a pipeline, the number of its slots.
+/// Counts microinstructions, or the slots of a pipeline.
 pub(super) fn count(design: &Design) -> usize {
     match &design.pipeline {
         Some(pipeline) => pipeline.interval,
@@ -281,9 +278,8 @@ pub(super) fn count(design: &Design) -> usize {
     }
 }
 
-/// Returns the microinstructions that may follow microinstruction `at`, in ascending order. A reset leads to microinstruction 0
-/// from any. A pipeline stays in a slot while it waits. For example, in a pipeline of interval 4, slots 0, 1 and 2 may follow
-/// slot 1.
+/// Returns the microinstructions that may follow microinstruction `at`, in ascending order. A reset leads to microinstruction
+/// 0 from any. A pipeline stays in a slot while it waits.
 pub(super) fn following(design: &Design, at: usize) -> Vec<usize> {
     let mut following = vec![0];
     match &design.pipeline {
@@ -298,8 +294,7 @@ pub(super) fn following(design: &Design, at: usize) -> Vec<usize> {
     following
 }
 
-/// Finds, for each net of the design, the first net in `order` with the same driver. For example, two nets that both add `a`
-/// and `b` at one width are the same.
+/// Finds, for each net, the first net in `order` with the same driver.
 pub(super) fn same(design: &Design, order: &[NetId]) -> Vec<NetId> {
     let mut same: Vec<NetId> = design.iter().map(|(id, _)| id).collect();
     let mut drivers: Vec<(Driver, u32, bool, NetId)> = Vec::new();

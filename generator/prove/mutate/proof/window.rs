@@ -1,9 +1,9 @@
 //! Proves a fault equivalent by trying every combination of values on the nets around it.
 //!
-//! A window is a part of the netlist. The window reaches forward from the fault over some cells, at most to registers, ROMs and
-//! outputs. The window reaches backward to a minimum cut: the fewest bits that determine the window. The proof tries every
-//! value in the intervals of these nets; if there are more than 2^22 combinations, it fails. For example, the window of an
-//! inverted bit may end at an AND that masks the bit.
+//! A window is a part of the netlist. It reaches forward from the fault over some cells, at most to registers, ROMs and
+//! outputs. Backward it reaches to a minimum cut: the fewest bits that determine the window. The proof tries every value in
+//! the intervals of these nets; if there are more than 2^22 combinations, it fails. For example, the window of an inverted bit
+//! may end at an AND that masks the bit.
 
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
@@ -18,20 +18,20 @@ use crate::mutate::fault::Site;
 use glint_base::interval::Interval;
 use glint_rtl::netlist::{Design, Driver, NetId, Op, RomId, eval};
 
-/// The number of combinations that are evaluated together.
+/// The number of combinations that are evaluated together, each in a lane.
 const LANES: usize = 128;
 
-/// The bit patterns of a net in all lanes. A lane is one of the combinations that are evaluated together.
+/// The bit patterns of a net in all lanes.
 type NetLanes = [u64; LANES];
 
-/// The lanes of nets, by the numbers of the nets. For a mutant, only nets that the fault may change have lanes.
+/// The lanes of nets. For a mutant, only nets that the fault may change have lanes.
 type LanesByNet = Vec<Option<Box<NetLanes>>>;
 
 /// The largest number of combinations that are tried, as a power of two.
 const BITS: u32 = 22;
 
-/// The distance between the chunks of combinations that are tried one after the other. The distance is prime, so that all
-/// chunks are tried. The distance is large, because neighbouring combinations tend to give the same answer.
+/// The distance between the chunks of combinations that are tried one after the other. It is prime, so that all chunks are
+/// tried, and large, because neighbouring combinations tend to give the same answer.
 const STRIDE: u64 = 40_009;
 
 /// A prover for one design that tries every combination of values in a window, a small part of the netlist around a fault.
@@ -39,21 +39,19 @@ pub(super) struct Windows<'a> {
     design: Cow<'a, Design>,
     order: Vec<NetId>,
     intervals: Vec<Interval>,
-    /// The cells that read a net.
     readers: Vec<Vec<NetId>>,
     /// For each net, whether anything but a cell reads it: a register, a ROM, a port, or the comparison with the golden model.
     sinks: Vec<bool>,
-    /// For each net, whether a multiplier reads it.
     multiplied: Vec<bool>,
     /// For each net of a multiplier that several products share, its copies: one net for each product.
     copies: BTreeMap<NetId, Vec<NetId>>,
-    /// For each ROM, the addresses of the words that may be read, once they are computed; `None` inside if there are too many
+    /// For each ROM, the addresses of the words that may be read, once they are computed; `None` inside for too many
     /// combinations.
     read: Vec<OnceLock<Option<BTreeSet<u64>>>>,
 }
 
 impl<'a> Windows<'a> {
-    /// Prepares the windows of a design. Returns `None` for a design with a combinational loop.
+    /// Returns `None` for a design with a combinational loop.
     pub(super) fn of(design: &'a Design) -> Option<Self> {
         let (design, copies) = match &design.pipeline {
             Some(pipeline) => {
@@ -104,9 +102,9 @@ impl<'a> Windows<'a> {
         })
     }
 
-    /// Proves a fault equivalent: returns whether no combination of values in the window around the fault lets the fault change
-    /// a value outside. Returns `false` if this is not proved. A fault in a register, an input, an enable, a reset or the
-    /// control ROM is never proved here; a fault in words of another ROM that are never read always is.
+    /// Returns whether no combination of values in a window lets the fault change a value outside. A fault in a register, an
+    /// input, an enable, a reset or the control ROM is never proved here; a fault in words of another ROM that are never read
+    /// always is.
     pub(super) fn proves(&self, site: &Site) -> bool {
         match site {
             Site::Words(rom, words) if *rom != self.design.control.rom => {
@@ -127,8 +125,7 @@ impl<'a> Windows<'a> {
         }
     }
 
-    /// Returns whether one of these words of a ROM, given with their addresses, may be read. Returns true if this cannot be
-    /// decided.
+    /// Returns whether one of these words of a ROM, given with their addresses, may be read, as far as this can be decided.
     fn reads_any(&self, rom: RomId, words: &[(usize, u64)]) -> bool {
         let known = &self.read[rom.index()];
         // The addresses are computed outside `get_or_init`, which would make other threads wait. Two threads may compute them
@@ -146,7 +143,7 @@ impl<'a> Windows<'a> {
         }
     }
 
-    /// Returns the addresses of the words of a ROM that may be read, or `None` if there are too many combinations to try.
+    /// Returns `None` if there are too many combinations to try.
     fn words_read(&self, rom: RomId) -> Option<BTreeSet<u64>> {
         let address = self.design.rom(rom).address;
         let read = Mutex::new(BTreeSet::new());
@@ -158,15 +155,15 @@ impl<'a> Windows<'a> {
         read.into_inner().ok()
     }
 
-    /// Returns whether the fault at `net` changes no net at the end of some window around it.
+    /// Returns whether the fault changes no net at the end of some window.
     fn stays_inside(&self, net: NetId, site: &Site) -> bool {
         // Windows that end at multipliers come first, because others need more combinations.
         let mut tried = Vec::new();
         [false, true].into_iter().any(|through| self.stays_within(net, site, through, &mut tried))
     }
 
-    /// Tries windows of growing size: the nets that `net` reaches within 0, 1, 2, … cells. Windows in `tried` are skipped. With
-    /// `through`, a window reaches through multipliers. Returns whether one of them hides the fault.
+    /// Tries windows of growing size: the nets that `net` reaches within 0, 1, 2, … cells, except windows in `tried`. With
+    /// `through`, a window reaches through multipliers.
     fn stays_within(
         &self,
         net: NetId,
@@ -223,9 +220,9 @@ impl<'a> Windows<'a> {
         matches!(self.design.net(net).driver, Driver::Op(Op::Mul(..)))
     }
 
-    /// Evaluates the nets `wanted`, without and with the fault, for every combination of the values that determine them. These
-    /// values are on nets outside `affected`. `holds` gets the lanes without and with the fault, and the number of lanes that
-    /// count. Returns whether `holds` always returned true, or `None` if there are too many combinations.
+    /// Evaluates the nets `wanted`, without and with the fault, for every combination of the values that determine them, on
+    /// nets outside `affected`. `holds` gets the lanes without and with the fault, and the number of lanes that count. Returns
+    /// whether `holds` always returned true, or `None` if there are too many combinations.
     fn try_all(
         &self,
         wanted: &BTreeSet<NetId>,
@@ -282,8 +279,7 @@ impl<'a> Windows<'a> {
         Some(all.all(|holds| holds))
     }
 
-    /// Returns the number of values that are tried for a net of the cut. For the output of a ROM with faulty `words`, only
-    /// these words count.
+    /// For the output of a ROM with faulty `words`, only these words count.
     fn count_values(&self, net: NetId, words: Option<FaultyWords>) -> i128 {
         match words {
             Some(words) if words.net == net => words.faulty.len() as i128,
@@ -294,7 +290,7 @@ impl<'a> Windows<'a> {
         }
     }
 
-    /// Returns the nets between a cut and `wanted`, including `wanted`, in the order of evaluation.
+    /// Returns the nets in the order of evaluation, including `wanted`.
     fn cells_behind(&self, cut: &BTreeSet<NetId>, wanted: &BTreeSet<NetId>) -> Vec<NetId> {
         let mut behind = BTreeSet::new();
         let mut todo: Vec<NetId> = wanted.iter().copied().collect();
@@ -337,7 +333,6 @@ impl<'a> Windows<'a> {
         }
     }
 
-    /// Returns the lanes of a net in the mutant.
     fn evaluate_at_fault(
         &self,
         net: NetId,
@@ -363,8 +358,8 @@ impl<'a> Windows<'a> {
         }
     }
 
-    /// Returns the lanes of a net with the driver `driver`. An operand has the mutant's lanes if it has such lanes, and
-    /// otherwise the lanes of the fault-free design.
+    /// Returns the lanes of a net with the driver `driver`. An operand has the mutant's lanes if it has any, and otherwise the
+    /// lanes of the fault-free design.
     fn evaluate(
         &self,
         net: NetId,
@@ -386,18 +381,15 @@ impl<'a> Windows<'a> {
     }
 }
 
-/// The faulty words of a ROM.
 #[derive(Clone, Copy)]
 struct FaultyWords<'s> {
-    /// The net that is the output of the ROM.
     net: NetId,
-    /// All words of the fault-free ROM.
     sound: &'s [u64],
     /// The address and the faulty contents of each faulty word.
     faulty: &'s [(usize, u64)],
 }
 
-/// Returns whether the faulty driver of a net reads only nets of the cut, and nets that are evaluated before the net. A fault may
+/// Returns whether the faulty driver of a net reads only nets of the cut and nets that are evaluated earlier. A fault may
 /// replace an operand by a net that the window does not contain.
 fn reads_known_nets(net: NetId, site: &Site, cut: &BTreeSet<NetId>, steps: &[NetId]) -> bool {
     let Site::Driver(_, Driver::Op(op)) = site else { return true };
@@ -406,7 +398,6 @@ fn reads_known_nets(net: NetId, site: &Site, cut: &BTreeSet<NetId>, steps: &[Net
     op.operands().iter().all(|operand| cut.contains(operand) || earlier.contains(operand))
 }
 
-/// Stores the lanes of a net.
 fn put(values: &mut LanesByNet, net: NetId, lanes: NetLanes) {
     match &mut values[net.index()] {
         Some(held) => **held = lanes,
@@ -414,7 +405,7 @@ fn put(values: &mut LanesByNet, net: NetId, lanes: NetLanes) {
     }
 }
 
-/// Returns the lanes of a net: the mutant's own lanes if it has them, else the lanes of the fault-free design.
+/// Returns the mutant's own lanes of a net if it has them, else the lanes of the fault-free design.
 fn lanes_of<'v>(sound: &'v LanesByNet, mutant: Option<&'v LanesByNet>, net: NetId) -> &'v NetLanes {
     if let Some(mutant) = mutant
         && let Some(lanes) = &mutant[net.index()]

@@ -1,7 +1,6 @@
 //! Writes the tables and sentences that describe a configuration, for pages in Markdown and in HTML.
 //!
-//! The text of cells and sentences is plain, with names in backquotes, for example `clk`. Each page format converts the
-//! backquotes.
+//! The text of cells and sentences is plain, with names in backquotes, which each page format converts.
 
 pub mod blocks;
 mod table;
@@ -19,28 +18,21 @@ use glint_rtl::netlist::{Design, Pipeline};
 use glint_rtl::verilog::naming::Naming;
 pub use table::{Align, Column, TextTable, code};
 
-/// The heading of the column with the numbers that blocks, ports and ROMs have in the figure of the source document.
+/// The heading of the column with the numbers in the figure of the source document.
 const NUMBER: &str = "no.";
 
-/// The facts that a page shows in addition to the netlist.
 pub struct PageInputs<'a> {
-    /// The path of the configuration file, as the user gave it: `configs/<name>.toml`.
+    /// The path as the user gave it: `configs/<name>.toml`.
     pub path: &'a str,
-    /// The configuration: the values of the device's keys.
     pub config: &'a Config,
-    /// The schema of the device: its keys with their ranges and defaults.
     pub schema: &'a Schema,
-    /// The accuracy contract of the core, which states its formula and its error bound.
     pub contract: &'a dyn Contract,
-    /// The evidence for the contract's error bound, such as a record of an exhaustive check.
     pub backing: &'a Backing,
-    /// The changes of keys that would reduce the error bound; `None` if no change would.
+    /// The changes of keys that would reduce the error bound, if any would.
     pub advice: Option<Advice>,
-    /// The number of clocks between the events of the handshake.
     pub timing: &'a HandshakeTiming,
-    /// A worked example: one computation with the values of all operands and outputs.
     pub example: &'a WorkedExample,
-    /// The clock numbers of a line, if the device computes several points after one `start`.
+    /// The clocks of a line, for a device that computes several points after one `start`.
     pub line: Option<&'a LineClocks>,
 }
 
@@ -50,12 +42,10 @@ const MOST_OF_F: u64 = 1 << 34;
 /// The largest number of combinations for which an exhaustive check of any other device takes minutes: some µs for each.
 const MOST_OF_OUTPUTS: u64 = 1 << 28;
 
-/// A sentence that explains the notation of formats.
 pub const FORMATS: &str = "Formats: `uI.F` is unsigned, `sI.F` two's complement, with I integer bits (a sign bit apart) \
                            and F fraction bits; the value of a signal is its integer times 2⁻ᶠ.";
 
-/// Returns a sentence about the numbers of the blocks: whether the figure of the source document, such as a patent, numbers
-/// them.
+/// Says whether the figure of the source document, such as a patent, numbers the blocks.
 pub fn numbering(design: &Design) -> &'static str {
     if design.nets.iter().any(|net| net.block.is_some()) {
         "In order of their numbers in the source's figure; those without a number are ours."
@@ -64,7 +54,7 @@ pub fn numbering(design: &Design) -> &'static str {
     }
 }
 
-/// Returns the text for a format. For example, `u0.8`; a single bit without a binary point gives `1 bit`.
+/// Returns for example `u0.8`; a single bit without a binary point gives `1 bit`.
 pub fn format_text(format: Format) -> String {
     match format.width() {
         1 => "1 bit".to_owned(),
@@ -72,8 +62,7 @@ pub fn format_text(format: Format) -> String {
     }
 }
 
-/// Returns a sentence with the changes of keys in [`PageInputs::advice`], which reduce the error bound. The sentence is empty
-/// without advice.
+/// Returns a sentence with [`PageInputs::advice`], or an empty text.
 pub fn limit(inputs: &PageInputs) -> String {
     match &inputs.advice {
         Some(advice) => format!("The key that helps most: {advice}."),
@@ -81,7 +70,7 @@ pub fn limit(inputs: &PageInputs) -> String {
     }
 }
 
-/// Returns sentences about the error bound and the evidence for it. If the contract states no bound, the text says so.
+/// Describes the error bound and the evidence for it.
 pub fn accuracy(contract: &dyn Contract, backing: &Backing) -> String {
     let bounds = contract.bounds();
     if !bounds.are_stated() {
@@ -124,7 +113,7 @@ pub fn accuracy(contract: &dyn Contract, backing: &Backing) -> String {
     )
 }
 
-/// Returns a sentence about the operands that an exhaustive check of the configuration visits.
+/// Describes the operands that an exhaustive check of the configuration visits.
 pub fn proof(inputs: &PageInputs) -> String {
     let sweep = inputs.contract.sweep();
     let mut ranges: Vec<String> = Vec::new();
@@ -160,7 +149,6 @@ pub fn proof(inputs: &PageInputs) -> String {
     )
 }
 
-/// Returns a number in the source's figure as text, and an empty text for `None`.
 fn number(number: Option<u16>) -> String {
     match number {
         Some(number) => number.to_string(),
@@ -168,8 +156,8 @@ fn number(number: Option<u16>) -> String {
     }
 }
 
-/// Returns a table of the ports. A write strobe is in the row of its operand: for example, the row of `exponent` has
-/// `exponent_write` in the column "written by".
+/// A write strobe is in the row of its operand: for example, the row of `exponent` has `exponent_write` in the column "written
+/// by".
 pub fn ports(design: &Design) -> TextTable {
     let mut table =
         TextTable::of("port | no.: | direction | role | format | written by | what it is");
@@ -207,7 +195,7 @@ pub fn ports(design: &Design) -> TextTable {
     table.without_empty(NUMBER).without_empty("written by")
 }
 
-/// Returns a table of the ROMs, including the control ROM with the microprogram.
+/// Lists the ROMs, including the control ROM.
 pub fn roms(design: &Design, config: &Config) -> TextTable {
     let naming = Naming::new(design).styled(Surroundings::new(config, None).style);
     let mut table = TextTable::of("ROM | no.: | words × bits: | bits: | reads | file | an entry");
@@ -230,15 +218,13 @@ pub fn roms(design: &Design, config: &Config) -> TextTable {
     table.without_empty(NUMBER)
 }
 
-/// Returns the numbers that the control lines of a field have in the source's figure, with spaces between. For example, `30
-/// 31`.
+/// Returns the numbers of control lines in the source's figure. For example, `30 31`.
 fn lines(lines: &[u16]) -> String {
     let numbers: Vec<String> = lines.iter().map(u16::to_string).collect();
     numbers.join(" ")
 }
 
-/// Returns a table of the fields of the control word. For example, the column "bits" has `4:2` for a field of three bits from
-/// bit 2 on.
+/// Lists the fields of the control word. The column "bits" has `4:2` for a field of three bits from bit 2 on.
 pub fn fields(design: &Design) -> TextTable {
     let mut table = TextTable::of("field | lines | bits | controls");
     for field in facts::fields(design) {
@@ -264,8 +250,8 @@ pub fn fields(design: &Design) -> TextTable {
     table.without_empty("lines")
 }
 
-/// Returns a table of the microprogram as the source patents print theirs: a row for each microinstruction, and a column for
-/// each field of the control word. A cell has the bits of the field, for example `0 1`.
+/// The table has the form of the source patents: a row for each microinstruction, and a column for each field of the control
+/// word. A cell has the bits of the field, for example `0 1`.
 pub fn microprogram(design: &Design) -> TextTable {
     let fields = facts::fields(design);
     let mut headings = String::new();
@@ -300,8 +286,8 @@ pub fn microprogram(design: &Design) -> TextTable {
     table
 }
 
-/// Returns a table of the events of the handshake with their clocks, counted from the clock that takes `start`. If a clock
-/// depends on the length of a line, the table has a formula; if it depends on other operands, a remark.
+/// Clocks are counted from the clock that takes `start`. If a clock depends on the length of a line, the table has a formula;
+/// if it depends on other operands, a remark.
 pub fn clocks(timing: &HandshakeTiming, line: Option<&LineClocks>) -> TextTable {
     let mut events: Vec<(&str, Option<u32>, Option<Linear>)> =
         vec![("`valid` is high, first", timing.start_to_valid, None)];
@@ -323,7 +309,7 @@ pub fn clocks(timing: &HandshakeTiming, line: Option<&LineClocks>) -> TextTable 
     table
 }
 
-/// Returns sentences about the handshake by which points enter and leave a pipeline.
+/// Describes the handshake by which points enter and leave a pipeline.
 pub fn handshake(pipeline: &Pipeline) -> &'static str {
     if pipeline.stall {
         "A point is taken in each clock in which `in_valid` and `in_ready` are high: the operands of that clock are its \
@@ -335,7 +321,7 @@ pub fn handshake(pipeline: &Pipeline) -> &'static str {
     }
 }
 
-/// Returns a table of the number of clocks from taking a point to each event of a pipeline.
+/// Clocks are counted from taking a point.
 pub fn pipeline_clocks(pipeline: &Pipeline) -> TextTable {
     let mut table = TextTable::of("event | clock:");
     table.row(["the next point is taken".to_owned(), pipeline.interval.to_string()]);
@@ -344,7 +330,7 @@ pub fn pipeline_clocks(pipeline: &Pipeline) -> TextTable {
     table
 }
 
-/// Returns a table of the terms that add up to the error bound of each output, or of all outputs if they have the same bound.
+/// Lists the terms of the bound of each output, or of all outputs if they have the same bound.
 pub fn terms(bounds: &Bounds) -> TextTable {
     if bounds.are_alike() {
         let mut table = TextTable::of("key | units: | what rounds or approximates");
@@ -363,8 +349,8 @@ pub fn terms(bounds: &Bounds) -> TextTable {
     table
 }
 
-/// Returns a table of the parts of the computation, with the share of each in the error of each output and in the area. The
-/// last row has the sums of the area. Returns `None` if the contract does not know the parts.
+/// Lists the parts of the computation, with the share of each in the error of each output and in the area. The last row has
+/// the sums of the area. Returns `None` if the contract does not know the parts.
 pub fn parts(contract: &dyn Contract) -> Option<TextTable> {
     let parts = contract.parts();
     if parts.is_empty() {
@@ -394,7 +380,7 @@ pub fn parts(contract: &dyn Contract) -> Option<TextTable> {
     Some(table)
 }
 
-/// Returns a table of the operands, with the values for which the contract holds.
+/// Lists the operands, with the values for which the contract holds.
 pub fn domain(design: &Design, contract: &dyn Contract) -> TextTable {
     let mut table = TextTable::of("operand | format | from: | to: | what it is");
     for operand in contract.operands() {
@@ -414,8 +400,7 @@ pub fn domain(design: &Design, contract: &dyn Contract) -> TextTable {
     table
 }
 
-/// Returns a table of the worked example: its operands and outputs as raw integers and as values. Beside each output is the
-/// value of the formula in f64.
+/// Lists operands and outputs as raw integers and as values, and the value of the formula in f64 beside each output.
 pub fn example(contract: &dyn Contract, example: &WorkedExample) -> TextTable {
     let mut table = TextTable::of("port | integer: | value: | formula in f64:");
     let operands: Vec<i64> = example.operands.iter().map(|it| it.raw as i64).collect();
@@ -438,8 +423,7 @@ pub fn example(contract: &dyn Contract, example: &WorkedExample) -> TextTable {
     table
 }
 
-/// Returns a table of the device's keys. Keys that every device has are listed only if they are not at their defaults. A key
-/// that does not apply has the value `–`.
+/// Keys that every device has are listed only if they are not at their defaults. A key that does not apply has the value `–`.
 pub fn keys(schema: &Schema, config: &Config) -> TextTable {
     let mut table = TextTable::of("key | value | accepts | what it governs");
     let mut keys: Vec<&Key> = schema.keys.iter().collect();
@@ -466,8 +450,7 @@ pub fn keys(schema: &Schema, config: &Config) -> TextTable {
     table
 }
 
-/// Returns a text of at most 520 characters unchanged. A longer text is cut after 520 characters, and its number of
-/// characters is added.
+/// Cuts a text after 520 characters, and adds its number of characters.
 fn shortened(text: String) -> String {
     const ROOM: usize = 520;
     match text.char_indices().nth(ROOM) {
@@ -476,7 +459,7 @@ fn shortened(text: String) -> String {
     }
 }
 
-/// Returns a value with six decimals, without trailing zeros. For example, `0.866026`, `-0.25` and `1000`.
+/// Writes six decimals, without trailing zeros. For example, `0.866026`, `-0.25` and `1000`.
 pub fn short(value: f64) -> String {
     let text = format!("{value:.6}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()

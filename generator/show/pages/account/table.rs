@@ -1,36 +1,29 @@
 //! Defines a table of plain text with headings and column alignment, which pages print as Markdown or HTML.
 
-/// The alignment of the cells of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Align {
-    /// The column has words, which are aligned to the left.
+    /// Words are aligned to the left.
     Left,
-    /// The column has numbers, which are aligned to the right.
+    /// Numbers are aligned to the right.
     Right,
 }
 
-/// A column of a table: its heading and its alignment.
 #[derive(Clone, Debug)]
 pub struct Column {
-    /// The heading of the column.
     pub heading: String,
-    /// Whether the cells are aligned to the left or to the right.
     pub align: Align,
 }
 
-/// A table of plain text, in which names are in backquotes.
 #[derive(Clone, Debug)]
 pub struct TextTable {
-    /// The columns, from left to right.
     pub columns: Vec<Column>,
-    /// The rows, from top to bottom. Each has a cell for each column.
+    /// The rows from top to bottom, each with a cell for each column.
     pub rows: Vec<Vec<String>>,
 }
 
 impl TextTable {
-    /// Makes a table without rows from its headings, which are separated by `|` with a space on each side. A heading with a
-    /// colon at its end belongs to a column of numbers. For example, `port | bits:` has a column of words and a column of
-    /// numbers.
+    /// Makes a table without rows from its headings, separated by ` | `. A heading with a colon at its end belongs to a column
+    /// of numbers. For example, `port | bits:` has a column of words and a column of numbers.
     pub fn of(headings: &str) -> Self {
         let column = |heading: &'_ str| match heading.strip_suffix(':') {
             Some(heading) => Column { heading: heading.to_owned(), align: Align::Right },
@@ -39,13 +32,13 @@ impl TextTable {
         Self { columns: headings.split(" | ").map(column).collect(), rows: Vec::new() }
     }
 
-    /// Adds one row, which must have a cell for each column.
+    /// The row must have a cell for each column.
     pub fn row(&mut self, cells: impl IntoIterator<Item = String>) {
         self.rows.push(cells.into_iter().collect());
     }
 
-    /// Leaves out the column `heading` if all of its cells are empty. For example, a device without numbers in a figure
-    /// has no column "no.".
+    /// Leaves out the column `heading` if all of its cells are empty. For example, a device without numbers in a figure has no
+    /// column "no.".
     #[must_use]
     pub fn without_empty(mut self, heading: &str) -> Self {
         let at = self.columns.iter().position(|column| column.heading == heading);
@@ -61,7 +54,7 @@ impl TextTable {
     }
 }
 
-/// Puts a name or a number into backquotes; an empty text stays empty. For example, clk becomes `clk` in backquotes.
+/// An empty text stays empty.
 pub fn code(text: &str) -> String {
     match text {
         "" => String::new(),

@@ -1,25 +1,24 @@
-//! Makes the datasheet's tables of measurements from a record of `glint synth`: area, frequency, points a second and critical
-//! path on each target.
+//! Makes the datasheet's tables from a record of `glint synth`: area, frequency, points a second and critical path on each
+//! target.
 
 use super::table::TableView;
 use crate::figures::{Figures, Frequency, Rate, SynthesisRecord};
 use crate::pages::account::TextTable;
 
-/// The text of a cell if the target has no such resource, or if nothing was measured.
+/// The table has this text if the target has no such resource, or if nothing was measured.
 const NONE: &str = "–";
 
-/// The measurements of a core as the datasheet prints them.
 pub struct RecordView {
     pub table: TableView,
-    /// The longest path on each target that was timed: the name of the chip or cell library, and the path as text.
+    /// The name of each timed chip or cell library, and its longest path as text.
     pub paths: Vec<(String, String)>,
-    /// The targets on which no frequency was measured: the name of the chip, and the reason.
+    /// The chips on which no frequency was measured, with the reason.
     pub untimed: Vec<(String, String)>,
     pub tools: String,
 }
 
 impl RecordView {
-    /// Makes the tables from a record. The row of the target named `target` comes first, if the record has it.
+    /// The row of the target named `target` comes first, if the record has it.
     pub fn new(record: &SynthesisRecord, target: Option<&str>) -> Self {
         let mut measured: Vec<&Figures> = record.targets.iter().collect();
         measured.sort_by_key(|figures| Some(figures.target.name()) != target);
@@ -42,9 +41,9 @@ impl RecordView {
     }
 }
 
-/// Returns the measurement on one FPGA, with its frequency and its rate, for the summary at the head of the datasheet. The FPGA
-/// is `target` if the record has it, otherwise the FPGA with the most points per second. For example, a pipeline for ECP5 shows
-/// its numbers on ECP5, even if another FPGA is faster. Returns `None` if the record has no frequency of an FPGA.
+/// Returns the measurement for the summary at the head of the datasheet. It is for the FPGA `target` if the record has it, and
+/// otherwise for the FPGA with the most points per second. A pipeline for ECP5 thus shows its numbers on ECP5, even if another
+/// FPGA is faster.
 pub fn leading<'r>(
     record: &'r SynthesisRecord,
     target: Option<&str>,
@@ -64,7 +63,6 @@ pub fn leading<'r>(
     on_target.or(fastest).copied()
 }
 
-/// Returns the row of the table for one target.
 fn row(figures: &Figures, clocks_per_point: f64) -> Vec<String> {
     let area = &figures.area;
     let frequency = match figures.frequency {
@@ -94,7 +92,6 @@ fn row(figures: &Figures, clocks_per_point: f64) -> Vec<String> {
     ]
 }
 
-/// Returns the text of a count, or [`NONE`].
 fn count(number: Option<u64>) -> String {
     match number {
         Some(number) => number.to_string(),
@@ -102,7 +99,6 @@ fn count(number: Option<u64>) -> String {
     }
 }
 
-/// Returns the text of a number with `digits` digits after the point, or [`NONE`].
 fn decimal(number: Option<f64>, digits: usize) -> String {
     match number {
         Some(number) => format!("{number:.digits$}"),

@@ -1,44 +1,37 @@
-//! Makes the datasheet's table of the microprogram in the form that the patents use. The table has a row for each
-//! microinstruction and a column for each control line.
+//! Makes the datasheet's table of the microprogram in the form that the patents use. It has a row for each microinstruction
+//! and a column for each control line.
 
 use crate::pages::account;
 use crate::pages::markup::html;
 use glint_rtl::netlist::{Design, FieldKind};
 
-/// The microprogram as a table: a row for each microinstruction, a column for each control line.
 pub struct Microprogram {
     /// Whether the source's figure has numbers for the control lines.
     pub numbered: bool,
-    /// The fields of the control word, from the highest bits to the lowest.
+    /// The fields, from the highest bits to the lowest.
     pub fields: Vec<FieldView>,
-    /// The rows of the table: the microinstructions, from address 0.
+    /// The microinstructions, from address 0.
     pub rows: Vec<MicroinstructionRow>,
 }
 
-/// A field of the control word.
 pub struct FieldView {
-    /// The name of the field.
     pub name: String,
-    /// For each control line of the field, its number in the source's figure. If the figure numbers no line of any field, it is
-    /// the bit in the control word. If the figure numbers only other fields, it is `–`.
+    /// For each control line, its number in the source's figure. If the figure numbers no line of any field, it is the bit in
+    /// the control word. If the figure numbers only other fields, it is `–`.
     pub lines: Vec<String>,
 }
 
-/// A row of the table: a microinstruction.
 pub struct MicroinstructionRow {
-    /// The address of the microinstruction.
     pub address: usize,
-    /// The name of the microinstruction.
     pub name: String,
-    /// For each line: whether a field begins here, whether it is 1, and the meaning of the field's value. For example,
-    /// the value 2 of a field of two bits has a line with `(true, true, …)` and a line with `(false, false, …)`.
+    /// For each line: whether a field begins here, whether it is 1, and the meaning of the field's value. For example, the
+    /// value 2 of a field of two bits has a line with `(true, true, …)` and a line with `(false, false, …)`.
     pub bits: Vec<(bool, bool, String)>,
     /// The microinstruction that follows, as HTML.
     pub then: String,
 }
 
 impl Microprogram {
-    /// Makes the table of a design's microprogram.
     pub fn new(design: &Design) -> Self {
         let control = &design.control;
         let numbered = control.fields.iter().any(|field| !field.lines.is_empty());
@@ -70,7 +63,7 @@ impl Microprogram {
     }
 }
 
-/// Returns the entries of a row for [`MicroinstructionRow::bits`]. `values` are the values of the fields.
+/// Returns [`MicroinstructionRow::bits`] for the `values` of the fields.
 fn bits(design: &Design, values: &[u64]) -> Vec<(bool, bool, String)> {
     let mut bits = Vec::new();
     for (field, &value) in design.control.fields.iter().zip(values) {

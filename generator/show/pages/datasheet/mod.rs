@@ -1,8 +1,8 @@
 //! Makes the datasheet of a configuration: one HTML page, like a vendor's product guide, that needs no other file and no
 //! network.
 //!
-//! All content comes from the configuration, the netlist, the golden model, the contract, simulation, synthesis and records of
-//! checks and measurements. No code here depends on the name of a device.
+//! All content comes from the configuration, the netlist, the golden model, the contract, simulation, synthesis and records.
+//! No code here depends on the name of a device.
 
 mod measured;
 mod microprogram;
@@ -29,31 +29,25 @@ use waves::Waves;
 /// The width and the height of the picture of a highlight, in pixels.
 const SIDE: u32 = 260;
 
-/// The number of samples along each side of a pixel of this picture.
+/// The number of samples along each side of a pixel of the picture.
 const SAMPLES: u32 = 2;
 
-/// The core that a datasheet describes, with the evidence and measurements that it shows.
 pub struct Subject<'a> {
-    /// The core that the datasheet describes.
     pub core: &'a Core,
-    /// The path of the configuration file, as the user gave it. The page shows its label.
+    /// The path as the user gave it. The page shows its label.
     pub path: &'a str,
-    /// The evidence for the error bound of the contract, such as a proof record.
     pub backing: Backing,
-    /// The record of the core's exhaustive check, if there is one.
     pub proof: Option<Record>,
-    /// The record of the core's measurements by `glint synth`, if there is one.
     pub figures: Option<figures::SynthesisRecord>,
-    /// The tool that counts the core's cells if there is no record. Without record and tool, the page explains how to synthesise
-    /// the core.
+    /// The tool that counts the core's cells if there is no record. Without record and tool, the page explains how to
+    /// synthesise the core.
     pub synthesis: Option<&'a dyn Synthesis>,
 }
 
-/// A finished datasheet: its HTML page and its timing diagram.
 pub struct Datasheet {
     /// The HTML page. Its last line has a digest of the lines above; see [`glint_core::package::is_sealed`].
     pub page: String,
-    /// The timing diagram as JSON for WaveDrom.
+    /// The timing diagram for WaveDrom.
     pub wavedrom: String,
 }
 
@@ -64,7 +58,7 @@ struct DatasheetResults {
     line: Option<LineClocks>,
     waves: Waves,
     curves: DeviceCurves,
-    /// The charts of a function of one operand over its domain; empty for other devices.
+    /// The charts of a function of one operand; empty for other devices.
     over_domain: Vec<Chart>,
     /// The picture of a highlight; `None` if a scene cannot supply the operands of the device.
     highlight: Option<HighlightPicture>,
@@ -73,9 +67,9 @@ struct DatasheetResults {
 
 /// A picture that the golden model computes, beside the picture with Blinn's function in f64 and their difference.
 struct HighlightPicture {
-    /// The three pictures side by side, as a PNG file.
+    /// The picture of the golden model, the picture with Blinn's function in f64, and their difference, side by side as PNG.
     png: Vec<u8>,
-    /// The picture of the golden model alone, as a PNG file.
+    /// The picture of the golden model alone, as PNG.
     ball: Vec<u8>,
     exponent: u32,
     /// The peak signal-to-noise ratio in decibels; `None` if the pictures are equal.
@@ -85,13 +79,13 @@ struct HighlightPicture {
     gain: u8,
 }
 
-/// Returns the number of times that [`datasheet`] calls `done`, so that a caller can show progress. For example, without
-/// synthesis it is 26: 25 times for the curves and once for the picture.
+/// Returns the number of calls of `done` by [`datasheet`]. For example, without synthesis it is 26: 25 times for the curves
+/// and once for the picture.
 pub fn steps(synthesis: bool) -> usize {
     curves::STEPS + 1 + if synthesis { COMPARED.len() } else { 0 }
 }
 
-/// Makes the datasheet of a core. The function calls `done` after each step of work, so that a caller can show progress.
+/// The function calls `done` after each step of work, so that a caller can show progress.
 ///
 /// # Errors
 /// Fails if a simulated computation of the device never ends, if synthesis fails, or if a picture or a chart cannot be drawn.
@@ -125,7 +119,7 @@ pub fn datasheet(subject: &Subject, done: &(dyn Fn() + Sync)) -> Result<Datashee
     Ok(Datasheet { page: page::page(subject, &measured)?, wavedrom: measured.waves.wavedrom()? })
 }
 
-/// Returns the timing diagram of a core as an SVG file, and a description of the diagram in words.
+/// Returns the SVG file, and a description of the diagram in words.
 ///
 /// # Errors
 /// Fails if a simulated computation of the device never ends.
@@ -135,9 +129,6 @@ pub fn timing_diagram(core: &Core) -> Result<(String, String)> {
 }
 
 /// Renders a ball in the two default lights, through the golden model and with Blinn's function.
-///
-/// # Errors
-/// Fails if the picture cannot be rendered.
 fn highlight(core: &Core) -> Result<HighlightPicture> {
     let contract = core.contract.as_ref();
     let exponent = render::usual_exponent(contract);

@@ -1,5 +1,4 @@
-//! Collects the facts that the datasheet of a configuration shows, as plain structs, and prints them with a template as an HTML
-//! page.
+//! Collects the facts that a datasheet shows, and prints them with a template as an HTML page.
 
 use anyhow::Result;
 use base64::Engine;
@@ -64,7 +63,6 @@ struct Page<'a> {
     toml: String,
 }
 
-/// The section of the page that explains how a computation is controlled.
 enum ControlSection {
     Microprogram {
         microprogram: Microprogram,
@@ -115,9 +113,6 @@ struct HighlightView {
     gain: u8,
 }
 
-/// Returns the HTML page of a datasheet.
-///
-/// # Errors
 /// Fails if a chart cannot be plotted, or if a template cannot be printed.
 pub fn page(subject: &Subject, measured: &DatasheetResults) -> Result<String> {
     let core = subject.core;
@@ -208,7 +203,7 @@ pub fn page(subject: &Subject, measured: &DatasheetResults) -> Result<String> {
     Ok(package::sealed(text, Seal::Markup))
 }
 
-/// Returns the rows of the summary at the head of the page: the name of a quantity, and its value with the unit.
+/// The rows have the name of a quantity, and its value with the unit.
 fn glance(subject: &Subject, measured: &DatasheetResults) -> Vec<(&'static str, String)> {
     let design = &subject.core.design;
     let contract = subject.core.contract.as_ref();
@@ -267,21 +262,18 @@ fn glance(subject: &Subject, measured: &DatasheetResults) -> Vec<(&'static str, 
     glance
 }
 
-/// Returns the target for which a pipeline is scheduled, or `None` if the design is no pipeline.
 fn target(design: &Design) -> Option<&str> {
     design.pipeline.as_ref().map(|pipeline| pipeline.target.as_str())
 }
 
-/// Returns the cells on the FPGA family `target`, or on the first family if `target` is `None` or not among them. Returns
-/// `None` if `usage` is empty.
+/// Returns the cells on the FPGA family `target` if it is known, and otherwise on the first family.
 fn first_usage<'u>(usage: &'u [FamilyUsage], target: Option<&str>) -> Option<&'u FamilyUsage> {
     let family = FAMILIES.iter().find(|family| Some(family.name()) == target);
     let on_target = usage.iter().find(|it| family.is_some_and(|own| own.title == it.family));
     on_target.or_else(|| usage.first())
 }
 
-/// Returns the multipliers of a design in words: the number of each size, the largest size first. For example, `21 × 10, 3 of
-/// 10 × 8`, or `none`.
+/// Counts the multipliers of each size, the largest size first. For example, `21 × 10, 3 of 10 × 8`, or `none`.
 fn multipliers(design: &Design) -> String {
     let all = comparison::multipliers(design);
     let sizes = all.chunk_by(|a, b| a == b).map(|alike| {
@@ -297,14 +289,13 @@ fn multipliers(design: &Design) -> String {
     }
 }
 
-/// Returns the number of points per second at the measured frequency, in words. Returns `None` if no frequency was measured.
+/// Returns `None` if no frequency was measured.
 fn rate(subject: &Subject) -> Option<String> {
     let target = target(&subject.core.design);
     let (figures, frequency, rate) = measured::leading(subject.figures.as_ref()?, target)?;
     Some(format!("{:.1} million at {:.1} MHz ({})", rate.points, frequency.median, figures.device))
 }
 
-/// Returns a sentence that says how often the core can compute a point.
 fn throughput(subject: &Subject, timing: &HandshakeTiming) -> String {
     let often = match timing.clocks_per_point() {
         Some(1) => "A point takes a clock".to_owned(),
@@ -331,7 +322,7 @@ fn throughput(subject: &Subject, timing: &HandshakeTiming) -> String {
     }
 }
 
-/// Returns a number with a narrow space between thousands, at which no line breaks.
+/// Puts narrow spaces, at which no line breaks, between thousands.
 fn grouped(number: u64) -> String {
     text::grouped(number).replace(' ', "\u{202f}")
 }

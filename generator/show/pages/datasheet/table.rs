@@ -1,37 +1,32 @@
-//! Converts tables of plain text to the HTML tables of a datasheet. On a phone, a wide table has the cells of a row below
-//! each other.
+//! Converts tables of plain text to the HTML tables of a datasheet. On a phone, a wide table has the cells of a row below each
+//! other.
 
 use crate::pages::account::{Align, TextTable};
 use crate::pages::markup::html;
 
-/// The width of a phone in characters of a table. On a phone, a wider table is shown with its cells below each other.
+/// The width of a phone in characters. On a phone, a wider table has its cells below each other.
 const NARROW: usize = 36;
 
-/// A table as the template of the datasheet prints it.
 pub struct TableView {
-    /// A description of the table for screen readers.
+    /// A description for screen readers.
     pub label: &'static str,
-    /// Whether a narrow page shows the cells of a row below each other. For example, a table with a sentence in a cell is shown
-    /// so.
+    /// Whether a narrow page shows the cells of a row below each other, for example because a cell has a sentence.
     pub stacks: bool,
-    /// Class and heading of each column.
+    /// The class and the heading of each column.
     pub columns: Vec<(&'static str, String)>,
-    /// The cells of the table, row by row.
     pub rows: Vec<Vec<CellView>>,
 }
 
-/// A cell of a table, as the template prints it.
 pub struct CellView {
-    /// The class of the cell in the style sheet.
+    /// The class in the style sheet.
     pub class: &'static str,
-    /// The heading of its column, as plain text, for a narrow page that has no room for columns.
+    /// The heading of its column, for a narrow page that has no room for columns.
     pub label: String,
-    /// The contents of the cell, as HTML.
+    /// The contents as HTML.
     pub text: String,
 }
 
 impl TableView {
-    /// Converts a table of plain text, in which names are in backquotes.
     pub fn new(label: &'static str, table: &TextTable) -> Self {
         let class = |align| match align {
             Align::Left => "",

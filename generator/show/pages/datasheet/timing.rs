@@ -6,13 +6,13 @@ use std::ops::Range;
 use super::waves::{Lane, LaneStyle, MICROINSTRUCTION, Waves};
 use crate::pages::drawing::{Drawing, Item, SIZE, text_width};
 
-/// The vertical distance from one lane to the next, in units of the drawing.
+/// The distance from one lane to the next, in units of the drawing.
 const PITCH: i32 = 26;
 
 /// The vertical distance from a low signal to a high one.
 const SWING: i32 = 16;
 
-/// The height of the space above the first lane, which has the numbers of the clocks.
+/// The space above the first lane for the numbers of the clocks.
 const HEAD: i32 = 24;
 
 /// The smallest and the largest width of a clock.
@@ -21,16 +21,16 @@ const CLOCK: std::ops::RangeInclusive<i32> = 34..=104;
 /// The horizontal length of a slanted edge.
 const SLANT: i32 = 3;
 
-/// The width that a frame with a value needs in addition to the width of the text.
+/// A frame with a value is wider than its text by this.
 const MARGIN: i32 = 10;
 
-/// The largest width of the drawing. A page shows a drawing of this width without scrolling.
+/// A page shows a drawing of this width without scrolling.
 const ROOM: i32 = 1120;
 
 /// The vertical distance between two strips of a waveform that is too wide for one strip.
 const APART: i32 = 22;
 
-/// Draws a waveform. If it is too long for one strip, it is continued in strips below.
+/// A waveform that is too long for one strip continues in strips below.
 pub fn drawing(waves: &Waves) -> Drawing {
     let widest = waves.lanes.iter().map(|lane| text_width(&label(lane)));
     let left = widest.max().unwrap_or(0) + 16;
@@ -56,7 +56,7 @@ pub fn drawing(waves: &Waves) -> Drawing {
     }
 }
 
-/// Returns the name of a signal, with the number that its block has in the source's figure.
+/// The number of the signal's block in the source's figure is added.
 fn label(lane: &Lane) -> String {
     match lane.number {
         Some(number) => format!("{} ({number})", lane.name),
@@ -64,8 +64,8 @@ fn label(lane: &Lane) -> String {
     }
 }
 
-/// Returns two widths for a clock, both limited to [`CLOCK`]. Unless the limit is too small, all texts fit with the first
-/// width. With the second one, they fit if the diagram shows addresses instead of the names of microinstructions.
+/// Returns two widths for a clock, both limited to [`CLOCK`]. All texts fit with the first width, and with the second if the
+/// diagram shows addresses instead of the names of microinstructions.
 fn clock_widths(waves: &Waves) -> [i32; 2] {
     let (mut with_names, mut with_addresses) = (0, 0);
     for lane in &waves.lanes {
@@ -85,8 +85,8 @@ fn clock_widths(waves: &Waves) -> [i32; 2] {
     [with_names, with_addresses].map(|width| width.clamp(*CLOCK.start(), *CLOCK.end()))
 }
 
-/// Returns the ranges of positions in `places` over which a value stays the same, as half-open ranges. For example, the values
-/// 5, 5 and 6 have the ranges from 0 to 2 and from 2 to 3.
+/// Returns the half-open ranges of positions in `places` over which a value stays the same. For example, the values 5, 5 and 6
+/// have the ranges from 0 to 2 and from 2 to 3.
 fn segments(lane: &Lane, places: Range<usize>) -> Vec<(usize, usize)> {
     let mut segments = Vec::new();
     let mut from = places.start;
@@ -134,19 +134,18 @@ impl Grid<'_> {
         }
     }
 
-    /// Returns the x coordinate of the edge that begins the clock at index `at` of the shown clocks.
+    /// Returns the x coordinate of the edge that begins the clock at index `at`.
     fn x(&self, at: usize) -> i32 {
         self.left + self.clock * (at - self.places.start) as i32
     }
 
-    /// Returns the indices before which the diagram leaves clocks out. For example, if it shows the clocks 0, 1, 7 and 8, it
-    /// returns 2, the index of clock 7.
+    /// Returns the indices before which the diagram leaves clocks out. For example, for the clocks 0, 1, 7 and 8 it returns 2.
     fn gaps(&self) -> impl Iterator<Item = usize> + '_ {
         let clocks = &self.waves.clocks;
         self.places.clone().filter(|&at| at > 0 && clocks[at] != clocks[at - 1] + 1)
     }
 
-    /// Returns the SVG path of the clock. `top` is the vertical position of a high signal.
+    /// `top` is the vertical position of a high signal.
     fn clock(&self, top: i32) -> String {
         let low = top + SWING;
         let mut d = format!("M{} {low}", self.left);
@@ -157,7 +156,7 @@ impl Grid<'_> {
         d
     }
 
-    /// Returns the SVG path of a signal of one bit. `top` is the vertical position of a high signal.
+    /// `top` is the vertical position of a high signal.
     fn bit(&self, lane: &Lane, top: i32) -> String {
         let mut d = String::new();
         for (from, to) in segments(lane, self.places.clone()) {
@@ -174,12 +173,11 @@ impl Grid<'_> {
         d
     }
 
-    /// Returns the number of characters that fit into a frame from the index `from` to the index `to`.
     fn room(&self, from: usize, to: usize) -> usize {
         (f64::from(self.x(to) - self.x(from) - 2 * SLANT) / (SIZE * 0.6)) as usize
     }
 
-    /// Draws a signal of several bits: a frame with the value for each range of clocks in which the value stays the same.
+    /// Draws a frame with the value for each range of clocks in which the value stays the same.
     fn bus(&self, lane: &Lane, top: i32, items: &mut Vec<Item>) {
         let (middle, low) = (top + SWING / 2, top + SWING);
         let segments = segments(lane, self.places.clone());

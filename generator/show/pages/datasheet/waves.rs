@@ -2,8 +2,7 @@
 //!
 //! A waveform has a lane for the clock and for each recorded signal. In a core with a microprogram, these are the handshake,
 //! the microinstruction, the registers that change, and the results. In a pipeline, they are the handshake, the operands, the
-//! results and the status outputs. A waveform of more than 40 clocks keeps only the first 24 and the last 8. It can be written
-//! as JSON for the drawing tool WaveDrom.
+//! results and the status outputs. It can be written as JSON for the drawing tool WaveDrom.
 
 use anyhow::Result;
 use serde_json::{Value, json};
@@ -15,7 +14,7 @@ use glint_core::cosim::trial;
 use glint_core::package::sealed_json;
 use glint_rtl::netlist::{Design, Driver, Handshake, NetId, Port, RegisterKind, Role};
 
-/// The largest number of clocks that can be shown. The diagram leaves out the middle of a longer computation.
+/// The diagram leaves out the middle of a computation with more clocks.
 const MOST: usize = 40;
 
 /// The number of clocks that the diagram shows of the beginning of a long computation.
@@ -24,49 +23,38 @@ const HEAD: usize = 24;
 /// The number of clocks that the diagram shows of the end of a long computation.
 const TAIL: usize = 8;
 
-/// The name of the lane that shows which microinstruction is executed.
 pub const MICROINSTRUCTION: &str = "microinstruction";
 
-/// A recorded waveform: the values of some signals in each clock.
 pub struct Waves {
-    /// The name of the module.
     pub name: String,
     /// Whether the waveform shows several points in a pipeline; otherwise it shows one computation.
     pub pipelined: bool,
-    /// A short caption for the diagram.
     pub what: &'static str,
-    /// The numbers of the clocks that are shown, from 0. If a number is not one more than the number before it, clocks between
-    /// them are left out.
+    /// The numbers of the shown clocks, from 0. A jump in the numbers means that clocks are left out.
     pub clocks: Vec<usize>,
-    /// The signals, from top to bottom.
+    /// The signals from top to bottom.
     pub lanes: Vec<Lane>,
 }
 
-/// The recorded waveform of one signal.
 pub struct Lane {
-    /// The name of the signal.
     pub name: String,
-    /// The number in the source's figure of the block that drives the signal; `None` if the figure has no such number.
+    /// The number in the source's figure of the block that drives the signal.
     pub number: Option<u16>,
-    /// The style in which the lane is drawn.
     pub shape: LaneStyle,
-    /// The value in each clock that is shown; `None` if the signal has no meaning yet. For example, a result is `None` before
-    /// the first `valid`.
+    /// The value in each shown clock; `None` while the signal has no meaning, such as a result before the first `valid`.
     pub values: Vec<Option<String>>,
 }
 
-/// The style in which the waveform of a signal is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LaneStyle {
-    /// The clock: a rising edge begins each clock period.
+    /// A rising edge begins each clock period.
     Clock,
-    /// A signal of one bit, drawn high or low.
+    /// One bit, drawn high or low.
     Bit,
-    /// A signal of several bits, drawn as a value in a frame.
+    /// Several bits, drawn as a value in a frame.
     Bus,
 }
 
-/// A net that is recorded for a lane, and its meaning.
 struct Probe {
     net: NetId,
     kind: Meaning,
@@ -74,17 +62,16 @@ struct Probe {
 
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Meaning {
-    /// A signal that has a known value from the start.
+    /// The signal has a known value from the start.
     Control,
-    /// A signal that has no known value before it first changes.
+    /// The signal has no known value before it first changes.
     Register,
-    /// A result, which has no known value before the first `valid`.
+    /// The signal has no known value before the first `valid`.
     Result,
 }
 
 impl Waves {
-    /// Simulates the worked example and records its waveform. A pipeline gets several points one after another, and the first
-    /// point is the example.
+    /// Simulates the worked example. A pipeline gets several points one after another, and the first point is the example.
     ///
     /// # Errors
     /// Fails if a simulated computation of the device never ends.
@@ -95,8 +82,7 @@ impl Waves {
         }
     }
 
-    /// Records the waveform of a pipeline: the handshake, the operands while `in_valid` is 1, and the results while `out_valid`
-    /// is 1. Fails if the simulation never shows the results.
+    /// The operands are shown while `in_valid` is 1, and the results while `out_valid` is 1.
     fn points(core: &Core) -> Result<Self> {
         let design = &core.design;
         let groups: [&[Role]; 6] = [
@@ -139,8 +125,6 @@ impl Waves {
         Ok(Self::cut(design, "points through the pipeline", clocks.len(), lanes))
     }
 
-    /// Records the waveform of a core with a microprogram: the handshake, the microinstruction, the architectural registers
-    /// that change, and the results of one computation. Fails if the computation never ends.
     fn computation(core: &Core) -> Result<Self> {
         let design = &core.design;
         let Handshake { start, busy, valid, done, .. } = design.handshake()?;
@@ -164,8 +148,7 @@ impl Waves {
         Ok(Self::cut(design, "one computation", clocks.len(), lanes))
     }
 
-    /// Makes the waveform from lanes with a value for each of `clocks` clocks, and keeps only the clocks that the diagram
-    /// shows: all of at most 40, otherwise the first 24 and the last 8. `what` is the caption.
+    /// Keeps only the clocks that the diagram shows. `what` is the caption.
     fn cut(design: &Design, what: &'static str, clocks: usize, mut lanes: Vec<Lane>) -> Self {
         let shown = shown(clocks);
         for lane in &mut lanes {
@@ -175,15 +158,14 @@ impl Waves {
         Self { name: design.name.clone(), pipelined, what, clocks: shown, lanes }
     }
 
-    /// Returns the number of the first clock in which the signal `name` is 1, among the clocks that the diagram shows. Returns
-    /// `None` if the signal is not recorded, or is 1 in none of these clocks.
+    /// Returns the number of the first shown clock in which the signal `name` is 1.
     pub fn first(&self, name: &str) -> Option<u32> {
         let lane = self.lanes.iter().find(|lane| lane.name == name)?;
         let at = lane.values.iter().position(|value| value.as_deref() == Some("1"))?;
         u32::try_from(self.clocks[at]).ok()
     }
 
-    /// Describes the timing diagram in words, for readers who do not see it.
+    /// Describes the diagram for readers who do not see it.
     pub fn described(&self) -> String {
         if self.pipelined {
             return format!(
@@ -204,7 +186,7 @@ impl Waves {
         )
     }
 
-    /// Returns the number of the first clock in which a signal is 1 as text, or the word `some` if there is no such clock.
+    /// Returns the word `some` if the signal is 1 in no shown clock.
     fn first_text(&self, name: &str) -> String {
         match self.first(name) {
             Some(clock) => clock.to_string(),
@@ -212,8 +194,8 @@ impl Waves {
         }
     }
 
-    /// Returns the waveform as WaveDrom's JSON, ending with a newline. For example, a bit that is 0 and 1, and after a gap 1
-    /// and 0, has the wave `01|.0`.
+    /// Returns JSON that ends with a newline. For example, a bit that is 0 and 1, and after a gap 1 and 0, has the wave
+    /// `01|.0`.
     ///
     /// # Errors
     /// Fails only through a bug, not through anything that a user gives.
@@ -225,7 +207,6 @@ impl Waves {
         }))
     }
 
-    /// Returns a lane as an entry of WaveDrom's list of signals.
     fn signal(&self, lane: &Lane) -> Value {
         let (mut wave, mut data) = (String::new(), Vec::new());
         let mut before: Option<&Option<String>> = None;
@@ -255,7 +236,6 @@ impl Waves {
     }
 }
 
-/// Lists the nets to record: the handshake, the architectural registers, and the results.
 fn probes(design: &Design, handshake: [NetId; 4]) -> Vec<Probe> {
     let mut probes = Vec::new();
     for net in handshake {
@@ -274,7 +254,6 @@ fn probes(design: &Design, handshake: [NetId; 4]) -> Vec<Probe> {
     probes
 }
 
-/// Returns the values of the recorded net at index `at`, one for each clock.
 fn column(clocks: &[Vec<u64>], at: usize) -> Vec<u64> {
     clocks.iter().map(|values| values[at]).collect()
 }
@@ -288,13 +267,12 @@ fn clock_lane(clocks: usize) -> Lane {
     }
 }
 
-/// Returns the style for a signal of this format: a bit, or a bus if the format has more bits than one.
 fn shape(format: Format) -> LaneStyle {
     if format.width() == 1 { LaneStyle::Bit } else { LaneStyle::Bus }
 }
 
-/// Returns the lane of a probe. `bits` has the bit pattern of the net in each clock, and `valid` is the index of the first
-/// clock with results. Returns `None` for a register that never changes.
+/// `bits` has the bit pattern of the net in each clock, and `valid` is the index of the first clock with results. A register
+/// that never changes has no lane.
 fn lane(design: &Design, probe: &Probe, bits: &[u64], valid: usize) -> Option<Lane> {
     let net = design.net(probe.net);
     let known = match probe.kind {
@@ -316,8 +294,7 @@ fn lane(design: &Design, probe: &Probe, bits: &[u64], valid: usize) -> Option<La
     Some(Lane { name: net.name.clone(), number: net.block, shape: shape(net.format), values })
 }
 
-/// Returns the lane with the address and name of the microinstruction that is executed. Its values are, for example, `3 result`
-/// and `idle`.
+/// The values are, for example, `3 result` and `idle`.
 fn microprogram_lane(design: &Design, addresses: &[u64], busy: &[u64]) -> Lane {
     let mut values = Vec::new();
     for (&address, &busy) in addresses.iter().zip(busy) {
@@ -331,7 +308,7 @@ fn microprogram_lane(design: &Design, addresses: &[u64], busy: &[u64]) -> Lane {
     Lane { name: MICROINSTRUCTION.to_owned(), number: None, shape: LaneStyle::Bus, values }
 }
 
-/// Returns the value of a bit pattern as text, rounded to five digits after the point.
+/// Rounds to five digits after the point.
 fn text(format: Format, bits: u64) -> String {
     let value = format.to_f64(format.raw(bits));
     match format.frac {
@@ -340,9 +317,7 @@ fn text(format: Format, bits: u64) -> String {
     }
 }
 
-/// Returns the numbers of the clocks that the diagram shows of a computation with `clocks` clocks, in ascending order. The
-/// diagram shows all clocks of a computation with at most 40 clocks, and otherwise the first 24 and the last 8. For example,
-/// the diagram shows the clocks 0 to 23 and 92 to 99 of 100 clocks.
+/// Returns the numbers of the clocks that the diagram shows: all of at most 40, and otherwise the first 24 and the last 8.
 fn shown(clocks: usize) -> Vec<usize> {
     match clocks {
         0..=MOST => (0..clocks).collect(),

@@ -7,26 +7,20 @@ use crate::pages::account::blocks::{Block, BlockKind, Blocks};
 use crate::pages::account::format_text;
 use glint_rtl::netlist::{Design, Driver, FieldId, NetId, Role, Sequence};
 
-/// The graph of a block diagram: boxes, and the wires between them.
 pub struct DiagramGraph {
-    /// The boxes: ports, blocks, and the control unit.
     pub boxes: Vec<DiagramBox>,
-    /// The wires. Each leads from the output of a box to one input of another.
+    /// Each wire leads from the output of a box to one input of another.
     pub wires: Vec<DiagramWire>,
-    /// The number of stages of a pipeline; 0 for another design.
+    /// The number of stages; 0 for a design that is no pipeline.
     pub stages: usize,
 }
 
-/// A box of the block diagram: a port, a block of the datapath, or the control unit.
 #[derive(Default)]
 pub struct DiagramBox {
-    /// The shape of the box, which shows what kind of thing it is.
     pub form: BoxForm,
-    /// The number of the block or port in the figure of the source document, if it has one.
+    /// The number in the figure of the source document.
     pub number: Option<u16>,
-    /// The name of the block, the port or the control unit that the box shows.
     pub name: String,
-    /// The kind of the block and its number format.
     pub caption: String,
     /// Further names of the value at the output of the box. Only a pipeline has such names.
     pub aliases: Vec<String>,
@@ -34,27 +28,23 @@ pub struct DiagramBox {
     pub control: String,
     /// The text that appears when the pointer is on the box.
     pub title: String,
-    /// The stage of the box in a pipeline; `None` for a port, and for every box of a sequential core.
+    /// The stage; `None` for a port, and for every box of a sequential core.
     pub stage: Option<usize>,
 }
 
-/// The shapes of boxes in a block diagram.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum BoxForm {
     /// An input port, at the top of the diagram.
     Input,
     /// An output port, at the bottom of the diagram.
     Output,
-    /// The control unit.
     Control,
-    /// A block of the datapath.
     Block(BlockKind),
     /// Nothing is drawn: values only pass through the stage.
     #[default]
     Empty,
 }
 
-/// A wire from one box to another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DiagramWire {
     /// The index of the box that drives the wire.
@@ -64,7 +54,6 @@ pub struct DiagramWire {
 }
 
 impl DiagramGraph {
-    /// Makes the block diagram's graph of a design.
     pub fn new(design: &Design) -> Self {
         let stages = design.pipeline.as_ref().map_or(0, |pipeline| pipeline.stages.len());
         let mut builder = GraphBuilder {
@@ -103,20 +92,19 @@ struct GraphBuilder<'a> {
 }
 
 impl<'a> GraphBuilder<'a> {
-    /// Adds a box to the graph, and returns its index.
     fn add(&mut self, added: DiagramBox) -> usize {
         self.graph.boxes.push(added);
         self.graph.boxes.len() - 1
     }
 
-    /// Adds a wire from the box that drives `net` to the box `to`. Adds nothing if no box drives the net.
+    /// Adds nothing if no box drives the net.
     fn wire(&mut self, net: NetId, to: usize) {
         if let Some(&from) = self.driver.get(&net) {
             self.graph.wires.push(DiagramWire { from, to });
         }
     }
 
-    /// Adds a wire from the driver of `net` to the box `to`. A constant gets a box of its own beside the box that takes it.
+    /// A constant gets a box of its own beside the box that takes it.
     fn takes(&mut self, net: NetId, to: usize) {
         if self.driver.contains_key(&net)
             || !matches!(self.design.net(net).driver, Driver::Constant(_))
@@ -143,7 +131,6 @@ impl<'a> GraphBuilder<'a> {
         }
     }
 
-    /// Adds a box for a port, and returns its index.
     fn port(&mut self, net: NetId, form: BoxForm) -> usize {
         let found = self.design.net(net);
         let format = format_text(found.format);
@@ -157,8 +144,8 @@ impl<'a> GraphBuilder<'a> {
         })
     }
 
-    /// Returns `caption` with the number of clocks for which registers hold the value of `net`, if they hold it for two clocks
-    /// or more. `stage` is the stage that computes the value. For example, `adder · u0.8 · held 3 clocks`.
+    /// Adds the number of clocks for which registers hold the value of `net`, if they hold it for two clocks or more. `stage`
+    /// computes the value. For example, `adder · u0.8 · held 3 clocks`.
     fn held(&self, caption: String, net: NetId, stage: usize) -> String {
         let Some(pipeline) = &self.design.pipeline else { return caption };
         let held = self.blocks.held(net);
@@ -169,8 +156,7 @@ impl<'a> GraphBuilder<'a> {
         }
     }
 
-    /// Adds the input ports: operands, `start`, and the inputs that go with a point. Strobes get no port; they are drawn at the
-    /// registers that they write.
+    /// Strobes get no port; they are drawn at the registers that they write.
     fn inputs(&mut self) {
         for port in self.design.inputs() {
             if matches!(
@@ -183,8 +169,7 @@ impl<'a> GraphBuilder<'a> {
         }
     }
 
-    /// Adds the output ports: the results and the handshake. The function leaves out `in_ready`, which carries no data of a
-    /// point.
+    /// `in_ready` is left out, because it carries no data of a point.
     fn outputs(&mut self, control: Option<usize>) {
         for port in self.design.outputs().filter(|port| port.role != Role::InReady) {
             let at = self.port(port.net, BoxForm::Output);
@@ -202,7 +187,6 @@ impl<'a> GraphBuilder<'a> {
         }
     }
 
-    /// Adds the box of the control unit and the wire from `start` to it, and returns the index of the box.
     fn control(&mut self) -> usize {
         let control = &self.design.control;
         let rom = self.design.rom(control.rom);
@@ -265,7 +249,7 @@ impl<'a> GraphBuilder<'a> {
         added
     }
 
-    /// Returns the numbers or names of the control lines of a block, and of the strobe that writes it if it is an operand.
+    /// Returns the numbers or names of a block's control lines, and of the strobe that writes it.
     fn turned_by(&self, block: &Block) -> String {
         let (fields, strobes) = self.blocks.controls(block);
         let mut lines: Vec<String> = fields.into_iter().map(|field| self.lines(field)).collect();
@@ -277,7 +261,7 @@ impl<'a> GraphBuilder<'a> {
         lines.join(" ")
     }
 
-    /// Returns the numbers of a field's control lines in the source's figure, or the name of the field if it has none.
+    /// Returns the numbers in the source's figure, or the name of a field without numbers.
     fn lines(&self, field: FieldId) -> String {
         let field = &self.design.control.fields[field.index()];
         let lines: Vec<String> = field.lines.iter().map(u16::to_string).collect();
@@ -285,8 +269,7 @@ impl<'a> GraphBuilder<'a> {
     }
 }
 
-/// Returns a block's kind and format. An operand is called a register here, because the port above it shows that it is an
-/// operand. For example, `adder · u0.8`.
+/// An operand is called a register here, because the port above it shows that it is an operand. For example, `adder · u0.8`.
 fn caption(block: &Block) -> String {
     match block.kind {
         BlockKind::Operand => format!("{} · {}", BlockKind::Register, block.format),
@@ -294,7 +277,7 @@ fn caption(block: &Block) -> String {
     }
 }
 
-/// Returns the tooltip of a box. For example, `exponent, u10.0: specular exponent n`.
+/// Returns the tooltip. For example, `exponent, u10.0: specular exponent n`.
 fn titled(name: &str, format: &str, doc: &str) -> String {
     match doc {
         "" => format!("{name}, {format}"),

@@ -24,8 +24,7 @@ const LINE: i32 = 14;
 /// The space above, and below, the text in a box.
 const PADDING: i32 = 6;
 
-/// The largest number of characters of a caption on one line. A longer caption has a line for each of its parts, which are
-/// separated by ` · `.
+/// The longest caption on one line, in characters. A longer one has a line for each of its parts, separated by ` · `.
 const LONG: usize = 17;
 
 /// The smallest distance between two pins of a box.
@@ -49,7 +48,6 @@ const ASIDE: i32 = 140;
 /// The distance from the boxes of a stage to the registers at its end.
 const REGISTERS: f64 = 7.0;
 
-/// Draws the block diagram of a design: boxes for ports, blocks and control unit, and the wires between them.
 pub fn drawing(design: &Design) -> Drawing {
     let graph = DiagramGraph::new(design);
     let back = place::back(&graph);
@@ -110,9 +108,6 @@ pub fn drawing(design: &Design) -> Drawing {
     }
 }
 
-/// Returns the block diagram of a design as an SVG file, ending with a newline.
-///
-/// # Errors
 /// Fails if the template cannot be printed.
 pub fn svg(design: &Design) -> Result<String> {
     drawing(design).file()
@@ -144,12 +139,12 @@ impl Sizes {
         }
     }
 
-    /// Returns the height that the box takes in its column of the layout, with the lanes and the control arrow beside it.
+    /// Includes the lanes and the control arrow beside the box.
     fn all(&self) -> f64 {
         self.lanes + self.stub + self.height
     }
 
-    /// Returns the position of the box if the middle of the whole height is at `middle`.
+    /// `middle` is the middle of the whole height.
     fn body(&self, middle: f64) -> Body {
         let top = (middle - self.all() / 2.0).round();
         let upper = top + self.lanes + self.stub;
@@ -161,8 +156,8 @@ fn is_port(one: &DiagramBox) -> bool {
     matches!(one.form, BoxForm::Input | BoxForm::Output)
 }
 
-/// Returns the lines of text of a box, each with its class. The line that names its control lines is the last one. For example,
-/// the text may be `15 difference`, `adder · u0.8` and the control line `30`.
+/// Returns the lines of text of a box, each with its class, the control lines last. For example, `15 difference`, `adder ·
+/// u0.8` and `30`.
 fn lines(one: &DiagramBox) -> Vec<(&'static str, String)> {
     let head = match one.number {
         Some(number) => format!("{number} {}", one.name),
@@ -185,24 +180,23 @@ fn lines(one: &DiagramBox) -> Vec<(&'static str, String)> {
     lines
 }
 
-/// Returns the vertical position of the lowest box or wire.
 fn bottom(bodies: &[Body], routes: &Routes) -> f64 {
     bodies.iter().map(|body| body.lower).fold(routes.bottom(), f64::max)
 }
 
-/// Returns a coordinate of the layout on the page: rounded to whole units, plus the width of the border.
+/// Rounds a coordinate of the layout, and adds the border.
 fn coordinate(value: f64) -> i32 {
     value.round() as i32 + BORDER
 }
 
-/// The area of the drawing to the right of the notes on stages, which begins at `left`. Its methods append to `items`.
+/// The area to the right of the notes on stages, which begins at `left`. Its methods append to `items`.
 struct Page<'a> {
     left: i32,
     items: &'a mut Vec<Item>,
 }
 
 impl Page<'_> {
-    /// Returns a position of the layout as SVG coordinates on the page, which shows the layout turned.
+    /// The page shows the layout turned.
     fn point(&self, (x, y): (f64, f64)) -> String {
         format!("{} {}", self.left + coordinate(y), coordinate(x))
     }
@@ -317,7 +311,6 @@ impl Page<'_> {
     }
 }
 
-/// Returns the horizontal positions on the page at which wires cross the end of a stage, each once.
 fn crossings(routes: &Routes, end: f64) -> Vec<i32> {
     let mut places: Vec<i32> = Vec::new();
     for net in &routes.nets {
@@ -332,7 +325,6 @@ fn crossings(routes: &Routes, end: f64) -> Vec<i32> {
     places
 }
 
-/// Returns the class of a box in the style sheet, which selects its colour.
 fn class(form: BoxForm) -> &'static str {
     match form {
         BoxForm::Input | BoxForm::Output => "box port",
@@ -344,8 +336,7 @@ fn class(form: BoxForm) -> &'static str {
     }
 }
 
-/// Returns the outline of a box. Ports point in the direction of the signal, down the page; muxes narrow toward their
-/// output.
+/// Ports point in the direction of the signal, down the page; muxes narrow toward their output.
 fn outline(form: BoxForm, x: i32, y: i32, width: i32, height: i32) -> String {
     let (right, bottom, middle) = (x + width, y + height, x + width / 2);
     match form {

@@ -23,16 +23,14 @@ const PORT: i32 = 4;
 /// near the blocks that read it, so that no long wire passes all other blocks.
 const LAST: i32 = 20;
 
-/// The name of the node at the end of the diagram, which is not drawn. Edges pull the outputs of the datapath to it.
+/// The node at the end of the diagram, to which edges pull the outputs. It is not drawn.
 const END: &str = "outputs";
 
-/// The positions of the boxes of a block diagram. Columns are numbered from the left.
+/// Columns are numbered from the left.
 pub struct Placement {
-    /// For each box, the number of its column.
     pub column: Vec<usize>,
     /// For each box, the vertical position of its middle.
     pub middle: Vec<f64>,
-    /// The number of columns of boxes in the diagram.
     pub columns: usize,
     /// For each wire, whether it leads back to a column further left.
     pub back: Vec<bool>,
@@ -42,9 +40,8 @@ pub struct Placement {
 }
 
 impl Placement {
-    /// Places boxes in columns. `heights` are their heights, and `back` marks the wires that lead back, as the function
-    /// [`back`] does. The function computes four layouts and takes the lowest one, because the turned diagram then has the
-    /// smallest width.
+    /// `heights` are the heights of the boxes, and `back` marks the wires that lead back, as the function [`back`] does. The
+    /// function computes four layouts and takes the lowest one, because the turned diagram then has the smallest width.
     pub fn new(graph: &DiagramGraph, heights: &[f64], back: &[bool]) -> Self {
         let variants = [
             (Ranker::NetworkSimplex, false),
@@ -59,7 +56,6 @@ impl Placement {
         narrowest.expect("there are four")
     }
 
-    /// Returns the height of the layout, from the top of the highest box to the bottom of the lowest.
     fn height(&self, heights: &[f64]) -> f64 {
         let (mut top, mut bottom) = (f64::MAX, 0.0_f64);
         for (middle, height) in self.middle.iter().zip(heights) {
@@ -69,8 +65,8 @@ impl Placement {
         bottom - top
     }
 
-    /// Computes one layout, with the algorithm `ranker` that chooses columns. With `handshake`, the outputs of the handshake
-    /// are at the end too; otherwise they are placed where there is room.
+    /// `ranker` is the algorithm that chooses columns. With `handshake`, the outputs of the handshake are at the end too;
+    /// otherwise they are placed where there is room.
     fn variant(
         graph: &DiagramGraph,
         heights: &[f64],
@@ -111,7 +107,6 @@ impl Placement {
         Self::read(graph, heights.len(), back, &layered)
     }
 
-    /// Reads the positions of boxes and wires from a finished layout.
     fn read(
         graph: &DiagramGraph,
         boxes: usize,
@@ -168,8 +163,8 @@ fn is_port(graph: &DiagramGraph, at: usize) -> bool {
     matches!(graph.boxes[at].form, BoxForm::Input | BoxForm::Output)
 }
 
-/// Returns the names of a wire's ends and of its edge in the layout. For a wire that leads back, the ends are swapped. Several
-/// wires from one box to another are one edge in the layout.
+/// Names a wire's ends and its edge in the layout. For a wire that leads back, the ends are swapped. Several wires from one
+/// box to another are one edge.
 fn edge_names(graph: &DiagramGraph, back: &[bool], wire: usize) -> (String, String, String) {
     let DiagramWire { from, to } = graph.wires[wire];
     let (start, end) = if back[wire] { (to, from) } else { (from, to) };
@@ -177,7 +172,6 @@ fn edge_names(graph: &DiagramGraph, back: &[bool], wire: usize) -> (String, Stri
     (start.to_string(), end.to_string(), first.to_string())
 }
 
-/// Returns the index of the column at `x`, or `None` if no column is there.
 fn nearest_column(columns: &[f64], x: f64) -> Option<usize> {
     columns.iter().position(|&column| (column - x).abs() < 1.5)
 }
@@ -206,20 +200,18 @@ fn stages(graph: &DiagramGraph, layered: &mut Layered<NodeLabel, EdgeLabel>) {
     }
 }
 
-/// Returns the name of the node in front of a stage.
 fn stage_border(stage: usize) -> String {
     format!("stage {stage}")
 }
 
-/// Returns whether the control unit drives an output.
 fn driven_by_control(graph: &DiagramGraph, output: usize) -> bool {
     let mut drivers = graph.wires.iter().filter(|wire| wire.to == output);
     drivers.any(|wire| graph.boxes[wire.from].form == BoxForm::Control)
 }
 
 /// Returns for each wire whether it leads back to an earlier column. Every loop has such a wire. If a loop has a mux, the
-/// marked wire ends at the mux, and at the one with the most inputs if it has several. For example, in an accumulator it is the
-/// wire from the register to the mux in front of the adder.
+/// marked wire ends at the mux, and at the one with the most inputs if it has several. For example, in an accumulator it is
+/// the wire from the register to the mux in front of the adder.
 pub fn back(graph: &DiagramGraph) -> Vec<bool> {
     let mut order: Vec<usize> = (0..graph.wires.len()).collect();
     order.sort_by_key(|&wire| std::cmp::Reverse(back_weight(graph, graph.wires[wire].to)));
@@ -230,7 +222,7 @@ pub fn back(graph: &DiagramGraph) -> Vec<bool> {
     back
 }
 
-/// Returns how suitable a box is as the end of a wire that leads back: a larger number is better.
+/// Returns how suitable a box is as the end of a wire that leads back.
 fn back_weight(graph: &DiagramGraph, at: usize) -> usize {
     match graph.boxes[at].form {
         BoxForm::Block(BlockKind::Mux(inputs)) if !graph.boxes[at].control.is_empty() => 2 + inputs,
@@ -240,7 +232,7 @@ fn back_weight(graph: &DiagramGraph, at: usize) -> usize {
     }
 }
 
-/// Returns whether wires that do not lead back connect the box `from` with the box `to`, in their direction.
+/// Follows the wires in their direction, except the wires that lead back.
 fn reaches(graph: &DiagramGraph, back: &[bool], from: usize, to: usize) -> bool {
     let mut seen = vec![false; graph.boxes.len()];
     let mut pending = vec![from];

@@ -18,25 +18,19 @@ const MARGIN: f64 = 14.0;
 /// The distance from the border of a box to its first pin.
 const EDGE: f64 = 8.0;
 
-/// The width of a lane, in which a wire runs around a box, in units of the drawing. Wires that lead back to an earlier column
-/// need lanes.
+/// The width of a lane, in which a wire that leads back to an earlier column runs around a box.
 pub const LANE: f64 = 10.0;
 
-/// The size and position of a box.
 #[derive(Clone, Copy, Debug)]
 pub struct Body {
     /// The vertical position at which the wires around the box begin.
     pub top: f64,
-    /// The upper edge of the box.
     pub upper: f64,
-    /// The lower edge of the box.
     pub lower: f64,
-    /// The width of the box.
     pub width: f64,
 }
 
 impl Body {
-    /// Moves the box down by the distance `by`.
     pub fn lower(&mut self, by: f64) {
         for edge in [&mut self.top, &mut self.upper, &mut self.lower] {
             *edge += by;
@@ -44,40 +38,34 @@ impl Body {
     }
 }
 
-/// A straight piece of a wire, horizontal or vertical.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WireSegment {
-    /// One end of the piece: its horizontal and its vertical position.
+    /// A horizontal and a vertical position.
     pub from: (f64, f64),
-    /// The other end of the piece.
     pub to: (f64, f64),
 }
 
 /// The pieces of all wires that one box drives.
 #[derive(Clone, Debug, Default)]
 pub struct WireRoute {
-    /// The straight pieces of the wires, in no order.
     pub pieces: Vec<WireSegment>,
-    /// The positions at which three or more pieces meet. The drawing marks them with a dot.
+    /// The positions at which three or more pieces meet, which the drawing marks with a dot.
     pub junctions: Vec<(f64, f64)>,
     /// The positions at which the wires end in arrows at boxes.
     pub pins: Vec<(f64, f64)>,
 }
 
-/// The finished layout of a block diagram.
 pub struct Routes {
-    /// The left edge of each box.
     pub left: Vec<f64>,
-    /// For each box, the route of the wires that it drives.
+    /// For each box, the wires that it drives.
     pub nets: Vec<WireRoute>,
-    /// The width of the diagram.
     pub width: f64,
     /// The left and the right edge of each column.
     pub columns: Vec<(f64, f64)>,
 }
 
 impl Routes {
-    /// Returns the vertical position of the topmost wire, or `f64::MAX` without wires.
+    /// Returns `f64::MAX` without wires.
     pub fn top(&self) -> f64 {
         let mut top = f64::MAX;
         for piece in self.nets.iter().flat_map(|net| &net.pieces) {
@@ -86,7 +74,7 @@ impl Routes {
         top
     }
 
-    /// Returns the vertical position of the lowest wire, or 0 without wires. Positions grow downward.
+    /// Returns 0 without wires. Positions grow downward.
     pub fn bottom(&self) -> f64 {
         let mut bottom: f64 = 0.0;
         for piece in self.nets.iter().flat_map(|net| &net.pieces) {
@@ -95,7 +83,6 @@ impl Routes {
         bottom
     }
 
-    /// Moves all wires down by the distance `by`.
     pub fn lower(&mut self, by: f64) {
         for net in &mut self.nets {
             for piece in &mut net.pieces {
@@ -110,8 +97,8 @@ impl Routes {
 }
 
 /// Returns for each box the nets whose wires run around it, because they lead back to an earlier column. A net is the index of
-/// the box that drives it, and takes one [`LANE`]. For example, a wire from box 5 back to box 2 gives both boxes a lane for the
-/// net 5.
+/// the box that drives it, and takes one [`LANE`]. For example, a wire from box 5 back to box 2 gives both boxes a lane for
+/// the net 5.
 pub fn lanes(graph: &DiagramGraph, back: &[bool]) -> Vec<Vec<usize>> {
     let mut lanes = vec![Vec::new(); graph.boxes.len()];
     for (wire, leads_back) in graph.wires.iter().zip(back) {
@@ -127,8 +114,8 @@ pub fn lanes(graph: &DiagramGraph, back: &[bool]) -> Vec<Vec<usize>> {
     lanes
 }
 
-/// Routes the wires between the boxes of a placement. `bodies` are the positions of the boxes, and `lanes` the lanes that the
-/// function [`lanes`] returns for each box.
+/// Routes the wires between the boxes of a placement. `bodies` are the positions of the boxes, and `lanes` comes from
+/// [`lanes`].
 pub fn routes(
     graph: &DiagramGraph,
     placement: &Placement,
@@ -163,25 +150,24 @@ struct Router<'a> {
     gaps: Vec<Vec<Trunk>>,
     /// For each crossing of a column: the net, the column and the vertical position.
     crossings: Vec<(usize, usize, f64)>,
-    /// For a net, a column, and whether the wire leads back: the vertical position at which the net passes the column.
+    /// For a net, a column, and whether the wire leads back: the vertical position in the column.
     passes: HashMap<(usize, usize, bool), f64>,
 }
 
 impl Router<'_> {
-    /// Returns the y coordinate of a box's output. The output is in the middle of the box and its lanes, where the layout
-    /// begins the wires.
+    /// Returns the y coordinate of a box's output: in the middle of the box and its lanes, where the layout begins the wires.
     fn out(&self, at: usize) -> f64 {
         let body = &self.bodies[at];
         self.placement.middle[at].clamp(body.upper + EDGE, body.lower - EDGE)
     }
 
-    /// Returns the vertical position of the lane in which the wires of the box `net` run around the box `at`.
+    /// Returns the vertical position of the lane of the box `net` around the box `at`.
     fn lane(&self, at: usize, net: usize) -> f64 {
         let lane = self.lanes[at].iter().position(|&other| other == net);
         self.bodies[at].top + LANE * (lane.unwrap_or(0) as f64 + 0.5)
     }
 
-    /// Returns the columns that a wire passes between its ends, each with the vertical position, in the direction of the wire.
+    /// Returns the columns that a wire passes, with its vertical positions, in the direction of the wire.
     fn between(&mut self, wire: usize) -> Vec<(usize, f64)> {
         let (net, back) = (self.graph.wires[wire].from, self.placement.back[wire]);
         let mut between = Vec::new();
@@ -256,8 +242,7 @@ impl Router<'_> {
         self.hop(net, to, (y, Side::Right), (pin, Side::Right));
     }
 
-    /// Adds the way of a net through a gap. If the net already enters the gap at `entry`, the way becomes a further exit of its
-    /// trunk.
+    /// Adds the way of a net through a gap, as a further exit of a trunk if the net already enters the gap at `entry`.
     fn hop(&mut self, net: usize, gap: usize, entry: (f64, Side), exit: (f64, Side)) {
         let trunks = &mut self.gaps[gap];
         let found = trunks.iter_mut().find(|it| it.net == net && it.entry == entry);
@@ -268,8 +253,8 @@ impl Router<'_> {
         }
     }
 
-    /// Assigns tracks to all gaps, gives columns and boxes their horizontal positions, and returns the finished routes. `pins`
-    /// has for each wire the vertical position at which it enters its box.
+    /// Assigns tracks to all gaps, and gives columns and boxes their horizontal positions. `pins` has for each wire the
+    /// vertical position at which it enters its box.
     fn finish(mut self, pins: &[f64]) -> Routes {
         let columns = self.placement.columns;
         let tracks: Vec<usize> = self.gaps.iter_mut().map(|gap| assign(gap)).collect();
@@ -315,7 +300,6 @@ impl Router<'_> {
 }
 
 impl WireRoute {
-    /// Adds a straight piece, unless it has no length or exists already.
     fn piece(&mut self, from: (f64, f64), to: (f64, f64)) {
         let piece = WireSegment { from, to };
         if from != to && !self.pieces.contains(&piece) {
@@ -323,7 +307,6 @@ impl WireRoute {
         }
     }
 
-    /// Adds the vertical piece of a trunk and its taps, in a gap from `left` to `right`.
     fn trunk(&mut self, trunk: &Trunk, (left, right): (f64, f64)) {
         if trunk.is_straight() {
             self.piece((left, trunk.entry.0), (right, trunk.entry.0));

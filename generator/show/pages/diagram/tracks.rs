@@ -5,16 +5,16 @@
 /// The smallest distance at which two parallel lines do not seem to touch, in units of the drawing.
 const NEAR: f64 = 5.0;
 
-/// The cost of two wires that would lie upon each other, as a number of crossings. This cost exceeds the crossings that occur
-/// in a gap.
+/// The cost of two wires that would lie upon each other, as a number of crossings. It exceeds the crossings that occur in a
+/// gap.
 const OVERLAP: usize = 1000;
 
 /// The side of the gap between two columns at which a wire enters or leaves the gap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
-    /// The left side of the gap, toward columns with lower numbers.
+    /// The side of columns with lower numbers.
     Left,
-    /// The right side of the gap, toward columns with higher numbers.
+    /// The side of columns with higher numbers.
     Right,
 }
 
@@ -23,21 +23,18 @@ pub enum Side {
 pub struct Trunk {
     /// The index of the box that drives the wires.
     pub net: usize,
-    /// The vertical position and the side at which the wire enters the gap.
     pub entry: (f64, Side),
-    /// The vertical positions and the sides at which the wires leave the gap.
     pub exits: Vec<(f64, Side)>,
-    /// The number of the track, from the left; [`assign`] sets it.
+    /// The number of the track from the left, which [`assign`] sets.
     pub track: usize,
 }
 
 impl Trunk {
-    /// Returns the horizontal taps of the trunk: the vertical position of each, and the side of the gap to which it leads.
+    /// Returns the vertical position of each horizontal tap, and the side of the gap to which it leads.
     pub fn taps(&self) -> impl Iterator<Item = (f64, Side)> + '_ {
         std::iter::once(self.entry).chain(self.exits.iter().copied())
     }
 
-    /// Returns the upper and the lower end of the vertical piece.
     pub fn reach(&self) -> (f64, f64) {
         let (mut low, mut high) = (f64::MAX, f64::MIN);
         for (y, _) in self.taps() {
@@ -47,13 +44,11 @@ impl Trunk {
         (low, high)
     }
 
-    /// Returns whether the vertical position `y` is between the ends of the vertical piece.
     fn reaches(&self, y: f64) -> bool {
         let (low, high) = self.reach();
         (low..=high).contains(&y)
     }
 
-    /// Returns whether the wire crosses the gap straight, without a vertical piece.
     pub fn is_straight(&self) -> bool {
         let (low, high) = self.reach();
         high - low < 0.5
@@ -84,16 +79,15 @@ impl Trunk {
         crossings + OVERLAP * overlaps
     }
 
-    /// Returns whether two trunks overlap, so that they cannot share a track. For example, trunks from 0 to 20 and from 50 to
-    /// 80 can share one.
+    /// Trunks that overlap cannot share a track.
     fn meets(&self, other: &Self) -> bool {
         let ((low, high), (from, to)) = (self.reach(), other.reach());
         from < high + NEAR && low < to + NEAR
     }
 }
 
-/// Orders the trunks of a gap so that few wires cross, sets the track of each trunk, and returns the number of tracks. For
-/// example, two trunks that go down from 0 to 40 and from 20 to 60 take two tracks.
+/// Orders the trunks of a gap so that few wires cross, sets their tracks, and returns the number of tracks. For example, two
+/// trunks that go down from 0 to 40 and from 20 to 60 take two.
 pub fn assign(trunks: &mut [Trunk]) -> usize {
     trunks.sort_by(|a, b| a.reach().0.total_cmp(&b.reach().0));
     // Exchange neighbours as long as an exchange reduces the cost. Every exchange reduces the total cost, so the loop ends.
@@ -146,7 +140,6 @@ fn separate(trunks: &mut [Trunk]) -> bool {
     false
 }
 
-/// Returns the number of pairs of trunks whose wires lie upon each other in the present order.
 fn overlaps(trunks: &[Trunk]) -> usize {
     let mut count = 0;
     for (at, trunk) in trunks.iter().enumerate() {

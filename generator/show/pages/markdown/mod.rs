@@ -35,9 +35,8 @@ struct Page<'a> {
     config: &'a str,
 }
 
-/// The tables that explain how a computation is controlled.
 enum ControlTables {
-    /// The tables of a microprogram. `writes` says what happens to operands that the user writes while the device is busy.
+    /// `writes` says what happens to operands that the user writes while the device is busy.
     Microprogram {
         blocks: String,
         fields: String,
@@ -69,10 +68,7 @@ impl ControlTables {
     }
 }
 
-/// Returns the documentation page of a design in Markdown, ending with a newline.
-///
-/// # Errors
-/// Fails if the template cannot be printed.
+/// Returns text that ends with a newline.
 pub fn page(design: &Design, inputs: &PageInputs) -> Result<String> {
     let about = &design.about;
     let bound = inputs.contract.bounds();

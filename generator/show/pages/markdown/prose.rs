@@ -2,8 +2,8 @@
 
 use crate::pages::account::{Align, TextTable};
 
-/// Returns a table in Markdown, without the last newline. All columns except the last are padded, so that the table is also
-/// readable as text.
+/// Returns a table without the last newline. All columns except the last are padded, so that the table is also readable as
+/// text.
 pub fn table(table: &TextTable) -> String {
     let headings: Vec<String> = table.columns.iter().map(|column| prose(&column.heading)).collect();
     let mut rows: Vec<Vec<String>> = Vec::new();
@@ -35,7 +35,6 @@ pub fn table(table: &TextTable) -> String {
     lines.join("\n")
 }
 
-/// Returns one row of a table in Markdown, with its cells padded to `widths`.
 fn line(table: &TextTable, widths: &[usize], cells: &[String]) -> String {
     let mut padded: Vec<String> = Vec::new();
     for ((cell, column), &width) in cells.iter().zip(&table.columns).zip(widths) {
@@ -48,8 +47,7 @@ fn line(table: &TextTable, widths: &[usize], cells: &[String]) -> String {
 }
 
 /// Escapes `|`, `*`, `[`, `\` and, where Markdown would interpret them, `_` and `<`. Inside backquotes, it escapes only `|`,
-/// which would end the cell of a table. Other characters stay as they are. For example, `a*b` outside of backquotes becomes
-/// `a\*b`.
+/// which would end the cell of a table. For example, `a*b` outside of backquotes becomes `a\*b`.
 pub fn prose(text: &str) -> String {
     let mut plain = String::with_capacity(text.len());
     let mut name = false;

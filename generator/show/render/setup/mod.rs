@@ -28,17 +28,16 @@ const OPPOSITE: f64 = -1.0 + 1e-12;
 /// If γ, in radians, is larger than this, the half vectors count as opposite.
 const LARGEST_GAMMA: f64 = PI - 1e-6;
 
-/// If γ, in radians, is at most this, the half vector counts as constant. After rounding, so short an arc has no direction, and
-/// the angle changes by less than half an ulp of the usual operand.
+/// If γ, in radians, is at most this, the half vector counts as constant. After rounding, so short an arc has no direction,
+/// and the angle changes by less than half an ulp of the usual operand.
 const STILL: f64 = 1e-8;
 
 /// The amount by which rounding may make the cosine of the smallest angle to the normal exceed 1.
 const ROUNDING: f64 = 1e-6;
 
-/// The reason why the operands of a line cannot be computed.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Error {
-    /// A vector has no direction, because its length is 0 or not finite. The text is the name of the vector.
+    /// A vector has the length 0 or is not finite. The text is its name.
     NoDirection(&'static str),
     /// H₁ and H₂′ are opposite, so infinitely many great circles go through both.
     OppositeHalves,
@@ -67,33 +66,31 @@ impl fmt::Display for Error {
 
 impl std::error::Error for Error {}
 
-/// The way of the half vector from H₁ to H₂′, seen from the fixed normal N₁; the head of this module explains the vectors. Angles
-/// are in radians.
+/// The way of the half vector from H₁ to H₂′, seen from the fixed normal N₁; the head of this module explains the vectors.
+/// Angles are in radians.
 ///
-/// Every field has a value even where a formula of the source document divides by zero. For γ = 0, the angle stays at λ = 0. For
-/// cos θ₁ ≤ 0, `arctan P` would be in the wrong half plane; λ is the angle of the point (cos θ₁, P·cos θ₁), from −180° to
+/// Every field has a value even where a formula of the source document divides by zero. For γ = 0, the angle stays at λ = 0.
+/// For cos θ₁ ≤ 0, `arctan P` would be in the wrong half plane; λ is the angle of the point (cos θ₁, P·cos θ₁), from −180° to
 /// 180°, and A is never negative. For N₁ = −N₂, the normal turns by half a turn in the plane of N₂ and H₂, so that H₂′ = −H₂.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Arc {
     /// θ₁, the angle between the normal N₁ and the half vector H₁ at the start of the line.
     pub theta_1: f64,
-    /// θ₂, the angle between the normal N₂ and the half vector H₂ at the end of the line. θ₂ is also the angle between N₁ and
-    /// H₂′.
+    /// θ₂, the angle between N₂ and H₂ at the end of the line, which is also the angle between N₁ and H₂′.
     pub theta_2: f64,
-    /// γ, the angle by which the half vector turns from the start H₁ to the end H₂′ of the line; less than π.
+    /// γ, the angle by which the half vector turns from H₁ to H₂′; less than π.
     pub gamma: f64,
-    /// P·cos θ₁ = (cos θ₂ − cos θ₁·cos γ)/sin γ, from which λ follows; 0 for γ = 0. θ₁ and θ₂ are the angles between normal and
-    /// half vector at the two ends of the line.
+    /// P·cos θ₁ = (cos θ₂ − cos θ₁·cos γ)/sin γ, from which λ follows; 0 for γ = 0.
     pub rise: f64,
-    /// λ, the angle by which the half vector must turn from its start H₁ to the point of its circle that is nearest to the
-    /// normal N₁. λ is `arctan P` for cos θ₁ > 0.
+    /// λ, the angle by which the half vector must turn from H₁ to the point of its circle that is nearest to N₁. It is `arctan
+    /// P` for cos θ₁ > 0.
     pub lambda: f64,
-    /// A = cos θ₁/cos λ, the largest cosine between the normal N₁ and any half vector on the circle.
+    /// A = cos θ₁/cos λ, the largest cosine between N₁ and any half vector on the circle.
     pub peak: f64,
 }
 
 impl Arc {
-    /// Sets up an arc from the normals and half vectors at the ends of the line. The vectors may have any length.
+    /// The vectors may have any length.
     ///
     /// # Errors
     /// Fails with [`Error::NoDirection`] or [`Error::OppositeHalves`].
@@ -119,8 +116,8 @@ impl Arc {
         )
     }
 
-    /// Makes an arc from three angles, each from 0 to π: θ₁ and θ₂ between normal and half vector at the two ends of the
-    /// line, and γ, by which the half vector turns.
+    /// Makes an arc from three angles, each from 0 to π: θ₁ and θ₂ between normal and half vector at the two ends of the line,
+    /// and γ, by which the half vector turns.
     ///
     /// # Errors
     /// Fails with [`Error::OppositeHalves`] or [`Error::NoSuchAngles`].
@@ -132,11 +129,7 @@ impl Arc {
         if arc.peak > 1.0 + ROUNDING || still { Err(Error::NoSuchAngles) } else { Ok(arc) }
     }
 
-    /// Sets up an arc from θ₁ and θ₂, γ, cos θ₁ and the rise. The rise is ignored if γ is so small that the half vector counts
-    /// as constant.
-    ///
-    /// # Errors
-    /// Fails with [`Error::OppositeHalves`].
+    /// The rise is ignored if γ is so small that the half vector counts as constant.
     fn new_of(
         [theta_1, theta_2]: [f64; 2],
         gamma: f64,
@@ -154,25 +147,26 @@ impl Arc {
         Ok(Self { theta_1, theta_2, gamma, rise, lambda, peak })
     }
 
-    /// Returns cos δ, the cosine between normal and half vector, at the part `t` of the line, 0 … 1. The cosine is A·cos ζ. The
-    /// cosine is negative if the surface faces away, except that it is 0 for γ = 0.
+    /// Returns cos δ = A·cos ζ, the cosine between normal and half vector, at the part `t` of the line, 0 … 1. It is negative
+    /// if the surface faces away, except that it is 0 for γ = 0.
     pub fn cosine(&self, t: f64) -> f64 {
         self.peak * libm::cos(t * self.gamma - self.lambda)
     }
 
-    /// Returns P = (cos θ₂ − cos θ₁·cos γ)/(cos θ₁·sin γ), whose arctangent is λ. P is infinite or not a number for cos θ₁ = 0.
+    /// Returns P = (cos θ₂ − cos θ₁·cos γ)/(cos θ₁·sin γ), whose arctangent is λ. P is infinite or not a number for cos θ₁ =
+    /// 0.
     pub fn p(&self) -> f64 {
         self.rise / libm::cos(self.theta_1)
     }
 
-    /// Returns the angle ζ at the start of the line: −λ, or a full turn less if that brings the lit part of the line near ζ = 0.
-    /// All angles of the line then lie within three right angles of 0.
+    /// Returns the angle ζ at the start of the line: −λ, or a full turn less if that brings the lit part of the line near ζ =
+    /// 0. All angles of the line then lie within three right angles of 0.
     pub fn zeta_start(&self) -> f64 {
         if self.gamma - self.lambda > 1.5 * PI { -self.lambda - TAU } else { -self.lambda }
     }
 
-    /// Returns the line of `length` intervals with the light `intensity` (I·k_s, in output units) and the exponent n.
-    /// For example, 639 intervals have 640 points.
+    /// Returns the line of `length` intervals with the light `intensity` (I·k_s, in output units) and the exponent n. It has
+    /// one point more than intervals.
     pub fn line(&self, intensity: f64, exponent: u32, length: u32) -> LineParameters {
         LineParameters {
             amplitude: intensity * libm::pow(self.peak.min(1.0), f64::from(exponent)),
@@ -187,7 +181,7 @@ impl Arc {
     }
 }
 
-/// Returns the vector scaled to length 1. `name` is its name in an error.
+/// Scales a vector to length 1. `name` is its name in an error.
 ///
 /// # Errors
 /// Fails with [`Error::NoDirection`].
@@ -195,8 +189,8 @@ pub fn direction(name: &'static str, vector: Vector) -> Result<Vector, Error> {
     vector.unit().ok_or(Error::NoDirection(name))
 }
 
-/// Returns the half vector (L + V)/|L + V| of the directions `light` and `view` toward the light and the viewer. `names` are
-/// the names of light, view and half vector in an error.
+/// Returns the half vector (L + V)/|L + V| of the directions toward the light and the viewer. `names` are the names of light,
+/// view and half vector in an error.
 ///
 /// # Errors
 /// Fails with [`Error::NoDirection`] if `light` or `view` has no direction, or if they are opposite.
@@ -217,7 +211,7 @@ fn turned(normal_1: Vector, normal_2: Vector, half_2: Vector) -> Vector {
     half_2 - once + v.cross(once) * (1.0 / (1.0 + cosine))
 }
 
-/// Returns the angle between two unit vectors in radians. Unlike the arc cosine, it is exact for small angles too.
+/// Unlike the arc cosine, this angle between two unit vectors, in radians, is exact for small angles too.
 fn angle(a: Vector, b: Vector) -> f64 {
     libm::atan2(a.cross(b).length(), a.dot(b))
 }
@@ -238,14 +232,12 @@ pub struct LineParameters {
 }
 
 impl LineParameters {
-    /// Returns the angle ζ of point number `index` of the line, counted from 0. The cosine between normal and half vector is
-    /// A·cos ζ.
+    /// Returns the angle ζ of point number `index`, counted from 0.
     pub fn zeta(&self, index: u32) -> f64 {
         self.zeta_start + f64::from(index) * self.delta_zeta
     }
 
-    /// Returns a = √(n/2). The host multiplies angles by it for a device that has no exponent as an operand. For example, n = 8
-    /// gives 2.
+    /// Returns a = √(n/2), by which the host multiplies angles for a device that has no exponent as an operand.
     pub fn stretch(&self) -> f64 {
         (f64::from(self.exponent) / 2.0).sqrt()
     }

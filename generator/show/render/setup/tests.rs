@@ -28,7 +28,7 @@ fn random(random: &mut ChaCha8Rng) -> Vector {
     Vector([(); 3].map(|()| f64::from(random.next_u32()) / f64::from(u32::MAX) - 0.5))
 }
 
-/// Returns the spherical interpolation between two unit vectors, at the part `t` of the way from `a` to `b`.
+/// Interpolates on the sphere between two unit vectors, at the part `t` of the way from `a` to `b`.
 fn slerp(a: Vector, b: Vector, t: f64) -> Vector {
     let gamma = angle(a, b);
     let weight = |part: f64| (part * gamma).sin() / gamma.sin();
@@ -155,13 +155,12 @@ fn opposite_normals_and_half_vectors() {
     assert!(Arc::new(Z, Vector([f64::NAN, 0.0, 1.0]), Z, X).is_err());
 }
 
-/// Returns the raw operands of a line for the default configuration of `quad-cosine`.
 fn quad(line: &LineParameters) -> Vec<i64> {
     let config = Config::defaults(&keys::quad_cosine::schema(), "line");
     operands(golden::quad_cosine::contract(&config).as_ref(), line).unwrap()
 }
 
-/// Returns the raw operands of a line for a configuration of `cosine-squared`. `keys` are lines of TOML.
+/// `keys` are lines of TOML.
 fn squared(keys: &str, line: &LineParameters) -> anyhow::Result<Vec<i64>> {
     let text = format!("device = \"cosine-squared\"\n{keys}");
     let config = config::parse("line.toml", &text, &[keys::cosine_squared::schema()]).unwrap();

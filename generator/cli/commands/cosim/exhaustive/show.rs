@@ -60,13 +60,11 @@ pub fn report(
     Ok(holds)
 }
 
-/// The state of an exhaustive check with its conclusion, for the report.
 struct ProofReport<'a> {
     one: &'a Loaded,
     job: &'a Job<'a>,
     state: &'a ShardState,
     proof: Proof,
-    /// The first combination for which model and hardware differ, with its waveform; `None` if they agree.
     found: Option<(Difference, Reproducer)>,
 }
 
@@ -84,8 +82,7 @@ impl CommandReport for ProofReport<'_> {
     }
 }
 
-/// Returns the first combination for which model and hardware differ, and writes its waveform. Returns `None` if they agree.
-/// Fails if the design cannot be simulated, or if the waveform cannot be written.
+/// Returns the first combination for which model and hardware differ, if any, and writes its waveform.
 fn found(
     one: &Loaded,
     job: &Job<'_>,
@@ -128,7 +125,7 @@ fn print(one: &Loaded, job: &Job<'_>, proof: &Proof, state: &ShardState) {
     }
 }
 
-/// Returns the result as JSON, for scripts and for the record in the repository.
+/// Returns the result for scripts and for the record in the repository.
 fn as_json(
     one: &Loaded,
     job: &Job<'_>,
@@ -181,8 +178,8 @@ fn as_json(
     value
 }
 
-/// Returns a difference as JSON. The object has the keys of a difference in a random run, but `seed` is null, and
-/// `combination`, `clock_of_computation` and `operands` are added.
+/// The object has the keys of a difference in a random run, but `seed` is null, and `combination`, `clock_of_computation` and
+/// `operands` are added.
 fn mismatch_json((difference, reproducer): &(Difference, Reproducer)) -> Value {
     let mut value = reproducer.json(&difference.mismatch);
     let operands: BTreeMap<&str, String> = difference

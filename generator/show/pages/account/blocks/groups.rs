@@ -13,25 +13,20 @@ use glint_rtl::netlist::{Design, Driver, Net, NetId, Op, Partition, Role, RomId}
 
 /// The nets of a design, grouped into blocks, and the sources of each net.
 pub struct Groups<'a> {
-    /// The design whose nets are grouped.
     pub design: &'a Design,
-    /// For each net, the number of its group: the lowest number of a net in the group.
+    /// For each net, its group: the lowest number of a net in the group.
     pub group: Vec<usize>,
-    /// For each net, whether it makes its group a block: it is a register, a ROM or an operator, or the description documents or
-    /// numbers it.
+    /// For each net, whether it makes its group a block: it is a register, a ROM or an operator, or the description documents
+    /// or numbers it.
     pub cell: Vec<bool>,
-    /// For each net, its sources: the blocks, ports and ROMs whose values reach it within a clock. In a pipeline, a source
-    /// may lie several clocks back.
+    /// For each net, its sources: the blocks, ports and ROMs whose values reach it within a clock. In a pipeline, a source may
+    /// lie several clocks back.
     pub sources: Vec<Vec<NetId>>,
-    /// For each group that is a block, its output net.
     pub head: Vec<Option<NetId>>,
-    /// The joints: nets at which several signals meet by wiring or gates, and which an operator takes.
     pub joints: BTreeSet<NetId>,
 }
 
 impl<'a> Groups<'a> {
-    /// Groups the nets of a design. If `figure` is set, the blocks are for a block diagram: gates and wiring are then blocks
-    /// only if the source document numbers them, or if several signals meet in them.
     pub fn new(design: &'a Design, figure: bool) -> Self {
         let cell = design.iter().map(|(id, net)| is_cell(design, id, net, figure)).collect();
         let mut groups = Self {
@@ -97,8 +92,8 @@ impl<'a> Groups<'a> {
         at
     }
 
-    /// Joins the group of a net and the groups of the nets from which it is computed, if one statement of the description
-    /// made both. For example, the muxes of one tree are a group.
+    /// Joins the group of a net and the groups of the nets from which it is computed, if one statement of the description made
+    /// both. For example, the muxes of one tree are a group.
     fn join(&mut self, id: NetId) {
         let design = self.design;
         let net = design.net(id);
@@ -117,9 +112,8 @@ impl<'a> Groups<'a> {
         }
     }
 
-    /// Returns whether the nets `from` and `to` of one statement belong to one block. `to` takes the value of `from`. For
-    /// example, a mux that takes another mux belongs to the same block, and an adder behind a multiplier does not in a
-    /// sequential core.
+    /// Returns whether the nets `from` and `to`, which takes the value of `from`, belong to one block. For example, a mux
+    /// behind another mux does, and an adder behind a multiplier does not in a sequential core.
     fn belongs(&self, from: NetId, to: NetId) -> bool {
         let design = self.design;
         let (Some(a), Some(b)) = (self.operator(from), self.operator(to)) else {
@@ -140,7 +134,7 @@ impl<'a> Groups<'a> {
         }
     }
 
-    /// Returns the index of an operator's kind, as [`operator`] does; `None` for a net that is no cell.
+    /// Returns the index of an operator's kind, as [`operator`] does.
     fn operator(&self, id: NetId) -> Option<usize> {
         match self.cell[id.index()] {
             true => operator(&self.design.net(id).driver),
@@ -161,7 +155,7 @@ impl<'a> Groups<'a> {
         true
     }
 
-    /// Returns whether an operand is a row of a product: through wires, an AND of the statement that made `of`.
+    /// Returns whether an operand is, through wires, an AND of the statement that made `of`.
     fn is_product_row(&self, operand: NetId, of: NetId) -> bool {
         let mut at = operand;
         while !self.cell[at.index()] {
@@ -174,25 +168,22 @@ impl<'a> Groups<'a> {
         false
     }
 
-    /// Returns whether one statement made both nets.
     fn is_one_statement(&self, one: NetId, other: NetId) -> bool {
         std::ptr::eq(self.design.net(one).location, self.design.net(other).location)
     }
 
-    /// Returns whether an adder only adds a single bit to a number, as rounding does. For example, `upper + half` rounds if
-    /// `half` is 0 or 1.
+    /// Returns whether an adder only adds a single bit to a number, as rounding does.
     pub fn rounds(&self, adder: NetId) -> bool {
         self.operands(adder).iter().any(|operand| self.design.net(*operand).range == (0, 1))
     }
 
-    /// Returns the operators, registers and ROMs from whose values wires and gates form the value of a net. In a pipeline,
-    /// the search also passes through registers.
+    /// Returns the operators, registers and ROMs from whose values wires and gates form the value of a net. In a pipeline, the
+    /// search also passes through registers.
     pub fn operators(&self, id: NetId) -> Vec<NetId> {
         self.through(self.operands(id))
     }
 
-    /// Returns the operators, registers and ROMs among the nets `pending`, and the ones that the search finds behind the
-    /// other nets, through wires and gates.
+    /// Returns the operators, registers and ROMs among the nets `pending` or behind them, through wires and gates.
     fn through(&self, mut pending: Vec<NetId>) -> Vec<NetId> {
         let (mut found, mut seen) = (Vec::new(), BTreeSet::new());
         while let Some(id) = pending.pop() {
@@ -206,8 +197,7 @@ impl<'a> Groups<'a> {
         found
     }
 
-    /// Returns the nets from which a net is made: the operands of its cell, the data of a register or the address of a ROM. A
-    /// port, a constant or the control ROM gives none.
+    /// Returns the operands of a net's cell, the data of a register or the address of a ROM. Other nets have none.
     pub fn operands(&self, id: NetId) -> Vec<NetId> {
         match &self.design.net(id).driver {
             Driver::Op(op) => op.operands(),
@@ -221,8 +211,7 @@ impl<'a> Groups<'a> {
         }
     }
 
-    /// Finds the sources of the net `id`, and first the sources of all nets on which it depends, and writes them to
-    /// `sources`.
+    /// Writes the sources of the net `id`, and of all nets on which it depends, to `sources`.
     fn trace(&self, id: NetId, sources: &mut [Option<Vec<NetId>>]) {
         let mut pending = vec![id];
         while let Some(&id) = pending.last() {
@@ -272,8 +261,7 @@ impl<'a> Groups<'a> {
         }
     }
 
-    /// Returns whether the blocks of a pipeline form a cycle, which a drawing by stages cannot show. Returns `false` for a
-    /// sequential core.
+    /// A drawing by stages cannot show a pipeline whose blocks form a cycle.
     fn is_tangled(&self) -> bool {
         if self.design.pipeline.is_none() {
             return false;
@@ -315,12 +303,10 @@ impl<'a> Groups<'a> {
         self.joints = read.into_iter().filter_map(|net| self.joint(net)).collect();
     }
 
-    /// Returns the output nets of the groups that are blocks.
     pub fn heads(&self) -> impl Iterator<Item = NetId> {
         self.head.iter().copied().flatten()
     }
 
-    /// Returns the operands of all nets inside a block.
     fn operands_inside(&self, head: NetId) -> Vec<NetId> {
         let mut operands = Vec::new();
         for net in self.inside(head) {
@@ -329,9 +315,9 @@ impl<'a> Groups<'a> {
         operands
     }
 
-    /// Returns whether the sources of `operand` meet inside the block whose output is `head`, so that no joint is drawn. The
-    /// sources meet inside if the block itself is one of the sources, or if the gates at which the sources meet belong to the
-    /// same statement of the description as the block.
+    /// Returns whether the sources of `operand` meet inside the block whose output is `head`, so that no joint is drawn.
+    /// Either the block is one of the sources, or the gates at which they meet belong to the block's statement of the
+    /// description.
     pub fn is_part(&self, operand: NetId, head: NetId) -> bool {
         if self.sources[operand.index()].contains(&head) {
             return true;
@@ -347,8 +333,8 @@ impl<'a> Groups<'a> {
         }
     }
 
-    /// Returns the joint behind a net: the net at which several signals meet by wiring or gates to form it. Returns `None` if
-    /// only one signal forms it.
+    /// Returns the net at which several signals meet by wiring or gates to form a net. Returns `None` if only one signal forms
+    /// it.
     pub fn joint(&self, mut id: NetId) -> Option<NetId> {
         if self.sources[id.index()].len() < 2 {
             return None;
@@ -363,7 +349,7 @@ impl<'a> Groups<'a> {
         }
     }
 
-    /// Returns the nets of the block with this output: its cells, and wiring that passes on the value of the block.
+    /// Returns the cells of a block, and wiring that passes on its value.
     pub fn inside(&self, head: NetId) -> Vec<NetId> {
         let group = self.group[head.index()];
         let mut inside = Vec::new();
@@ -375,8 +361,6 @@ impl<'a> Groups<'a> {
         inside
     }
 
-    /// Returns the source whose value a net carries: the output net of a block, a port, or the joint at which several
-    /// sources meet. Returns `None` for a net without a source, for example a constant.
     pub fn driver(&self, net: NetId) -> Option<NetId> {
         match self.sources[net.index()][..] {
             [] => None,
@@ -385,7 +369,6 @@ impl<'a> Groups<'a> {
         }
     }
 
-    /// Returns the registers of a pipeline that only delay the value of the block, port or joint `source`.
     pub fn held(&self, source: NetId) -> Vec<NetId> {
         let mut held = Vec::new();
         for (id, net) in self.design.iter() {
@@ -397,10 +380,10 @@ impl<'a> Groups<'a> {
         held
     }
 
-    /// Returns the block, port or joint whose value a register of a pipeline holds. Returns `None` if no such value is found.
+    /// Returns the block, port or joint whose value a register of a pipeline holds.
     ///
-    /// A register may also hold an intermediate value of gates, in which several sources meet before the joint. The function then
-    /// follows the nets that read the register, and returns the first block or joint that it reaches.
+    /// A register may also hold an intermediate value of gates, in which several sources meet before the joint. The function
+    /// then follows the nets that read the register, and returns the first block or joint that it reaches.
     fn holds(&self, register: NetId) -> Option<NetId> {
         let driver = self.driver(register);
         if self.sources[register.index()].len() < 2
@@ -427,8 +410,8 @@ impl<'a> Groups<'a> {
     }
 }
 
-/// Returns whether a net is the slot counter of a pipeline, or an operator of the counter or of its comparisons. These nets
-/// belong to the handshake, which is not drawn.
+/// Returns whether a net is the slot counter of a pipeline, or an operator of it or of its comparisons. They belong to the
+/// handshake, which is not drawn.
 fn counts_slots(design: &Design, id: NetId) -> bool {
     let Some(pipeline) = &design.pipeline else { return false };
     let is_operator = operator(&design.net(id).driver).is_some();
@@ -436,7 +419,7 @@ fn counts_slots(design: &Design, id: NetId) -> bool {
 }
 
 /// Returns whether a net of the datapath is a register, a ROM or an operator, or is shown because the source numbers or the
-/// description documents it. A register of a pipeline is not, because it only delays a value. Nor is the slot counter.
+/// description documents it. A register of a pipeline is not, because it only delays a value.
 fn is_cell(design: &Design, id: NetId, net: &Net, figure: bool) -> bool {
     if net.partition != Partition::Datapath || counts_slots(design, id) {
         return false;

@@ -4,34 +4,28 @@ use std::fmt;
 
 use glint_rtl::netlist::{Driver, Op};
 
-/// The kind of a block. For example, as text: `3:1 mux`, `21 × 10 multiplier` or `2 adders, mux`.
+/// The kind of a block. As text, for example, `3:1 mux`, `21 × 10 multiplier` or `2 adders, mux`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BlockKind {
     /// An operand register, which a port writes.
     Operand,
-    /// Any other register.
     Register,
-    /// A ROM, with its read port.
     Rom,
-    /// A constant value.
     Constant,
-    /// Rounding of a number to fewer fraction bits.
+    /// Rounding to fewer fraction bits.
     Rounding,
-    /// Saturation of a number to a narrower format.
+    /// Saturation to a narrower format.
     Limiter,
-    /// Rounding of a number to fewer fraction bits, followed by saturation.
+    /// Rounding followed by saturation.
     RoundingLimiter,
     /// A multiplexer with this number of inputs.
     Mux(usize),
-    /// A multiplier with the widths of its two operands in bits.
+    /// The widths of both operands in bits.
     Multiplier(u32, u32),
-    /// An adder.
     Adder,
-    /// A subtractor.
     Subtractor,
-    /// A comparison of two numbers.
     Comparator,
-    /// Several operators from one statement of the description. The array has the number of each kind of operator in `OPERATORS`.
+    /// Several operators from one statement of the description: the number of each kind in `OPERATORS`.
     Several([u16; 5]),
     /// All bits inverted.
     Inverter,
@@ -39,7 +33,6 @@ pub enum BlockKind {
     Gate,
     /// Bits under another name, or side by side.
     Wiring,
-    /// A block of any other kind.
     Other,
 }
 
@@ -83,13 +76,11 @@ impl fmt::Display for BlockKind {
     }
 }
 
-/// The indices of some operators in [`OPERATORS`].
 pub const MULTIPLIER: usize = 0;
 pub const ADDER: usize = 1;
 pub const MUX: usize = 4;
 
-/// Returns the index in [`OPERATORS`] of the operator that drives a net, or `None` if no such operator drives it. For example,
-/// an adder gives 1.
+/// Returns the index in [`OPERATORS`] of the operator that drives a net.
 pub fn operator(driver: &Driver) -> Option<usize> {
     match driver {
         Driver::Op(Op::Mul(..)) => Some(MULTIPLIER),

@@ -16,8 +16,8 @@ use groups::Groups;
 pub use kind::BlockKind;
 use kind::{ADDER, MULTIPLIER, operator};
 
-/// Returns the table of a design's blocks, in the order of the numbers that they have in the figure of the source document.
-/// Blocks without a number come last.
+/// Returns a table of the blocks, in the order of their numbers in the figure of the source document. Blocks without a number
+/// come last.
 pub fn table(design: &Design) -> TextTable {
     let blocks = Blocks::new(design, false);
     let mut table = TextTable::of("no.: | block | kind | format | takes | what it is");
@@ -42,8 +42,7 @@ pub fn table(design: &Design) -> TextTable {
     table.without_empty(NUMBER)
 }
 
-/// Returns the stage of a pipeline in which a cell computes its value. A block memory works in the stage of its address, one
-/// stage before its word is available.
+/// Returns the stage of a pipeline in which a cell computes its value.
 fn stage(design: &Design, pipeline: &Pipeline, cell: NetId) -> usize {
     let clock = pipeline.clock_of(cell);
     match design.net(cell).driver {
@@ -53,46 +52,40 @@ fn stage(design: &Design, pipeline: &Pipeline, cell: NetId) -> usize {
     }
 }
 
-/// A block of a datapath: the hardware of one statement of the description.
+/// The hardware of one statement of the description.
 #[derive(Clone, Debug)]
 pub struct Block {
-    /// The number of the block in the figure of the source document, if it has one.
     pub number: Option<u16>,
-    /// The name of the block: the name of the net that it drives.
+    /// The name of the net that the block drives.
     pub name: String,
-    /// The kind of the block, such as an adder or a register.
     pub kind: BlockKind,
-    /// The number format of the block's output.
     pub format: String,
-    /// The net that the block drives with its result.
     pub output: NetId,
     /// The nets that the block reads, each driven by another block, a port, a constant or a ROM. An operator has one for each
     /// operand.
     pub inputs: Vec<NetId>,
-    /// For a mux, the select inputs: a field of the control word, or blocks.
+    /// The select of a mux: a field of the control word, or blocks.
     pub selected_by: Vec<NetId>,
-    /// The comment of the description on the block, one line. The comment may be empty.
+    /// The comment of the description, one line; may be empty.
     pub doc: String,
-    /// The nets of the registers, ROMs and operators inside the block.
     pub cells: Vec<NetId>,
     /// In a pipeline, the further names of the value that the block computes.
     pub aliases: Vec<String>,
 }
 
-/// The blocks of a design: the hardware of each statement of its description.
 pub struct Blocks<'a> {
     design: &'a Design,
     groups: Groups<'a>,
 }
 
 impl<'a> Blocks<'a> {
-    /// Finds the blocks of a design. If `figure` is set, the blocks are for a block diagram: gates and wiring are then blocks
-    /// only if the source numbers them, or if several signals meet in them.
+    /// If `figure` is set, the blocks are for a block diagram. Gates and wiring are then blocks only if the source document
+    /// numbers them, or if several signals meet in them.
     pub fn new(design: &'a Design, figure: bool) -> Self {
         Self { design, groups: Groups::new(design, figure) }
     }
 
-    /// Returns all blocks, in the order of their numbers. Blocks without a number come last.
+    /// Returns the blocks in the order of their numbers. Blocks without a number come last.
     pub fn all(&self) -> Vec<Block> {
         let mut blocks: Vec<Block> = Vec::new();
         for head in self.groups.heads() {
@@ -105,7 +98,6 @@ impl<'a> Blocks<'a> {
         blocks
     }
 
-    /// Returns the block with the output `head`, with its kind, inputs and names.
     fn block(&self, head: NetId) -> Block {
         let design = self.design;
         let inside = self.groups.inside(head);
@@ -161,9 +153,8 @@ impl<'a> Blocks<'a> {
         }
     }
 
-    /// Returns the inputs of the block with the output `head`, and the nets that select among them. `cells` are the
-    /// operators, registers and ROMs of the block. `around` are its other nets: wiring and gates through which bits bypass
-    /// the operators.
+    /// Returns the inputs of the block with the output `head`, and the nets that select among them. `cells` are the operators,
+    /// registers and ROMs of the block, and `around` its wiring and gates, through which bits bypass the operators.
     fn inputs(&self, head: NetId, cells: &[NetId], around: &[NetId]) -> (Vec<NetId>, Vec<NetId>) {
         let (mut inputs, mut selected_by) = (Vec::new(), Vec::new());
         // Operators first: bits that bypass them come from the same signals.
@@ -192,8 +183,7 @@ impl<'a> Blocks<'a> {
         (inputs, selected_by)
     }
 
-    /// Returns the sources of `operand`, an operand of a net in the block with the output `head`: blocks, ports and
-    /// constants outside of this block.
+    /// Returns the sources of an operand that are outside of the block with the output `head`.
     fn sources_outside(&self, operand: NetId, head: NetId) -> Vec<NetId> {
         if !self.groups.is_part(operand, head) {
             return self.source(operand).into_iter().collect();
@@ -207,8 +197,7 @@ impl<'a> Blocks<'a> {
         matches!(self.design.net(id).driver, Driver::Op(Op::Mux { .. }))
     }
 
-    /// Returns the comment of the description on a block: the comment on its output, or else the comment on the last net
-    /// inside that has one. Returns an empty text if no net has a comment.
+    /// Returns the comment of the description on a block's output, or else on the last net inside that has one.
     fn doc(&self, inside: &[NetId], head: NetId) -> String {
         let of_head = &self.design.net(head).doc;
         if inside.contains(&head) && !of_head.is_empty() {
@@ -223,8 +212,7 @@ impl<'a> Blocks<'a> {
         String::new()
     }
 
-    /// Returns the registers, ROMs and operators of the block with the output `head`. In a pipeline, the registers that
-    /// delay the value of the block are included.
+    /// Returns the registers, ROMs and operators of a block. In a pipeline, the registers that delay its value are included.
     fn cells(&self, head: NetId) -> Vec<NetId> {
         let mut cells = self.groups.inside(head);
         cells.retain(|net| self.groups.cell[net.index()]);
@@ -232,8 +220,8 @@ impl<'a> Blocks<'a> {
         cells
     }
 
-    /// Returns the source of an operand: the output net of a block, a port, a constant, or the joint at which several
-    /// sources meet. Returns `None` for a signal of the control unit.
+    /// Returns the source of an operand: the output net of a block, a port, a constant, or a joint. A signal of the control
+    /// unit has none.
     fn source(&self, operand: NetId) -> Option<NetId> {
         match self.groups.sources[operand.index()][..] {
             [] => self.constant(operand),
@@ -242,8 +230,7 @@ impl<'a> Blocks<'a> {
         }
     }
 
-    /// Returns the constant whose value a net has, through the first operands of cells. For example, an extension of the
-    /// constant 1 gives the constant 1. Returns `None` if the search ends at another net.
+    /// Returns the constant whose value a net has, through the first operands of cells, such as an extension.
     fn constant(&self, mut id: NetId) -> Option<NetId> {
         loop {
             match &self.design.net(id).driver {
@@ -254,7 +241,7 @@ impl<'a> Blocks<'a> {
         }
     }
 
-    /// Returns the name of a block. In a pipeline, it is the shortest name of the block's parts, without the stage.
+    /// In a pipeline, returns the shortest name of the block's parts, without the stage.
     fn called(&self, inside: &[NetId], head: NetId) -> String {
         let design = self.design;
         let Some(pipeline) = &design.pipeline else { return design.net(head).name.clone() };
@@ -271,8 +258,8 @@ impl<'a> Blocks<'a> {
         shortest.unwrap_or(&pipeline.value_of[head.index()]).clone()
     }
 
-    /// Returns the other names that the value of a block has in a pipeline: the names of checkpoints whose only source is
-    /// the block, with their numbers in the source's figure. For a sequential core the list is empty.
+    /// Returns the other names of the value in a pipeline. These are the names of checkpoints whose only source is the block,
+    /// with their numbers in the source's figure.
     fn aliases(&self, head: NetId, name: &str) -> Vec<String> {
         let design = self.design;
         let Some(pipeline) = &design.pipeline else { return Vec::new() };
@@ -291,7 +278,7 @@ impl<'a> Blocks<'a> {
         names
     }
 
-    /// Returns the block that is drawn for a joint: gates in which several signals meet, or their concatenation.
+    /// The block of a joint is drawn for gates in which several signals meet, or for their concatenation.
     fn meeting(&self, joint: NetId) -> Block {
         let net = self.design.net(joint);
         let inputs = self.groups.sources[joint.index()].clone();
@@ -317,14 +304,12 @@ impl<'a> Blocks<'a> {
         matches!(self.design.net(id).driver, Driver::Constant(_)) && !self.groups.cell[id.index()]
     }
 
-    /// Returns the names of nets as [`Self::name`] gives them, separated by commas.
     fn names(&self, nets: &[NetId]) -> String {
         let names: Vec<String> = nets.iter().map(|net| code(&self.name(*net))).collect();
         names.join(", ")
     }
 
     /// Returns the name of the block, port or ROM that drives a net of [`Block::inputs`], or the value of a constant.
-    /// For example, `cos_gamma_reg`, or `0.5`.
     pub fn name(&self, id: NetId) -> String {
         let net = self.design.net(id);
         match &net.driver {
@@ -373,7 +358,7 @@ impl<'a> Blocks<'a> {
         }
     }
 
-    /// Returns the number of bits of an operand, without the bits by which an extension widens it.
+    /// Ignores the bits by which an extension widens an operand.
     fn narrow_width(&self, operand: NetId) -> u32 {
         match &self.design.net(operand).driver {
             Driver::Op(Op::Extend(of)) => self.design.width(*of),
@@ -381,7 +366,6 @@ impl<'a> Blocks<'a> {
         }
     }
 
-    /// Returns the kind of a block that consists of the driver of a single net.
     fn kind_of_net(&self, id: NetId) -> BlockKind {
         match &self.design.net(id).driver {
             Driver::Register(register) => match self.design.register(*register).kind {
@@ -408,14 +392,13 @@ impl<'a> Blocks<'a> {
         }
     }
 
-    /// Returns the sources of a net: the output nets of the blocks, ports and ROMs whose values reach the net through wiring
-    /// and gates alone.
+    /// Returns the output nets of the blocks, ports and ROMs whose values reach a net through wiring and gates alone.
     pub fn behind(&self, net: NetId) -> &[NetId] {
         &self.groups.sources[net.index()]
     }
 
-    /// Returns the number of the first and of the last pipeline stage that contains operators of the block. A block without
-    /// operators has the stage of its output. A sequential core gives 0 and 0.
+    /// Returns the first and the last pipeline stage that contains operators of the block. A block without operators has the
+    /// stage of its output. A sequential core gives 0 and 0.
     pub fn stages(&self, block: &Block) -> (usize, usize) {
         let design = self.design;
         let Some(pipeline) = &design.pipeline else { return (0, 0) };
@@ -434,8 +417,7 @@ impl<'a> Blocks<'a> {
         }
     }
 
-    /// Returns the fields of the control word that control a block, and the strobes that write it. The fields are its
-    /// select or enable, and the fields that its logic takes.
+    /// Returns the fields of the control word that control a block or that its logic takes, and the strobes that write it.
     pub fn controls(&self, block: &Block) -> (Vec<FieldId>, Vec<NetId>) {
         let design = self.design;
         let mut pending: Vec<NetId> = Vec::new();
@@ -477,13 +459,13 @@ impl<'a> Blocks<'a> {
         (fields, strobes)
     }
 
-    /// Returns the source whose value a net carries: the output net of a block, a port, or a joint. Returns `None` for a net
-    /// without a source, for example a constant.
+    /// Returns the source whose value a net carries: the output net of a block, a port, or the joint at which several sources
+    /// meet. A constant has none.
     pub fn driver(&self, net: NetId) -> Option<NetId> {
         self.groups.driver(net)
     }
 
-    /// Returns the registers of a pipeline that only delay the value of the block, port or joint `source`.
+    /// Returns the registers of a pipeline that only delay the value of `source`.
     pub fn held(&self, source: NetId) -> Vec<NetId> {
         self.groups.held(source)
     }
