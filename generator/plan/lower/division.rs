@@ -225,9 +225,10 @@ impl Lowering<'_> {
             let flipped = self.plan.subtract("dividend_flipped", negated, unit)?;
             self.plan.choose("dividend_size", is_negative, [dividend, flipped])?
         };
-        let most = self.plan.node(node).range.1;
-        let format = Format::holding(0, most, self.plan.node(node).format.frac);
-        let node = self.plan.narrow("dividend_without_sign", node, format, Rounding::Truncate)?;
+        let chosen = self.plan.node(node);
+        let most = chosen.format.to_f64(chosen.range.1);
+        let limits = Enclosure::between(0.0, most);
+        let node = self.plan.limited("dividend_without_sign", node, limits)?;
         let uses = self.uses.clone();
         self.known.push(KnownPart { part: size.clone(), node, uses, is_limited: false });
         let [whole, rest] = self.whole_quotient(&size, b, span)?;

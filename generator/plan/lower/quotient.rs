@@ -99,11 +99,14 @@ impl Lowering<'_> {
             let most = largest * exp2(octave.exponent) * if is_exact { 1.0 } else { 2.0 };
             holding(Enclosure::between(if is_signed { -most } else { 0.0 }, most), frac)
         };
-        let shifted = self.plan.shift_left("dividend_shifted", dividend, octave.places, format)?;
         let limits = Enclosure::between(
             format.to_f64(if is_signed { format.min_raw() } else { 0 }),
             format.to_f64(format.max_raw()),
         );
+        // The limits of a format of many bits are rounded up to numbers that need one bit more.
+        let is_rounded = format.width() > f64::MANTISSA_DIGITS;
+        let format = Format { int: format.int + i32::from(is_rounded), ..format };
+        let shifted = self.plan.shift_left("dividend_shifted", dividend, octave.places, format)?;
         if is_exact {
             self.plan.nodes[shifted.0].limits = limits;
         }
