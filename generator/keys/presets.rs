@@ -10,6 +10,8 @@ pub const FUNCTION: &str = "function";
 pub struct Preset {
     /// The device `function` or `expression`.
     pub device: &'static str,
+    /// What a user needs the expression for; `None` for a function.
+    pub purpose: Option<&'static str>,
     /// The keys that the preset states.
     pub values: Vec<(String, Value)>,
 }
@@ -43,15 +45,42 @@ const FUNCTIONS: [FunctionPreset; 16] = [
 /// A preset of the device `expression`: operands with their formats, named parts with their formulas, and results.
 struct ExpressionPreset {
     name: &'static str,
+    /// What a user needs the expression for, as the end of the sentence "An expression for …".
+    purpose: &'static str,
     operands: &'static [(&'static str, OperandFormat)],
     parts: &'static [(&'static str, &'static str)],
-    /// The results, each with its name, its formula, its number of fraction bits, and the condition under which the error bound
-    /// is promised. An empty condition promises it for all operands.
-    results: &'static [(&'static str, &'static str, i64, &'static str)],
+    results: &'static [ResultPreset],
 }
 
 /// Whether the operand has a sign, its width in bits, and its number of fraction bits.
 type OperandFormat = (bool, i64, i64);
+
+/// A result with an error below one unit.
+struct ResultPreset {
+    name: &'static str,
+    formula: &'static str,
+    fraction: i64,
+    /// The condition under which the error is promised. An empty condition promises it for all operands.
+    promise: &'static str,
+    /// The width of a signed result that saturates; `None` if the width follows from the values.
+    saturated_bits: Option<i64>,
+}
+
+impl ResultPreset {
+    const fn new(name: &'static str, formula: &'static str, fraction: i64) -> Self {
+        Self { name, formula, fraction, promise: "", saturated_bits: None }
+    }
+
+    const fn promised(mut self, condition: &'static str) -> Self {
+        self.promise = condition;
+        self
+    }
+
+    const fn saturated(mut self, bits: i64) -> Self {
+        self.saturated_bits = Some(bits);
+        self
+    }
+}
 
 /// The format of numbers from −1 to below 1.
 const COORDINATE: OperandFormat = (true, 16, 15);
@@ -59,69 +88,195 @@ const COORDINATE: OperandFormat = (true, 16, 15);
 /// The format of numbers from 0 to below 1.
 const PART_OF_ONE: OperandFormat = (false, 16, 16);
 
-const EXPRESSIONS: [ExpressionPreset; 10] = [
+/// The format of signals in motor control: numbers from −8 to below 8.
+const SIGNAL: OperandFormat = (true, 16, 12);
+
+/// The format of a colour of eight bits, from 0 to 255.
+const COLOUR: OperandFormat = (false, 8, 0);
+
+const EXPRESSIONS: [ExpressionPreset; 20] = [
     ExpressionPreset {
         name: "divide",
+        purpose: "a fraction of a whole, x / y for x below y",
         operands: &[("x", PART_OF_ONE), ("y", PART_OF_ONE)],
         parts: &[],
-        results: &[("q", "x / y", 15, "x < y")],
+        results: &[ResultPreset::new("q", "x / y", 15).promised("x < y")],
+    },
+    ExpressionPreset {
+        name: "quotient",
+        purpose: "the integer quotient and the remainder, both exact",
+        operands: &[("a", (false, 16, 0)), ("b", (false, 8, 0))],
+        parts: &[],
+        results: &[
+            ResultPreset::new("quotient", "floor(a / b)", 0).promised("b > 0"),
+            ResultPreset::new("remainder", "a % b", 0).promised("b > 0"),
+        ],
+    },
+    ExpressionPreset {
+        name: "perspective",
+        purpose: "perspective-correct interpolation: 1 / w, and an attribute that was divided by w",
+        operands: &[("w", (false, 20, 12)), ("u_over_w", (true, 16, 12))],
+        parts: &[],
+        results: &[
+            ResultPreset::new("depth", "1 / w", 15).promised("w >= 1"),
+            ResultPreset::new("u", "u_over_w / w", 12).promised("w >= 1"),
+        ],
     },
     ExpressionPreset {
         name: "hypot",
+        purpose: "the length of a vector of two coordinates",
         operands: &[("x", COORDINATE), ("y", COORDINATE)],
         parts: &[],
-        results: &[("r", "hypot(x, y)", 15, "")],
+        results: &[ResultPreset::new("r", "hypot(x, y)", 15)],
     },
     ExpressionPreset {
         name: "atan2",
+        purpose: "the direction of a vector, in half turns",
         operands: &[("x", COORDINATE), ("y", COORDINATE)],
         parts: &[],
-        results: &[("angle", "atan2(y, x) / pi", 15, "x^2 + y^2 > 0")],
+        results: &[ResultPreset::new("angle", "atan2(y, x) / pi", 15).promised("x^2 + y^2 > 0")],
     },
     ExpressionPreset {
         name: "polar",
+        purpose: "the length and the direction of a vector, as of an I/Q sample",
         operands: &[("x", COORDINATE), ("y", COORDINATE)],
         parts: &[("s", "x^2 + y^2")],
-        results: &[("r", "sqrt(s)", 15, ""), ("angle", "atan2(y, x) / pi", 15, "s > 0")],
+        results: &[
+            ResultPreset::new("r", "sqrt(s)", 15),
+            ResultPreset::new("angle", "atan2(y, x) / pi", 15).promised("s > 0"),
+        ],
+    },
+    ExpressionPreset {
+        name: "normalise2",
+        purpose: "the unit vector in the direction of a vector of two coordinates",
+        operands: &[("x", COORDINATE), ("y", COORDINATE)],
+        parts: &[("s", "x^2 + y^2")],
+        results: &[
+            ResultPreset::new("u", "x / sqrt(s)", 14).promised("s >= 1/256"),
+            ResultPreset::new("v", "y / sqrt(s)", 14).promised("s >= 1/256"),
+        ],
+    },
+    ExpressionPreset {
+        name: "normalise3",
+        purpose: "the unit vector of a normal that was interpolated",
+        operands: &[("x", (true, 14, 13)), ("y", (true, 14, 13)), ("z", (true, 14, 13))],
+        parts: &[("s", "x^2 + y^2 + z^2")],
+        results: &[
+            ResultPreset::new("u", "x / sqrt(s)", 12).promised("s >= 1/16"),
+            ResultPreset::new("v", "y / sqrt(s)", 12).promised("s >= 1/16"),
+            ResultPreset::new("w", "z / sqrt(s)", 12).promised("s >= 1/16"),
+        ],
     },
     ExpressionPreset {
         name: "sincos",
+        purpose: "the sine and the cosine of the same angle, in turns",
         operands: &[("turn", PART_OF_ONE)],
         parts: &[],
         results: &[
-            ("sine", "sin(2 * pi * turn)", 15, ""),
-            ("cosine", "cos(2 * pi * turn)", 15, ""),
+            ResultPreset::new("sine", "sin(2 * pi * turn)", 15),
+            ResultPreset::new("cosine", "cos(2 * pi * turn)", 15),
         ],
     },
     ExpressionPreset {
         name: "rotate",
+        purpose: "a rotation in the plane by an angle in turns",
         operands: &[("x", COORDINATE), ("y", COORDINATE), ("turn", PART_OF_ONE)],
         parts: &[("s", "sin(2 * pi * turn)"), ("c", "cos(2 * pi * turn)")],
-        results: &[("u", "x * c - y * s", 15, ""), ("v", "x * s + y * c", 15, "")],
+        results: &[
+            ResultPreset::new("u", "x * c - y * s", 15),
+            ResultPreset::new("v", "x * s + y * c", 15),
+        ],
+    },
+    ExpressionPreset {
+        name: "clarke",
+        purpose: "the Clarke transform of three phase currents whose sum is 0",
+        operands: &[("a", COORDINATE), ("b", COORDINATE)],
+        parts: &[],
+        results: &[
+            ResultPreset::new("alpha", "a", 15),
+            ResultPreset::new("beta", "(a + 2 * b) / sqrt(3)", 15),
+        ],
+    },
+    ExpressionPreset {
+        name: "park",
+        purpose: "the Park transform of field-oriented motor control",
+        operands: &[("alpha", COORDINATE), ("beta", COORDINATE), ("turn", PART_OF_ONE)],
+        parts: &[("s", "sin(2 * pi * turn)"), ("c", "cos(2 * pi * turn)")],
+        results: &[
+            ResultPreset::new("d", "alpha * c + beta * s", 15),
+            ResultPreset::new("q", "beta * c - alpha * s", 15),
+        ],
+    },
+    ExpressionPreset {
+        name: "pi",
+        purpose: "one step of a PI controller with saturation",
+        operands: &[("err", SIGNAL), ("sum", SIGNAL), ("kp", (false, 8, 6)), ("ki", (false, 8, 8))],
+        parts: &[],
+        results: &[
+            ResultPreset::new("u", "kp * err + sum", 12).saturated(16),
+            ResultPreset::new("next", "sum + ki * err", 12).saturated(16),
+        ],
     },
     ExpressionPreset {
         name: "pow",
+        purpose: "a power with a variable exponent",
         operands: &[("x", PART_OF_ONE), ("y", PART_OF_ONE)],
         parts: &[],
-        results: &[("r", "x ^ y", 15, "x > 0")],
+        results: &[ResultPreset::new("r", "x ^ y", 15).promised("x > 0")],
+    },
+    ExpressionPreset {
+        name: "srgb",
+        purpose: "a colour from linear light to sRGB",
+        operands: &[("c", (false, 12, 12))],
+        parts: &[],
+        results: &[ResultPreset::new(
+            "v",
+            "if(c <= 0.0031308, 12.92 * c, 1.055 * c^(1 / 2.4) - 0.055)",
+            8,
+        )],
+    },
+    ExpressionPreset {
+        name: "fog",
+        purpose: "linear fog between a near and a far distance",
+        operands: &[("z", (false, 16, 8)), ("near", (false, 16, 8)), ("far", (false, 16, 8))],
+        parts: &[],
+        results: &[ResultPreset::new("f", "clamp((far - z) / (far - near), 0, 1)", 8)
+            .promised("far - near >= 1")],
     },
     ExpressionPreset {
         name: "multiply-add",
+        purpose: "the sum of two products, as in a complex product",
         operands: &[("a", COORDINATE), ("b", COORDINATE), ("c", COORDINATE), ("d", COORDINATE)],
         parts: &[],
-        results: &[("r", "a * b + c * d", 15, "")],
+        results: &[ResultPreset::new("r", "a * b + c * d", 15)],
     },
     ExpressionPreset {
         name: "lerp",
+        purpose: "the linear interpolation between two values",
         operands: &[("a", COORDINATE), ("b", COORDINATE), ("t", PART_OF_ONE)],
         parts: &[],
-        results: &[("r", "a + t * (b - a)", 15, "")],
+        results: &[ResultPreset::new("r", "a + t * (b - a)", 15)],
+    },
+    ExpressionPreset {
+        name: "bilinear",
+        purpose: "the bilinear interpolation of four texels of eight bits",
+        operands: &[
+            ("a", COLOUR),
+            ("b", COLOUR),
+            ("c", COLOUR),
+            ("d", COLOUR),
+            ("u", (false, 8, 8)),
+            ("v", (false, 8, 8)),
+        ],
+        parts: &[("upper", "a + u * (b - a)"), ("lower", "c + u * (d - c)")],
+        results: &[ResultPreset::new("r", "upper + v * (lower - upper)", 0)],
     },
     ExpressionPreset {
         name: "attenuation",
+        purpose: "the attenuation of a light with the distance",
         operands: &[("d", (false, 16, 12)), ("k", PART_OF_ONE)],
         parts: &[],
-        results: &[("a", "1 / (1 + d + k * d^2)", 16, "")],
+        results: &[ResultPreset::new("a", "1 / (1 + d + k * d^2)", 16)],
     },
 ];
 
@@ -138,14 +293,28 @@ pub fn names_of_functions() -> impl Iterator<Item = &'static str> {
     FUNCTIONS.iter().map(|preset| preset.0)
 }
 
+/// Returns each preset of `expression` with its purpose, as lines for a help text.
+pub fn purposes_of_expressions() -> String {
+    let width = EXPRESSIONS.iter().map(|preset| preset.name.len()).max().unwrap_or(0);
+    let mut lines = String::new();
+    for ExpressionPreset { name, purpose, .. } in &EXPRESSIONS {
+        lines += &format!("  {name:width$}  {purpose}\n");
+    }
+    lines
+}
+
 /// Returns the preset with this name. `sqrt` is a preset of the device `function` with `function.formula = "sqrt(x)"`,
 /// `function.to = "256"` and five more keys.
 pub fn find(name: &str) -> Option<Preset> {
     if let Some(preset) = FUNCTIONS.iter().find(|preset| preset.0 == name) {
-        return Some(Preset { device: FUNCTION, values: of_function(preset) });
+        return Some(Preset { device: FUNCTION, purpose: None, values: of_function(preset) });
     }
     let preset = EXPRESSIONS.iter().find(|preset| preset.name == name)?;
-    Some(Preset { device: "expression", values: of_expression(preset) })
+    Some(Preset {
+        device: "expression",
+        purpose: Some(preset.purpose),
+        values: of_expression(preset),
+    })
 }
 
 fn of_function(preset: &FunctionPreset) -> Vec<(String, Value)> {
@@ -179,16 +348,21 @@ fn of_expression(preset: &ExpressionPreset) -> Vec<(String, Value)> {
         parts.push(TableEntry::new(name, &[("formula", text(formula))]));
     }
     let mut results = Vec::new();
-    for (name, formula, fraction, promise) in preset.results {
+    for result in preset.results {
         let mut fields = vec![
-            ("formula", text(formula)),
-            ("fraction", Value::Integer(*fraction)),
+            ("formula", text(result.formula)),
+            ("fraction", Value::Integer(result.fraction)),
             ("error", Value::Number(1.0)),
         ];
-        if !promise.is_empty() {
-            fields.push(("where", text(promise)));
+        if let Some(bits) = result.saturated_bits {
+            fields.push(("bits", Value::Integer(bits)));
+            fields.push(("signed", Value::Flag(true)));
+            fields.push(("overflow", text("saturate")));
         }
-        results.push(TableEntry::new(name, &fields));
+        if !result.promise.is_empty() {
+            fields.push(("where", text(result.promise)));
+        }
+        results.push(TableEntry::new(result.name, &fields));
     }
     let mut values = vec![("operands".to_owned(), Value::Table(TableEntries(operands)))];
     if !parts.is_empty() {

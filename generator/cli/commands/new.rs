@@ -23,16 +23,18 @@ use glint_prove::tune::architectures;
 /// The file has a line for each key of the device. Keys that you do not set are comments: they show their defaults, which
 /// adjust to the keys that you set. `glint generate` accepts the file unchanged.
 #[derive(Args)]
-#[command(after_help = "\
+#[command(after_help = format!("\
+Expressions:
+{}
 Examples:
   glint new rsqrt > rsqrt.toml
   glint new rsqrt --pipelined --stream --clock 100 > rsqrt.toml
   glint new cosine-power --name highlight --set cosine.fraction=16 > highlight.toml
-  glint new rough --name my_core --all > my_core.toml     every key, with its meaning and its range")]
+  glint new rough --name my_core --all > my_core.toml     every key, with its meaning and its range",
+    presets::purposes_of_expressions()))]
 pub struct Arguments {
     /// A device of `glint list`; or a function: exp2, exp, log2, ln, reciprocal, rsqrt, sqrt, sin, cos, atan, sigmoid, tanh,
-    /// gelu, silu, softplus, gamma; or an expression: divide, hypot, atan2, polar, sincos, rotate, pow, multiply-add, lerp,
-    /// attenuation
+    /// gelu, silu, softplus, gamma; or an expression of the list below
     device: String,
     /// The name of the top module [default: the device's, with _ for -]
     #[arg(long)]
@@ -95,8 +97,10 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
             "# A Glint configuration. Keys in comments have their defaults, which adjust to the keys that are set.\n\
              # `{Program} new {device} --all` explains every key; `{Program} generate FILE` writes the core.\n"
         );
+        let purpose = preset.and_then(|preset| preset.purpose);
+        let purpose = purpose.map_or(String::new(), |purpose| format!("# For {purpose}.\n"));
         let hint = hint(&opened, &given).unwrap_or_default();
-        head + &hint + &config::brief(&schema, config, &given)
+        head + &purpose + &hint + &config::brief(&schema, config, &given)
     };
     output.report(&NewConfiguration { device, name, text })?;
     Ok(true)
