@@ -12,7 +12,8 @@ use glint_base::fixed::{Format, Rounding, exp2};
 use glint_formula::Enclosure;
 
 use super::node::{
-    Accuracy, Approximation, NodeId, Operation, PlanNode, StatedValue, middle, normalising_shifts,
+    Approximation, NodeId, Operation, PlanNode, StatedValue, ValueAccuracy, middle,
+    normalising_shifts,
 };
 use super::plan::ExpressionPlan;
 
@@ -500,8 +501,8 @@ fn stated_value(node: &PlanNode, operands: &[(&str, Enclosure)]) -> Option<NodeE
     let ideal = formula.enclose(operands).ok().filter(|value| value.is_finite())?;
     let half = exp2(-node.format.frac) / 2.0;
     Some(match accuracy {
-        Accuracy::Nearest => NodeError::new(ideal, Enclosure::between(-half, half)),
-        Accuracy::Exact | Accuracy::FromInputs => NodeError::exactly(ideal),
+        ValueAccuracy::Nearest => NodeError::new(ideal, Enclosure::between(-half, half)),
+        ValueAccuracy::Exact | ValueAccuracy::FromInputs => NodeError::exactly(ideal),
     })
 }
 

@@ -111,7 +111,12 @@ pub fn find(statement: &ExpressionStatement) -> Result<ProvedPlan, PlanRefusal> 
     let (plan, renumbered) = whole.with_reductions()?;
     let [first, second] = plan.multiplier_widths();
     if first + second > MAX_WIDTH {
-        return Err(PlanRefusal::too_wide("product_of_factors", (first + second) as i32));
+        let message = format!(
+            "one multiplier for all products would give numbers of {} bits, more than {MAX_WIDTH}",
+            first + second
+        );
+        let remedy = "give the operands fewer bits, or the results fewer fraction bits";
+        return Err(PlanRefusal::new(message, remedy));
     }
     let enclosed = enclosed_errors(statement, &whole, divisions.max(DIVISIONS))?;
     let mut bounds = enclosed.clone();

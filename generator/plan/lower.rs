@@ -24,7 +24,7 @@ use glint_formula::{Comparison, Enclosure, Expression, Function, Kind, Operator}
 
 use super::boxes::ResultProof;
 use super::facts::{has_fact, is_polynomial};
-use super::node::{Accuracy, Approximation, NodeId, Operation, StatedValue};
+use super::node::{Approximation, NodeId, Operation, StatedValue, ValueAccuracy};
 use super::plan::ExpressionPlan;
 use super::range::{LIMIT_THE_OPERANDS, RangeMemo};
 use super::refusal::PlanRefusal;
@@ -225,11 +225,11 @@ impl<'s> Lowering<'s> {
     /// many bits, no finite values, or no rule.
     fn result(&mut self, number: usize) -> Result<NodeId, PlanRefusal> {
         let result = &self.statement.results[number];
-        let values = self.range(&result.formula)?;
-        let node = match self.nearest_where_needed(result, values)? {
+        let node = match self.nearest_where_needed(result)? {
             Some(node) => node,
             None => self.part(&result.formula)?,
         };
+        let values = self.range(&result.formula)?;
         let frac = result.fraction as i32;
         let unit = exp2(frac);
         let places = self.plan.node(node).format.frac - frac;
@@ -252,20 +252,31 @@ impl<'s> Lowering<'s> {
 
     /// Returns the node of a result that is the nearest value: if no larger error is allowed, or if the result is a quotient of so many
     /// bits that the product with a reciprocal is too wide. Returns `None` for another result, and for a formula that is no quotient
-    /// and no root of exact numbers. `values` must contain the values of the formula. Fails if a part has too many bits.
+    /// and no root of exact numbers. Fails if a part has too many bits or no finite values.
     fn nearest_where_needed(
         &mut self,
         result: &StatedResult,
-        values: Enclosure,
     ) -> Result<Option<NodeId>, PlanRefusal> {
-        let unit = exp2(result.fraction as i32);
-        let largest = values.low.abs().max(values.high.abs()) * unit;
-        let is_wide = matches!(result.formula.kind, Kind::Binary(Operator::Div, ..))
-            && largest >= exp2(WIDEST_RATIO);
-        if result.error > HALF_A_UNIT && !is_wide {
-            return Ok(None);
+        let is_nearest =
+            result.error <= HALF_A_UNIT || self.is_wide_quotient(result).unwrap_or(false);
+        match is_nearest {
+            true => {
+                let node = self.nearest(&result.formula, result.fraction as i32);
+                node.map_err(|refusal| refusal.at(&result.formula.span))
+            }
+            false => Ok(None),
         }
-        self.nearest(&result.formula, result.fraction as i32)
+    }
+
+    /// Returns whether a result is a quotient with more bits than a product with a reciprocal should have. Fails if the formula has no
+    /// finite values.
+    fn is_wide_quotient(&self, result: &StatedResult) -> Result<bool, PlanRefusal> {
+        if !matches!(result.formula.kind, Kind::Binary(Operator::Div, ..)) {
+            return Ok(false);
+        }
+        let values = self.range(&result.formula)?;
+        let largest = values.low.abs().max(values.high.abs());
+        Ok(largest * exp2(result.fraction as i32) >= exp2(WIDEST_RATIO))
     }
 
     /// Returns the node of the result with the index `number` in its stated width, or `node` itself if no width is stated.
@@ -487,11 +498,9 @@ impl<'s> Lowering<'s> {
                 operand = (*dominator).clone();
             } else if is_size_of(dominator, &operand) {
                 // A root or a logarithm of an absolute value is computed octave by octave.
-                for outer in inner[at + 1..].iter().chain([&part]) {
-                    if self.spans_octaves(outer, dominator)? {
-                        operand = (*dominator).clone();
-                        break;
-                    }
+                let mut outer = inner[at + 1..].iter().chain([&part]);
+                if outer.any(|outer| is_singular(outer, dominator)) {
+                    operand = (*dominator).clone();
                 }
             }
         }
@@ -509,13 +518,10 @@ impl<'s> Lowering<'s> {
         }
     }
 
-    /// Returns whether `part` is a logarithm, a root or a reciprocal of `core`, or a product of roots and reciprocals, and the values
-    /// of `core` span several octaves. Fails if `core` has no finite values.
+    /// Returns whether `part` is singular at 0 as a function of `core`, and the values of `core` span several octaves. Fails if
+    /// `core` has no finite values.
     fn spans_octaves(&self, part: &Expression, core: &Expression) -> Result<bool, PlanRefusal> {
-        let function = part.substitute(core, &Expression::operand("x"), &part.span);
-        let is_singular = root::power_of(&function).is_some_and(|power| power.is_singular())
-            || exponential::factor_of_logarithm(&function).is_some();
-        if !is_singular {
+        if !is_singular(part, core) {
             return Ok(false);
         }
         let values = self.range(core)?;
@@ -927,10 +933,18 @@ impl<'s> Lowering<'s> {
         let needed = self.plan.needed_by(node);
         let mut nodes = self.plan.nodes.iter().zip(needed);
         nodes.all(|(node, is_needed)| {
-            let is_nearest = |stated: &StatedValue| stated.accuracy == Accuracy::Nearest;
+            let is_nearest = |stated: &StatedValue| stated.accuracy == ValueAccuracy::Nearest;
             !is_needed || node.source.is_none() && !node.stated.as_ref().is_some_and(is_nearest)
         })
     }
+}
+
+/// Returns whether `part` is a logarithm, a root or a reciprocal of `core`, or a product of roots and reciprocals. None of these has a
+/// finite slope at 0.
+fn is_singular(part: &Expression, core: &Expression) -> bool {
+    let function = part.substitute(core, &Expression::operand("x"), &part.span);
+    root::power_of(&function).is_some_and(|power| power.is_singular())
+        || exponential::factor_of_logarithm(&function).is_some()
 }
 
 /// Returns whether a part is an operand with few enough bits for a table.

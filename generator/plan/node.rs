@@ -44,12 +44,12 @@ pub struct StatedValue {
     /// The formula.
     pub formula: Arc<Expression>,
     /// How near the hardware's value is to the formula.
-    pub accuracy: Accuracy,
+    pub accuracy: ValueAccuracy,
 }
 
 /// How near the hardware's value of a node is to the formula that the node computes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Accuracy {
+pub enum ValueAccuracy {
     /// The hardware has the value of the formula. For example, a node that corrects an estimate of a quotient has its integer part.
     Exact,
     /// The hardware has the value of the formula, rounded to the nearest value with the fraction bits of the node. Of two values
@@ -64,7 +64,7 @@ impl PlanNode {
     /// Returns whether the stated value of the node alone limits its error, whatever the errors of its inputs are.
     pub(super) fn has_stated_error(&self) -> bool {
         let accuracy = self.stated.as_ref().map(|stated| stated.accuracy);
-        matches!(accuracy, Some(Accuracy::Exact | Accuracy::Nearest))
+        matches!(accuracy, Some(ValueAccuracy::Exact | ValueAccuracy::Nearest))
     }
 }
 

@@ -142,7 +142,7 @@ impl ExpressionPlan {
     ) -> Result<NodeId, PlanRefusal> {
         let width = format.int + format.frac + i32::from(format.signed);
         if width > MAX_WIDTH as i32 {
-            return Err(PlanRefusal::too_wide(name, width));
+            return Err(PlanRefusal::too_wide(width));
         }
         if let Some(same) = self.same_node(&operation, format) {
             return Ok(same);
@@ -275,16 +275,11 @@ impl ExpressionPlan {
 
     /// Returns the raw ranges of two nodes, converted to the same number of fraction bits, and this number, which is the larger
     /// one of the two nodes. For example, the raw range 0 to 3 with one fraction bit becomes 0 to 6 if the other node has two.
-    /// Fails if a converted value has more than 64 bits; `name` is the operation of the two nodes.
-    fn aligned(
-        &self,
-        name: &str,
-        a: NodeId,
-        b: NodeId,
-    ) -> Result<(Interval, Interval, i32), PlanRefusal> {
+    /// Fails if a converted value has more than 64 bits.
+    fn aligned(&self, a: NodeId, b: NodeId) -> Result<(Interval, Interval, i32), PlanRefusal> {
         let (a, b) = (self.node(a), self.node(b));
         let frac = a.format.frac.max(b.format.frac);
-        Ok((with_fraction(name, a, frac)?, with_fraction(name, b, frac)?, frac))
+        Ok((with_fraction(a, frac)?, with_fraction(b, frac)?, frac))
     }
 
     /// Adds a + b, and returns its node. Returns one of the two nodes itself if the other is the constant 0. Fails if the node
@@ -296,7 +291,7 @@ impl ExpressionPlan {
         if self.is_exactly_zero(b) {
             return Ok(a);
         }
-        let (first, second, frac) = self.aligned(name, a, b)?;
+        let (first, second, frac) = self.aligned(a, b)?;
         let range = (first.0 + second.0, first.1 + second.1);
         self.exact(name, Operation::Add(a, b), range, frac)
     }
@@ -307,7 +302,7 @@ impl ExpressionPlan {
         a: NodeId,
         b: NodeId,
     ) -> Result<NodeId, PlanRefusal> {
-        let (first, second, frac) = self.aligned(name, a, b)?;
+        let (first, second, frac) = self.aligned(a, b)?;
         let range = (first.0 - second.1, first.1 - second.0);
         self.exact(name, Operation::Subtract(a, b), range, frac)
     }
@@ -363,7 +358,7 @@ impl ExpressionPlan {
         a: NodeId,
         b: NodeId,
     ) -> Result<NodeId, PlanRefusal> {
-        let (first, second, frac) = self.aligned(name, a, b)?;
+        let (first, second, frac) = self.aligned(a, b)?;
         let range = (first.0.min(second.0), first.1.min(second.1));
         self.exact(name, Operation::Minimum(a, b), range, frac)
     }
@@ -374,13 +369,13 @@ impl ExpressionPlan {
         a: NodeId,
         b: NodeId,
     ) -> Result<NodeId, PlanRefusal> {
-        let (first, second, frac) = self.aligned(name, a, b)?;
+        let (first, second, frac) = self.aligned(a, b)?;
         let range = (first.0.max(second.0), first.1.max(second.1));
         self.exact(name, Operation::Maximum(a, b), range, frac)
     }
 
     pub(super) fn less(&mut self, name: &str, a: NodeId, b: NodeId) -> Result<NodeId, PlanRefusal> {
-        self.aligned(name, a, b)?;
+        self.aligned(a, b)?;
         self.insert(name, Operation::Less(a, b), Format::BIT, (0, 1))
     }
 
@@ -394,7 +389,7 @@ impl ExpressionPlan {
         condition: NodeId,
         cases: [NodeId; 2],
     ) -> Result<NodeId, PlanRefusal> {
-        let (first, second, frac) = self.aligned(name, cases[0], cases[1])?;
+        let (first, second, frac) = self.aligned(cases[0], cases[1])?;
         let range = (first.0.min(second.0), first.1.max(second.1));
         self.exact(name, Operation::Choose { condition, cases }, range, frac)
     }
@@ -475,7 +470,7 @@ impl ExpressionPlan {
         let whole = if places > 0 {
             (rounding.shift(node.range.0, places), rounding.shift(node.range.1, places))
         } else {
-            with_fraction(name, node, format.frac)?
+            with_fraction(node, format.frac)?
         };
         let range = if interval::fits(whole, format) { whole } else { format.range() };
         self.insert(name, Operation::Narrow(a, rounding), format, range)
@@ -654,11 +649,11 @@ impl ExpressionPlan {
 }
 
 /// Returns the raw range of a node, converted to `frac` fraction bits, which must not be fewer than the node has. Fails if a
-/// value then has more than 64 bits; `name` is the operation that needs these bits.
-fn with_fraction(name: &str, node: &PlanNode, frac: i32) -> Result<Interval, PlanRefusal> {
+/// value then has more than 64 bits.
+fn with_fraction(node: &PlanNode, frac: i32) -> Result<Interval, PlanRefusal> {
     let places = frac - node.format.frac;
     let [low, high] = [node.range.0, node.range.1].map(|raw| shifted_left(raw, places));
     let fits = |(low, high): &Interval| Format::holding(*low, *high, frac).width() <= MAX_WIDTH;
     let range = low.zip(high).filter(fits);
-    range.ok_or_else(|| PlanRefusal::too_wide(name, node.format.width() as i32 + places))
+    range.ok_or_else(|| PlanRefusal::too_wide(node.format.width() as i32 + places))
 }

@@ -24,9 +24,9 @@ impl PlanRefusal {
         Self { result: None, place: None, message, remedy }
     }
 
-    /// Makes the refusal of a node `name` of `width` bits, which is more than a net can have.
-    pub(super) fn too_wide(name: &str, width: i32) -> Self {
-        let message = format!("the part `{name}` would have {width} bits, more than {MAX_WIDTH}");
+    /// Makes the refusal of a part whose computation needs a number of `width` bits, which is more than a net can have.
+    pub(super) fn too_wide(width: i32) -> Self {
+        let message = format!("this needs a number of {width} bits, more than {MAX_WIDTH}");
         Self::new(message, "give the operands fewer bits, or the results fewer fraction bits")
     }
 

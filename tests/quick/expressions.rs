@@ -28,7 +28,7 @@ const TINY: &str =
 operands.c = { bits = 3, fraction = 40 }\noperands.d = { bits = 3, fraction = 40 }";
 
 /// Operands, and results that other results read or that need no operation.
-const CASES: [(&str, &str); 30] = [
+const CASES: [(&str, &str); 34] = [
     (
         // The exponential function has a table over an octave, and its results need no shift.
         "operands.y = { from = \"-9 / 4\", to = \"15 / 4\", to_included = true, fraction = 2, outside = \"anything\" }",
@@ -169,6 +169,28 @@ results.d = { formula = \"20 * exp(-(x + 1) * n)\", fraction = 4 }",
         "operands.x = { from = -0.3, to = 0.4, fraction = 6 }\noperands.y = { from = 0.25, to = 0.5, fraction = 6 }",
         "results.q = { formula = \"sin(3 * x) / y\", fraction = 5 }\nresults.r = { formula = \"exp(x) * y\", fraction = 7 }",
     ),
+    (
+        // The nearest value, by an exact residual.
+        "operands.x = { bits = 5, fraction = 3, signed = true }\noperands.y = { bits = 5, fraction = 4 }",
+        "results.q = { formula = \"x / y\", fraction = 4, error = 0.5, where = \"y > 0\" }
+results.h = { formula = \"hypot(x, y)\", fraction = 5, error = 0.5 }
+results.s = { formula = \"sqrt(y - x)\", fraction = 2, error = 0.5, where = \"y >= x\" }",
+    ),
+    (
+        // A quotient of 26 bits is computed digit by digit.
+        "operands.x = { bits = 5, fraction = 0, signed = true }\noperands.y = { bits = 4, fraction = 20 }",
+        "results.q = { formula = \"floor(x / y)\", fraction = 0, where = \"y > 0\" }
+results.r = { formula = \"x % y\", fraction = 20, where = \"y > 0\" }
+results.n = { formula = \"x / y\", fraction = 6, where = \"y > 0\" }",
+    ),
+    (
+        // A root or a logarithm is a part of another function, and a part is limited or has no sign.
+        SIGNED,
+        "results.d = { formula = \"20 * log10(abs(x)) - 3\", fraction = 4, where = \"abs(x) > 0.1\" }
+results.z = { formula = \"sqrt(max(0, 1 - x^2 - y^2))\", fraction = 5 }
+results.r = { formula = \"1 / (1 + sqrt(x^2 + y^2))\", fraction = 6 }",
+    ),
+    (UNSIGNED, "results.p = { formula = \"x^y\", fraction = 6 }"),
 ];
 
 #[test]

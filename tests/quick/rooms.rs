@@ -111,7 +111,7 @@ fn devices_are_known_by_name_where_they_are_described_predicted_and_weighed() {
     let names: Vec<String> = names.flat_map(|it| [it.to_owned(), it.replace('-', "_")]).collect();
     let named = Regex::new(&format!(r"(^|[^\w-])({})($|[^\w-])", names.join("|"))).unwrap();
     // The examples in the help of a command.
-    let examples = Regex::new(r#"(?s)#\[command\(after_help = ".*?"\)\]"#).unwrap();
+    let examples = Regex::new(r#"(?s)#\[command\(after_help = .*?\)\]\npub struct"#).unwrap();
     for (file, code) in sources() {
         if NAMING.iter().any(|place| file.starts_with(place)) {
             continue;

@@ -12,7 +12,7 @@ use glint_formula::{Comparison, Enclosure, Expression, Function, Kind, Operator,
 
 use super::shape::number;
 use super::{FixedGuard, KnownPart, Lowering};
-use crate::node::{Accuracy, NodeId, Operation, PlanNode, StatedValue};
+use crate::node::{NodeId, Operation, PlanNode, StatedValue, ValueAccuracy};
 use crate::refusal::PlanRefusal;
 use crate::uses::reads_always;
 
@@ -176,7 +176,7 @@ impl Lowering<'_> {
         let nodes = nodes?;
         for (node, part) in nodes.into_iter().zip([whole, remainder]) {
             let formula = Arc::new(part.clone());
-            let stated = StatedValue { formula, accuracy: Accuracy::Exact };
+            let stated = StatedValue { formula, accuracy: ValueAccuracy::Exact };
             self.plan.nodes[node.0].stated = Some(stated);
             let uses = uses.clone();
             self.known.push(KnownPart { part, node, uses, is_limited: false });

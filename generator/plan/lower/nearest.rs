@@ -14,7 +14,7 @@ use super::division::{QuotientParts, quotient_of};
 use super::shape::number;
 use super::{FixedGuard, Lowering};
 use crate::facts::is_polynomial;
-use crate::node::{Accuracy, NodeId, Operation, PlanNode, StatedValue};
+use crate::node::{NodeId, Operation, PlanNode, StatedValue, ValueAccuracy};
 use crate::refusal::PlanRefusal;
 
 /// The largest error of the estimate of a root, in units of the result.
@@ -53,7 +53,7 @@ impl Lowering<'_> {
         let whole = self.plan.node(integer).clone();
         let format = Format { int: whole.format.int - frac, frac, ..whole.format };
         let formula = Arc::new(formula.clone());
-        let stated = Some(StatedValue { formula, accuracy: Accuracy::Nearest });
+        let stated = Some(StatedValue { formula, accuracy: ValueAccuracy::Nearest });
         let node = PlanNode { name: "nearest".to_owned(), format, stated, ..whole };
         Ok(Some(self.plan.push_copy(&node, Operation::Scale(integer))))
     }
