@@ -13,6 +13,7 @@ mod samples;
 mod search;
 mod seen;
 mod segments;
+mod shared;
 mod table;
 
 #[cfg(test)]
@@ -32,6 +33,7 @@ pub use refusal::{Refusal, RefusalKind, UnsuitedReduction};
 pub use samples::Samples;
 pub use search::{Wish, reachable_error};
 pub use segments::{Layout, SegmentOffset, Segments};
+pub use shared::{SharedWidths, find_with_widths};
 
 /// The largest degree is 3.
 const MOST_SUMS: usize = 4;

@@ -48,8 +48,8 @@ pub(super) struct CandidateSegment {
 /// numbered from 0, first all of `guard`, then all of `offset`.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Widths {
-    guard: Vec<i32>,
-    offset: Vec<u32>,
+    pub(super) guard: Vec<i32>,
+    pub(super) offset: Vec<u32>,
 }
 
 impl Widths {
@@ -274,7 +274,7 @@ impl<'s> Table<'s> {
     }
 
     /// Returns words of these widths with which every evaluated operand has an allowed result.
-    fn fitted(&self, widths: &Widths) -> Option<Words> {
+    pub(super) fn fitted(&self, widths: &Widths) -> Option<Words> {
         let steps = widths.steps()?;
         let fitted_words = self.pieces.par_iter().map(|piece| match piece {
             None => Some(None),

@@ -7,7 +7,9 @@
 use std::collections::HashSet;
 use std::sync::Arc;
 
-use glint_approximate::{FULL_CELL, Identity, Piecewise, RefusalKind, TargetFunction, Wish};
+use glint_approximate::{
+    FULL_CELL, Identity, Layout, Piecewise, RefusalKind, SharedWidths, TargetFunction, Wish,
+};
 use glint_base::fixed::MAX_WIDTH;
 
 use super::allocate::{Allocation, allocated, largest_excess};
@@ -15,7 +17,7 @@ use super::boxes::ResultProof;
 use super::cost::cells_of_function;
 use super::exhaust::largest_errors;
 use super::lower::{
-    FoundPolynomials, Guards, PlanSearch, PlanStyle, has_functions_of_operands, lowered,
+    FoundPolynomials, Guards, PlanSearch, PlanStyle, TableRule, has_functions_of_operands, lowered,
 };
 use super::node::{NodeId, Operation};
 use super::plan::ExpressionPlan;
@@ -41,6 +43,9 @@ const STYLES: [PlanStyle; 6] = [
 
 /// A table with at least this many operands is searched in one style only.
 const LONG_DOMAIN: u64 = 1 << 22;
+
+/// The degree of the polynomials whose tables a unit shares.
+const DEGREE_OF_SETS: usize = 2;
 
 /// The most by which an evaluation of a formula can exceed an error, in units of the last bit.
 const EVALUATION_ERROR: f64 = 1e-6;
@@ -107,7 +112,43 @@ struct PlanCandidate {
 /// Fails if a formula has no plan, or if no plan keeps the allowed errors. The refusal says why, and how to change the
 /// statement.
 pub fn find(statement: &ExpressionStatement) -> Result<ProvedPlan, PlanRefusal> {
-    let PlanCandidate { plan: whole, divisions } = smallest_candidate(statement)?;
+    find_with(statement, TableRule::Cheapest)
+}
+
+/// Returns a plan for each of several statements, with tables that have the same bit widths as far as possible. The plans of a unit
+/// with one datapath can then share the hardware of a table. A failure comes with the number of the statement that has no plan.
+///
+/// # Errors
+/// Fails as [`find`] does.
+pub(super) fn find_set(
+    statements: &[ExpressionStatement],
+) -> Result<Vec<ProvedPlan>, (usize, PlanRefusal)> {
+    let mut widths: Option<SharedWidths> = None;
+    for (number, statement) in statements.iter().enumerate() {
+        let candidate = smallest_candidate(statement, TableRule::Plain);
+        let candidate = candidate.map_err(|refusal| (number, refusal))?;
+        for approximation in candidate.plan.approximations() {
+            let found = approximation.polynomials.as_ref().expect("polynomials that were found");
+            let Some(own) = SharedWidths::of(found) else { continue };
+            if found.degree() == DEGREE_OF_SETS {
+                widths = Some(widths.map_or_else(|| own.clone(), |widths| widths.max(&own)));
+            }
+        }
+    }
+    let mut plans = Vec::new();
+    for (number, statement) in statements.iter().enumerate() {
+        let rule = widths.clone().map_or(TableRule::Plain, TableRule::Shared);
+        plans.push(find_with(statement, rule).map_err(|refusal| (number, refusal))?);
+    }
+    Ok(plans)
+}
+
+/// Returns the plan for a statement, with tables by the rule `tables`. Fails as [`find`] does.
+fn find_with(
+    statement: &ExpressionStatement,
+    tables: TableRule,
+) -> Result<ProvedPlan, PlanRefusal> {
+    let PlanCandidate { plan: whole, divisions } = smallest_candidate(statement, tables)?;
     let (plan, renumbered) = whole.with_reductions()?;
     let [first, second] = plan.multiplier_widths();
     if first + second > MAX_WIDTH {
@@ -166,11 +207,16 @@ fn rounding_node(plan: &ExpressionPlan, renumbered: &[NodeId], at: usize) -> Nod
 ///
 /// # Errors
 /// Fails if no style has a plan, with the refusal of the first style.
-fn smallest_candidate(statement: &ExpressionStatement) -> Result<PlanCandidate, PlanRefusal> {
-    let search = PlanSearch::new(statement);
+fn smallest_candidate(
+    statement: &ExpressionStatement,
+    tables: TableRule,
+) -> Result<PlanCandidate, PlanRefusal> {
+    let search = PlanSearch::new(statement, tables);
     let mut smallest: Option<(f64, PlanCandidate)> = None;
     let mut first_refusal = None;
-    let has_functions = has_functions_of_operands(statement);
+    // A single table with a range reduction has steps of its own, which a unit cannot share.
+    let may_keep_functions = matches!(search.tables, TableRule::Cheapest);
+    let has_functions = may_keep_functions && has_functions_of_operands(statement);
     for style in STYLES {
         if style.keeps_functions && !has_functions {
             continue;
@@ -244,13 +290,30 @@ fn with_polynomials(
             }
             is_complete = false;
             let function = &approximation.function;
-            found.insert(function, cheapest_polynomials(function)?);
+            found.insert(function, polynomials_by(&search.tables, function)?);
         }
         if is_complete {
             return Ok(plan);
         }
         plan = lowered(search, guards, 0, &found)?.0;
     }
+}
+
+/// Returns the polynomials of a function by a rule. Fails if the function has no polynomials.
+fn polynomials_by(
+    rule: &TableRule,
+    function: &TargetFunction,
+) -> Result<Arc<Piecewise>, PlanRefusal> {
+    let degree = Some(DEGREE_OF_SETS as u32);
+    let plain = Wish { degree, layout: Some(Layout::Uniform), ..Wish::default() };
+    let found = match rule {
+        TableRule::Shared(widths) if !function.has_overhang() => {
+            glint_approximate::find_with_widths(function, widths).map(Arc::new)
+        }
+        TableRule::Plain if !function.has_overhang() => glint_approximate::find(function, plain),
+        _ => return cheapest_polynomials(function),
+    };
+    found.or_else(|_| cheapest_polynomials(function))
 }
 
 /// Returns the polynomials of a function with the lowest estimated cost in a pipeline, among those of degree 1, 2 and 3 and

@@ -52,6 +52,7 @@ mod range;
 mod refusal;
 mod schedule;
 mod statement;
+mod unit;
 mod uses;
 
 pub use find::{ProofKind, ProvedPlan, find};
@@ -63,6 +64,7 @@ pub use schedule::{PlanSchedule, PlanStep};
 pub use statement::{
     ExpressionStatement, StatedOperand, StatedOverflow, StatedResult, StatedWidth,
 };
+pub use unit::{MOST_FUNCTIONS, UnitFunction, UnitPlan, find_unit};
 
 #[cfg(test)]
 mod tests;

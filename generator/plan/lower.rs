@@ -18,7 +18,7 @@ use std::collections::HashMap;
 use std::mem;
 use std::sync::Arc;
 
-use glint_approximate::{Curve, Outside, Piecewise, TargetFunction};
+use glint_approximate::{Curve, Outside, Piecewise, SharedWidths, TargetFunction};
 use glint_base::fixed::{Format, Rounding, exp2, nearest, shifted_left};
 use glint_formula::{Comparison, Enclosure, Expression, Function, Kind, Operator};
 
@@ -163,12 +163,25 @@ pub(super) struct Lowering<'s> {
 /// A statement for which a plan is searched, with the intervals of its parts, which do not depend on the widths in a plan.
 pub(super) struct PlanSearch<'s> {
     pub(super) statement: &'s ExpressionStatement,
+    pub(super) tables: TableRule,
     ranges: RangeMemo,
 }
 
+/// How the planner finds the polynomials of the functions in a plan.
+#[derive(Clone, Debug)]
+pub(super) enum TableRule {
+    /// Those with the fewest look-up tables by the estimate.
+    Cheapest,
+    /// Those of degree 2 with segments of equal length, so that several tables can have the same widths.
+    Plain,
+    /// Those of degree 2 with these widths. A function that has no such polynomials, or whose domain has a few operands beyond a
+    /// power of two, has the cheapest.
+    Shared(SharedWidths),
+}
+
 impl<'s> PlanSearch<'s> {
-    pub(super) fn new(statement: &'s ExpressionStatement) -> Self {
-        Self { statement, ranges: RangeMemo::default() }
+    pub(super) fn new(statement: &'s ExpressionStatement, tables: TableRule) -> Self {
+        Self { statement, tables, ranges: RangeMemo::default() }
     }
 }
 

@@ -1,0 +1,91 @@
+//! Finds tables with given bit widths, so that the tables of several functions can be pages of one memory with one datapath.
+//!
+//! A search of a single table chooses the narrowest widths for its function. For a set of functions, the widths are the largest
+//! that any of them needs. Each table is then fitted again with these widths, and proved at every operand.
+
+use super::seen::AllowedResults;
+use super::segments::{Layout, Segments};
+use super::table::{Table, Widths};
+use super::{Piecewise, Refusal, RefusalKind, TargetFunction};
+
+/// The bit widths of tables whose segments are all equally long.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SharedWidths {
+    /// The number of leading bits of an operand's number that select a segment: 4 bits for 16 segments.
+    pub prefix: u32,
+    /// The fraction bits of each coefficient beyond the fraction bits of the result, the constant first.
+    pub guard: Vec<i32>,
+    /// The number of leading bits of the offset that each step of Horner's rule multiplies.
+    pub offset: Vec<u32>,
+}
+
+impl SharedWidths {
+    /// Returns the widths of a table. Returns `None` if its segments differ in length, if it has a range reduction, or if its last
+    /// segment is longer than the others.
+    pub fn of(found: &Piecewise) -> Option<Self> {
+        let cut = found.segments;
+        let is_plain = cut.layout == Layout::Uniform && cut.overhang == 0 && cut.octaves == 0;
+        if !is_plain || found.reduction.is_some() {
+            return None;
+        }
+        let fraction = found.result.frac;
+        Some(Self {
+            prefix: cut.prefix,
+            guard: found.coefficients.iter().map(|format| format.frac - fraction).collect(),
+            offset: found.steps.iter().map(|step| step.offset).collect(),
+        })
+    }
+
+    /// Returns widths that are enough for both of two tables of the same degree.
+    #[must_use]
+    pub fn max(&self, other: &Self) -> Self {
+        let guards = self.guard.iter().zip(&other.guard);
+        let offsets = self.offset.iter().zip(&other.offset);
+        Self {
+            prefix: self.prefix.max(other.prefix),
+            guard: guards.map(|(a, b)| *a.max(b)).collect(),
+            offset: offsets.map(|(a, b)| *a.max(b)).collect(),
+        }
+    }
+}
+
+impl TargetFunction {
+    /// Returns whether the domain has a few operands beyond a power of two, such as both ends of an octant.
+    pub fn has_overhang(&self) -> bool {
+        self.numbering_with_overhang(None).is_some()
+    }
+}
+
+/// Finds the polynomials of `function` with these widths, and proves their error at every operand. An offset has at most the bits
+/// that the segments of the function leave for it.
+///
+/// # Errors
+/// Fails if the domain has more than 2^26 operands, if the segments would have no bits for offsets, if no coefficients of these
+/// widths keep the error, or if the function has no value at an operand.
+pub fn find_with_widths(
+    function: &TargetFunction,
+    widths: &SharedWidths,
+) -> Result<Piecewise, Refusal> {
+    let unkept = || {
+        let message = "no coefficients of the widths that the functions share keep the error";
+        Refusal::new(RefusalKind::Error, message.to_owned())
+    };
+    if function.is_wide() {
+        return Err(unkept());
+    }
+    let numbering = function.numbering_without_overhang();
+    let seen = AllowedResults::new(function, 0.0, numbering)?.ok_or_else(unkept)?;
+    let prefix = widths.prefix;
+    if prefix >= seen.bits {
+        return Err(unkept());
+    }
+    let cut =
+        Segments { bits: seen.bits, layout: Layout::Uniform, octaves: 0, prefix, overhang: 0 };
+    let offset = widths.offset.iter().map(|bits| (*bits).min(cut.rest())).collect();
+    let widths = Widths { guard: widths.guard.clone(), offset };
+    let table = Table::new(&seen, cut);
+    let words = table.fitted(&widths).ok_or_else(unkept)?;
+    let found = table.finished(&widths, words).ok_or_else(unkept)?;
+    let bound = found.prove(function)?;
+    Ok(Piecewise { bound, ..found })
+}

@@ -1,0 +1,298 @@
+//! Plans a unit: several functions behind one datapath, of which an opcode selects one.
+//!
+//! Each function has a plan of its own, with a proved error. The plans share the bit widths of their tables ([`find_set`]). The
+//! module `merge` then makes one plan of all: operations of the same kind become one operation, in front of which choices by the
+//! opcode select the inputs. For every opcode, the results of the merged plan are those of the function's own plan.
+
+mod align;
+mod merge;
+mod tables;
+
+use std::sync::Arc;
+
+use glint_approximate::Outside;
+use glint_base::fixed::Format;
+
+use super::find::{ProvedPlan, find_set};
+use super::plan::ExpressionPlan;
+use super::refusal::PlanRefusal;
+use super::statement::{ExpressionStatement, StatedOperand};
+
+/// The most functions of a unit.
+pub const MOST_FUNCTIONS: usize = 16;
+
+/// The names of the operand ports behind the opcode, and of the results.
+const OPERAND_NAMES: [&str; 8] = ["a", "b", "c", "d", "e", "f", "g", "h"];
+const RESULT_NAMES: [&str; 8] = ["r", "s", "t", "u", "v", "w", "x", "y"];
+
+/// The number of operands for which [`find_unit`] compares each function with its own plan.
+const COMPARED: u64 = 4096;
+
+/// A function of a unit: its name, and its plan with the proved error.
+#[derive(Clone, Debug)]
+pub struct UnitFunction {
+    pub name: String,
+    pub planned: Arc<ProvedPlan>,
+}
+
+/// The plan of a unit, with its ports.
+#[derive(Clone, Debug)]
+pub struct UnitPlan {
+    /// The functions, in the order of their opcodes.
+    pub functions: Vec<UnitFunction>,
+    /// The operations of all functions. Operand 0 is the opcode.
+    pub plan: ExpressionPlan,
+    /// The opcode, and the operands `a`, `b`, … as unsigned words. A function reads its operand in the low bits of a word.
+    pub operands: Vec<StatedOperand>,
+    /// The results `r`, `s`, … with the formats of their words. A signed result of a function is extended to the width of the word.
+    /// A result that a function does not have is 0.
+    pub results: Vec<(&'static str, Format)>,
+}
+
+/// Finds a plan for each function, merges the plans, and compares the merged plan with them. A failure comes with the number of the
+/// function that it concerns.
+///
+/// # Errors
+/// Fails if a formula has no plan, if no plan keeps the allowed errors, or if an operation of the merged plan has too many bits.
+///
+/// # Panics
+/// Panics if there are no functions, or more than [`MOST_FUNCTIONS`].
+pub fn find_unit(
+    names: &[String],
+    statements: &[ExpressionStatement],
+) -> Result<UnitPlan, (usize, PlanRefusal)> {
+    assert!((1..=MOST_FUNCTIONS).contains(&names.len()), "{} functions", names.len());
+    let mut functions = Vec::new();
+    for (name, planned) in names.iter().zip(find_set(statements)?) {
+        functions.push(UnitFunction { name: name.clone(), planned: Arc::new(planned) });
+    }
+    let operands = operand_ports(&functions);
+    let results = result_ports(&functions);
+    let plan = merge::merged(&functions, &operands, &results).map_err(|refusal| (0, refusal))?;
+    let unit = UnitPlan { functions, plan, operands, results };
+    for opcode in 0..unit.functions.len() {
+        unit.compare(opcode).map_err(|refusal| (opcode, refusal))?;
+    }
+    Ok(unit)
+}
+
+impl UnitPlan {
+    /// Returns the raw operands of the function with this opcode, from the words at the ports `a`, `b` and so on. Each is the low
+    /// bits of its word, limited to the domain if the function limits it.
+    pub fn operands_of(&self, opcode: usize, words: &[i64]) -> Vec<i64> {
+        let statement = &self.functions[opcode].planned.statement;
+        let mut raw = Vec::with_capacity(statement.operands.len());
+        for (operand, word) in statement.operands.iter().zip(words) {
+            let own = operand.format.raw(*word as u64 & operand.format.bits(-1));
+            raw.push(operand.computed_raw(own as i64));
+        }
+        raw
+    }
+
+    /// Returns the word of each result from the raw results of the function with this opcode.
+    fn words_of(&self, raw: &[i128]) -> Vec<i128> {
+        let mut words = Vec::with_capacity(self.results.len());
+        for (number, (_, format)) in self.results.iter().enumerate() {
+            let raw = raw.get(number).copied().unwrap_or(0);
+            words.push(format.raw(format.bits(raw)));
+        }
+        words
+    }
+
+    /// Returns the raw results of the merged plan, and of the plan of the function with this opcode, as words at the ports.
+    pub fn both_results(&self, opcode: usize, words: &[i64]) -> [Vec<i128>; 2] {
+        let mut operands = vec![opcode as i64];
+        operands.extend_from_slice(words);
+        let values = self.plan.values(&operands);
+        let merged = self.plan.results.iter().map(|result| values[result.0]).collect();
+        let own = &self.functions[opcode].planned.plan;
+        let values = own.values(&self.operands_of(opcode, words));
+        let results: Vec<i128> = own.results.iter().map(|result| values[result.0]).collect();
+        [merged, self.words_of(&results)]
+    }
+
+    /// Compares the merged plan with the plan of a function, for operands that are spread over its domain. Fails if they differ.
+    fn compare(&self, opcode: usize) -> Result<(), PlanRefusal> {
+        let statement = &self.functions[opcode].planned.statement;
+        let mut state: u64 = 0x9e37_79b9_7f4a_7c15;
+        for number in 0..COMPARED {
+            let mut words = vec![0; self.operands.len() - 1];
+            for (word, operand) in words.iter_mut().zip(&statement.operands) {
+                // The ends of the domain, and then numbers of a linear congruential generator.
+                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(number | 1);
+                let (first, last) = operand.domain;
+                let count = last.abs_diff(first).saturating_add(1);
+                let raw = match number {
+                    0 => first,
+                    1 => last,
+                    _ => first + ((state >> 16) % count) as i64,
+                };
+                *word = operand.format.bits(raw.into()) as i64;
+            }
+            let [merged, own] = self.both_results(opcode, &words);
+            let limits: Vec<(i64, i64)> =
+                self.operands_of(opcode, &words).into_iter().map(|raw| (raw, raw)).collect();
+            let enclosed = statement.enclosed_operands(&limits);
+            for (result, stated) in statement.results.iter().enumerate() {
+                let is_promised = stated.is_promised(&enclosed) != Some(false);
+                if is_promised && merged[result] != own[result] {
+                    let message = format!(
+                        "the unit and the function alone differ for {}",
+                        statement.place(&limits)
+                    );
+                    let remedy = "this is a fault of Glint: please report the configuration";
+                    return Err(PlanRefusal::new(message, remedy));
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Returns the port of the opcode, and a port for each operand, as wide as the widest operand of a function at this place.
+fn operand_ports(functions: &[UnitFunction]) -> Vec<StatedOperand> {
+    let bits = opcode_bits(functions.len());
+    let mut ports = vec![port("opcode", bits)];
+    for (number, name) in OPERAND_NAMES.into_iter().enumerate() {
+        let mut width = 0;
+        for function in functions {
+            let operand = function.planned.statement.operands.get(number);
+            width = width.max(operand.map_or(0, |operand| operand.format.width()));
+        }
+        if width > 0 {
+            ports.push(port(name, width));
+        }
+    }
+    ports
+}
+
+/// Returns the number of bits of an opcode for so many functions.
+pub(super) fn opcode_bits(functions: usize) -> u32 {
+    (usize::BITS - (functions - 1).leading_zeros()).max(1)
+}
+
+fn port(name: &str, width: u32) -> StatedOperand {
+    let format = Format::unsigned(width as i32, 0);
+    let domain = (0, format.max_raw() as i64);
+    let doc = match name {
+        "opcode" => "the function".to_owned(),
+        _ => String::new(),
+    };
+    StatedOperand { name: name.to_owned(), format, domain, outside: Outside::Anything, doc }
+}
+
+/// Returns a word for each result, as wide as the widest result of a function at this place. The word is signed if the results of
+/// all functions at this place are.
+fn result_ports(functions: &[UnitFunction]) -> Vec<(&'static str, Format)> {
+    let mut ports = Vec::new();
+    for (number, name) in RESULT_NAMES.into_iter().enumerate() {
+        let mut formats = Vec::new();
+        for function in functions {
+            let plan = &function.planned.plan;
+            formats.extend(plan.results.get(number).map(|result| plan.node(*result).format));
+        }
+        let Some(width) = formats.iter().map(|format| format.width()).max() else { break };
+        let is_signed = formats.iter().all(|format| format.signed);
+        let int = width as i32 - i32::from(is_signed);
+        ports.push((name, Format { signed: is_signed, int, frac: 0 }));
+    }
+    ports
+}
+
+#[cfg(test)]
+mod tests {
+    use glint_formula::{parse, parse_condition};
+
+    use super::*;
+    use crate::statement::StatedResult;
+
+    fn operand(name: &str, format: Format, domain: (i64, i64)) -> StatedOperand {
+        let outside = Outside::Anything;
+        StatedOperand { name: name.to_owned(), format, domain, outside, doc: String::new() }
+    }
+
+    fn result(name: &str, formula: &str, fraction: u32, promise: &str) -> StatedResult {
+        let promise = (!promise.is_empty()).then(|| parse_condition(promise).unwrap());
+        let formula = parse(formula).unwrap();
+        let name = name.to_owned();
+        StatedResult { name, formula, fraction, error: 1.0, promise, width: None }
+    }
+
+    /// Returns the functions of a small graphics processor, with operands of `bits` bits.
+    fn functions(bits: i32) -> (Vec<String>, Vec<ExpressionStatement>) {
+        let unsigned = Format::unsigned(0, bits);
+        let wide = Format::unsigned(bits / 2, bits - bits / 2);
+        let signed = Format::signed(0, bits - 1);
+        let all = |format: Format| (format.min_raw() as i64, format.max_raw() as i64);
+        let above_0 = |format: Format| (1, format.max_raw() as i64);
+        let fraction = bits as u32 - 1;
+        let one = |format: Format, domain: (i64, i64), formula: &str, fraction: u32| {
+            ExpressionStatement {
+                operands: vec![operand("x", format, domain)],
+                results: vec![result("r", formula, fraction, "")],
+            }
+        };
+        let two = |format: Format, results: Vec<StatedResult>| ExpressionStatement {
+            operands: ["x", "y"].map(|name| operand(name, format, all(format))).to_vec(),
+            results,
+        };
+        let few = (bits / 2) as u32;
+        let statements = vec![
+            ("rcp", one(wide, above_0(wide), "1 / x", few)),
+            ("rsqrt", one(wide, above_0(wide), "1 / sqrt(x)", few)),
+            ("sqrt", one(wide, all(wide), "sqrt(x)", few)),
+            ("exp2", one(signed, all(signed), "2^(8*x)", few)),
+            ("log2", one(wide, above_0(wide), "log2(x)", few)),
+            ("divide", two(unsigned, vec![result("q", "x / y", fraction, "x < y")])),
+            (
+                "atan2",
+                two(signed, vec![result("a", "atan2(y, x) / pi", fraction, "x^2 + y^2 > 0")]),
+            ),
+        ];
+        statements.into_iter().map(|(name, statement)| (name.to_owned(), statement)).unzip()
+    }
+
+    #[test]
+    fn a_unit_computes_what_its_functions_compute_alone() {
+        let (names, statements) = functions(8);
+        let unit = find_unit(&names, &statements).unwrap();
+        let mut compared = 0;
+        for opcode in 0..unit.functions.len() {
+            let statement = &unit.functions[opcode].planned.statement;
+            let has_second = statement.operands.len() > 1;
+            for a in 0..256 {
+                for b in 0..if has_second { 256 } else { 1 } {
+                    let limits: Vec<(i64, i64)> = unit
+                        .operands_of(opcode, &[a, b])
+                        .into_iter()
+                        .map(|raw| (raw, raw))
+                        .collect();
+                    let domain = statement.domain();
+                    let is_inside = |(at, (raw, _)): (usize, &(i64, i64))| {
+                        (domain[at].0..=domain[at].1).contains(raw)
+                    };
+                    let enclosed = statement.enclosed_operands(&limits);
+                    if !limits.iter().enumerate().all(is_inside)
+                        || statement.results[0].is_promised(&enclosed) == Some(false)
+                    {
+                        continue;
+                    }
+                    let [merged, own] = unit.both_results(opcode, &[a, b]);
+                    assert_eq!(merged, own, "{} of {a} and {b}", names[opcode]);
+                    compared += 1;
+                }
+            }
+        }
+        assert!(compared > 90_000, "{compared}");
+    }
+
+    #[test]
+    fn functions_of_a_unit_share_its_operations() {
+        let (names, statements) = functions(12);
+        let unit = find_unit(&names, &statements).unwrap();
+        let separate: f64 =
+            unit.functions.iter().map(|function| function.planned.plan.total_cells()).sum();
+        let merged = unit.plan.total_cells();
+        assert!(merged < 0.8 * separate, "{merged} of {separate}");
+    }
+}

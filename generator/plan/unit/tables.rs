@@ -1,0 +1,104 @@
+//! Makes one table of the tables of several functions. The upper bits of its address, the page, select the function.
+
+use std::sync::Arc;
+
+use glint_approximate::{
+    Curve, HornerStep, Outside, Piecewise, Segments, SharedWidths, TargetFunction,
+};
+use glint_base::fixed::Format;
+
+/// A table whose pages are the tables of functions with the same widths.
+pub(super) struct PagedTable {
+    pub(super) polynomials: Piecewise,
+    /// The number of bits of an operand's number within a page.
+    pub(super) number_bits: u32,
+    /// The page of each function, in the order of the tables.
+    pub(super) pages: Vec<usize>,
+}
+
+/// Returns a table with a page for each different table in `tables`, which must have the same [`SharedWidths`] apart from the
+/// number of bits of an offset. The operand of the new table is an integer: the page, and below it the number of the function's
+/// operand, whose top bits select the segment. A function whose operands have fewer bits has zeros below its number. The value of
+/// the new table has the raw value of the function's table.
+pub(super) fn paged(tables: &[Arc<Piecewise>]) -> PagedTable {
+    let mut distinct: Vec<&Piecewise> = Vec::new();
+    let mut pages = Vec::new();
+    for table in tables {
+        let known = distinct.iter().position(|other| *other == &**table);
+        pages.push(known.unwrap_or_else(|| {
+            distinct.push(table);
+            distinct.len() - 1
+        }));
+    }
+    let widths = distinct.iter().filter_map(|table| SharedWidths::of(table));
+    let widths = widths.reduce(|a, b| a.max(&b)).expect("tables with widths");
+    let number_bits = distinct.iter().map(|table| table.segments.bits).max().unwrap_or(1);
+    let page_bits = usize::BITS - (distinct.len() - 1).leading_zeros();
+    let bits = number_bits + page_bits;
+    let prefix = widths.prefix + page_bits;
+    let mut words = Vec::new();
+    for table in &distinct {
+        let mut page = table.words.clone();
+        // No operand reads the words behind the last one of a function.
+        let last = page.last().expect("a table has words").clone();
+        page.resize(1 << widths.prefix, last);
+        words.extend(page);
+    }
+    let raw_format = |table: &Piecewise, format: Format| {
+        let fraction = table.result.frac;
+        Format { int: format.int + fraction, frac: format.frac - fraction, ..format }
+    };
+    let degree = widths.offset.len();
+    let mut coefficients = Vec::new();
+    let mut sums = Vec::new();
+    for k in 0..=degree {
+        let of_table = distinct.iter().map(|table| raw_format(table, table.coefficients[k]));
+        coefficients.push(of_table.reduce(wide_enough).expect("a table"));
+        let of_table = distinct.iter().map(|table| raw_format(table, table.sums[k]));
+        sums.push(of_table.reduce(wide_enough).expect("a table"));
+    }
+    let mut steps = Vec::new();
+    for (k, offset) in widths.offset.iter().enumerate() {
+        let dropped = widths.guard[k + 1] + *offset as i32 - widths.guard[k];
+        steps.push(HornerStep { offset: *offset, dropped: dropped.max(0) as u32 });
+    }
+    let segments = Segments { bits, prefix, ..distinct[0].segments };
+    let rest = number_bits - widths.prefix;
+    let last = ((words.len() as i64) << rest) - 1;
+    let polynomials = Piecewise {
+        operand: Format::unsigned(bits as i32, 0),
+        domain: (0, last),
+        outside: Outside::Anything,
+        reduction: None,
+        origin: 0,
+        segments,
+        coefficients,
+        words,
+        steps,
+        result: sums[0],
+        sums,
+        bound: f64::INFINITY,
+    };
+    PagedTable { polynomials, number_bits, pages }
+}
+
+/// Returns a format with the same fraction bits that can represent all values of two formats.
+pub(super) fn wide_enough(a: Format, b: Format) -> Format {
+    let signed = a.signed || b.signed;
+    Format { signed, int: a.int.max(b.int), frac: a.frac.max(b.frac) }
+}
+
+impl PagedTable {
+    /// Returns the function that the table stands for in the merged plan. Its formula is never evaluated: the error of each page was
+    /// proved for the function's own plan.
+    pub(super) fn function(&self) -> TargetFunction {
+        TargetFunction {
+            curve: Curve::Formula(glint_formula::Expression::operand("x")),
+            domain: self.polynomials.domain,
+            operand: self.polynomials.operand,
+            outside: Outside::Anything,
+            fraction: 0,
+            error: f64::INFINITY,
+        }
+    }
+}
