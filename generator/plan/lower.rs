@@ -518,6 +518,10 @@ impl<'s> Lowering<'s> {
             }
         }
         loop {
+            if is_singular(part, &operand) {
+                // The whole part is computed octave by octave.
+                return Ok(operand);
+            }
             let mut widest = None;
             for dominator in dominators(part, &operand) {
                 if self.spans_octaves(dominator, &operand)? {

@@ -15,7 +15,7 @@ use glint_formula::{Enclosure, Expression, Function, Kind, Operator, TextSpan};
 
 use super::Lowering;
 use super::root::FEW_OCTAVES;
-use super::shape::number;
+use super::shape::{number, products_of};
 use crate::node::NodeId;
 use crate::refusal::PlanRefusal;
 
@@ -34,18 +34,28 @@ pub(super) fn written_with_logarithm(
     part(Kind::Unary(Function::Exp2, Arc::new(exponent)))
 }
 
-/// Returns the base of an exponential function of x: `Some(None)` for the base 2, and `Some(Some(base))` for any other. Returns
-/// `None` if the formula is no exponential function of x.
-fn base_of(function: &Expression) -> Option<Option<Expression>> {
-    let operand = Expression::operand("x");
-    match &function.kind {
-        Kind::Unary(Function::Exp2, a) if **a == operand => Some(None),
-        Kind::Unary(Function::Exp, a) if **a == operand => Some(Some(number("e"))),
-        Kind::Binary(Operator::Power, a, b) if **b == operand && !a.varies() => {
-            let is_two = **a == number("2");
-            Some(if is_two { None } else { Some((**a).clone()) })
-        }
-        _ => None,
+/// An exponential function: the base, which is `None` for the base 2, and the exponent as a function of x.
+struct ExponentialFunction<'f> {
+    base: Option<Expression>,
+    exponent: &'f Expression,
+}
+
+impl<'f> ExponentialFunction<'f> {
+    /// Returns `None` if the formula is no exponential function, or if its exponent is not x or x times a constant. For example,
+    /// `exp(-x / 2)` has the base e and the exponent `-x / 2`.
+    fn of(function: &'f Expression) -> Option<Self> {
+        let operand = Expression::operand("x");
+        let it = match &function.kind {
+            Kind::Unary(Function::Exp2, exponent) => Self { base: None, exponent },
+            Kind::Unary(Function::Exp, exponent) => Self { base: Some(number("e")), exponent },
+            Kind::Binary(Operator::Power, base, exponent) if !base.varies() => {
+                let is_two = **base == number("2");
+                Self { base: (!is_two).then(|| (**base).clone()), exponent }
+            }
+            _ => return None,
+        };
+        let costs = products_of(it.exponent, &operand);
+        costs.is_some_and(|products| products <= 1).then_some(it)
     }
 }
 
@@ -127,15 +137,17 @@ impl Lowering<'_> {
         core: &Expression,
         function: &Expression,
     ) -> Result<Option<NodeId>, PlanRefusal> {
-        let Some(base) = base_of(function) else { return Ok(None) };
-        let exponents = match &base {
-            None => core.clone(),
+        let Some(ExponentialFunction { base, exponent }) = ExponentialFunction::of(function) else {
+            return Ok(None);
+        };
+        let place = &core.span;
+        let exponent = exponent.substitute(&Expression::operand("x"), core, place);
+        let exponents = match base {
+            None => exponent,
             Some(base) => {
-                let place = &core.span;
                 let part = |kind: Kind| Expression::new(kind, place.clone());
-                let logarithm = part(Kind::Unary(Function::Log2, Arc::new(base.clone())));
-                let kind = Kind::Binary(Operator::Mul, Arc::new(core.clone()), Arc::new(logarithm));
-                part(kind)
+                let logarithm = part(Kind::Unary(Function::Log2, Arc::new(base)));
+                part(Kind::Binary(Operator::Mul, Arc::new(exponent), Arc::new(logarithm)))
             }
         };
         let range = self.range(&exponents)?;
