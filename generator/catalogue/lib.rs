@@ -30,3 +30,4 @@ pub mod rough;
 pub mod schlick;
 pub mod shading;
 pub mod threshold;
+pub mod unit;

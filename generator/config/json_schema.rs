@@ -114,11 +114,23 @@ fn of_key(key: &Key) -> Json {
 }
 
 /// Returns the schema of an entry: a table with these fields, or only the value of the field `shorthand`.
+/// A table within an entry, such as `functions.rcp.operands`.
+fn entries_of(key: &Key, fields: &[Key], shorthand: Option<&str>) -> Json {
+    json!({
+        "type": "object",
+        "description": key.doc,
+        "additionalProperties": record(fields, shorthand),
+    })
+}
+
 fn record(fields: &[Key], shorthand: Option<&str>) -> Json {
     let mut entry = table();
     let of_fields = properties(&mut entry);
     for field in fields {
-        let mut schema = of_key(field);
+        let mut schema = match &field.kind {
+            KeyKind::Table { fields, shorthand, .. } => entries_of(field, fields, *shorthand),
+            _ => of_key(field),
+        };
         // A field that the user does not give has no value, so the schema states no default.
         if let Some(schema) = schema.as_object_mut() {
             schema.remove("default");

@@ -347,7 +347,8 @@ impl TomlReader<'_> {
                 continue;
             }
             self.problems.locate(&format!("{}.{name_text}", key.name), name.span());
-            match self.record(key, &name_text, entry) {
+            let table = EntriesOf::key(key, key.name).expect("a key for a table");
+            match self.record(&table, &name_text, entry) {
                 Some(fields) => records.push(TableEntry { name: name_text, fields }),
                 None => is_good = false,
             }
@@ -367,33 +368,33 @@ impl TomlReader<'_> {
     /// Returns the fields of an entry, or reports a wrong or unknown field.
     fn record(
         &mut self,
-        key: &Key,
+        table: &EntriesOf<'_>,
         name: &str,
         entry: &Spanned<DeValue>,
     ) -> Option<Vec<(&'static str, Value)>> {
-        let KeyKind::Table { fields, shorthand, .. } = &key.kind else { return None };
+        let EntriesOf { fields, shorthand, .. } = *table;
         let mut given = Vec::new();
         let mut is_good = true;
-        if let DeValue::Table(table) = entry.get_ref() {
-            let mut in_order: Vec<_> = table.iter().collect();
+        if let DeValue::Table(entry) = entry.get_ref() {
+            let mut in_order: Vec<_> = entry.iter().collect();
             in_order.sort_by_key(|(field, _)| field.span().start);
             for (field, value) in in_order {
                 let known = fields.iter().find(|known| known.name == field.get_ref());
                 let Some(known) = known else {
-                    self.unknown_field(key, name, field, fields);
+                    self.unknown_field(table, name, field);
                     is_good = false;
                     continue;
                 };
-                let value = self.field(key, name, known, value);
+                let value = self.field(table, name, known, value);
                 is_good &= value.is_some();
                 given.extend(value.map(|value| (known.name, value)));
             }
-        } else if let Some(known) = fields.iter().find(|field| Some(field.name) == *shorthand) {
-            let value = self.field(key, name, known, entry);
+        } else if let Some(known) = fields.iter().find(|field| Some(field.name) == shorthand) {
+            let value = self.field(table, name, known, entry);
             is_good &= value.is_some();
             given.extend(value.map(|value| (known.name, value)));
         } else {
-            let within = format!("{}.{name}", key.name);
+            let within = format!("{}.{name}", table.name);
             let message = format!("`{within}` must be a table, not {}", described(entry));
             let names: Vec<&str> = fields.iter().map(|field| field.name).collect();
             let remedy = format!("give {{ {} = …, … }}; fields: {}", names[0], names.join(", "));
@@ -406,38 +407,63 @@ impl TomlReader<'_> {
     /// Returns the value of a field, or reports that it is wrong.
     fn field(
         &mut self,
-        key: &Key,
+        table: &EntriesOf<'_>,
         record: &str,
         field: &Key,
         value: &Spanned<DeValue>,
     ) -> Option<Value> {
-        let within = key.field_name(record, field.name);
+        let within = format!("{}.{record}.{}", table.name, field.name);
         self.problems.locate(&within, value.span());
-        match converted(field, value) {
-            Ok(value) => Some(value),
-            Err(violations) => {
-                for violation in violations {
-                    let Violation { error, .. } = field.named_within(violation, &within);
-                    // Fields have no default, so the remedy states the default of the key as an example.
-                    let remedy = error.remedy.replace("(default ", "(for example ");
-                    self.report(&within, value.span(), error.message, remedy);
+        let violations = match (EntriesOf::key(field, &within), value.get_ref()) {
+            (Some(table), DeValue::Table(entries)) => {
+                let value = self.entries_within(&table, entries)?;
+                let violations = field.violations_of(&value);
+                if violations.is_empty() {
+                    return Some(value);
                 }
-                None
+                violations
+            }
+            _ => match converted(field, value) {
+                Ok(value) => return Some(value),
+                Err(violations) => violations,
+            },
+        };
+        for violation in violations {
+            let Violation { error, .. } = field.named_within(violation, &within);
+            // Fields have no default, so the remedy states the default of the key as an example.
+            let remedy = error.remedy.replace("(default ", "(for example ");
+            self.report(&within, value.span(), error.message, remedy);
+        }
+        None
+    }
+
+    /// Returns the entries of a table that is itself a field of an entry, or reports a wrong field.
+    fn entries_within(&mut self, table: &EntriesOf<'_>, entries: &DeTable) -> Option<Value> {
+        let mut in_order: Vec<_> = entries.iter().collect();
+        in_order.sort_by_key(|(name, _)| name.span().start);
+        let mut records = Vec::new();
+        let mut is_good = true;
+        for (name, entry) in in_order {
+            let name_text = shown(name.get_ref());
+            self.problems.locate(&format!("{}.{name_text}", table.name), name.span());
+            match self.record(table, &name_text, entry) {
+                Some(fields) => records.push(TableEntry { name: name_text, fields }),
+                None => is_good = false,
             }
         }
+        is_good.then_some(Value::Table(TableEntries(records)))
     }
 
     fn unknown_field(
         &mut self,
-        key: &Key,
+        table: &EntriesOf<'_>,
         record: &str,
         field: &Spanned<std::borrow::Cow<'_, str>>,
-        fields: &[Key],
     ) {
-        let names: Vec<&str> = fields.iter().map(|known| known.name).collect();
+        let names: Vec<&str> = table.fields.iter().map(|known| known.name).collect();
         let given = shown(field.get_ref());
-        let within = format!("{}.{record}.{given}", key.name);
-        let message = format!("an entry of `{}` has no field `{given}`", key.name);
+        let within = format!("{}.{record}.{given}", table.name);
+        let message = format!("an entry of `{}` has no field `{given}`", table.name);
         let similar = nearest(&given, names.iter().copied())
             .or_else(|| other_words::last_part(&given, names.iter().copied()));
         let remedy = match similar {
@@ -473,6 +499,26 @@ impl TomlReader<'_> {
     fn report_error(&mut self, span: Range<usize>, error: ConfigError) {
         if !self.broken.contains(&self.line(span.start)) {
             self.problems.push_error_at(span, error);
+        }
+    }
+}
+
+/// A table whose entries the user names: its full name, such as `functions.rcp.operands`, and the fields of an entry.
+struct EntriesOf<'k> {
+    name: &'k str,
+    fields: &'k [Key],
+    /// See [`KeyKind::Table`].
+    shorthand: Option<&'static str>,
+}
+
+impl<'k> EntriesOf<'k> {
+    /// Returns `None` if the key is not for a table.
+    fn key(key: &'k Key, name: &'k str) -> Option<Self> {
+        match &key.kind {
+            KeyKind::Table { fields, shorthand, .. } => {
+                Some(Self { name, fields, shorthand: *shorthand })
+            }
+            _ => None,
         }
     }
 }

@@ -87,6 +87,14 @@ const EXPRESSION: Device = Device {
     proved: true,
 };
 
+const UNIT: Device = Device {
+    name: "unit",
+    summary: "several functions behind one datapath, of which an opcode selects one",
+    schema: keys::unit::schema,
+    parts: planned::unit,
+    proved: true,
+};
+
 const SHADING: Device = Device {
     name: "shading",
     summary: "ambient + diffuse*N.L + specular*highlight, from normals of any length",
@@ -128,7 +136,7 @@ impl Registry {
             normaliser: "normaliser", "(x, y, z)/sqrt(x^2 + y^2 + z^2), by a table of inverse roots";
             dot_product: "dot-product", "max(0, N.H) of a normal of any length, the cosine that highlights start from";
         ]);
-        all.with(EXPRESSION).with(SHADING)
+        all.with(EXPRESSION).with(UNIT).with(SHADING)
     }
 
     #[must_use]

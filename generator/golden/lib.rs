@@ -47,6 +47,7 @@ pub mod schlick;
 pub mod shading;
 pub mod sine;
 pub mod threshold;
+pub mod unit;
 
 use std::fmt;
 

@@ -188,7 +188,11 @@ fn check_operands_have_readers(found: &ProvedPlan) -> Result<(), ConfigError> {
 }
 
 /// Turns the refusal of a plan into an error in the formula that it concerns, also of a named part, or in the table `results`.
-fn refused(keys: &Keys, statement: &ExpressionStatement, refusal: PlanRefusal) -> ConfigError {
+pub(super) fn refused(
+    keys: &Keys,
+    statement: &ExpressionStatement,
+    refusal: PlanRefusal,
+) -> ConfigError {
     let of_part = |place: &TextSpan| Some(&keys.parts.0.get(place.text.checked_sub(1)?)?.name);
     let key = match (refusal.place.as_ref().and_then(of_part), refusal.result) {
         (Some(name), _) => part_key(name),
@@ -212,7 +216,7 @@ fn part_key(name: &str) -> String {
 /// # Errors
 /// Fails if an entry is wrong, if two entries have the same name, if no result depends on an operand, or if [`error_of_relative`]
 /// fails.
-fn statement(keys: &Keys) -> Result<ExpressionStatement, ConfigError> {
+pub(super) fn statement(keys: &Keys) -> Result<ExpressionStatement, ConfigError> {
     check_names(keys)?;
     let mut operands = Vec::new();
     for record in &keys.operands.0 {

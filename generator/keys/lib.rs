@@ -26,3 +26,4 @@ mod samples;
 pub mod schlick;
 pub mod shading;
 pub mod threshold;
+pub mod unit;

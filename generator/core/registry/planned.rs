@@ -9,7 +9,7 @@ use glint_golden::{self as golden, Contract, Model};
 use glint_keys as keys;
 use glint_keys::function::FunctionPlan;
 use glint_keys::shading::LightParts;
-use glint_plan::ProvedPlan;
+use glint_plan::{ProvedPlan, UnitPlan};
 use glint_rtl::dsl::Designer;
 
 use super::PartsResult;
@@ -55,6 +55,27 @@ impl DeviceParts for ExpressionParts {
 /// Plans the formulas, and proves the error of each result. The error of a formula without a plan names the formula.
 pub(super) fn expression(config: &Config) -> PartsResult {
     Ok(Arc::new(ExpressionParts(Arc::new(keys::expression::plan(config)?))))
+}
+
+struct UnitParts(Arc<UnitPlan>);
+
+impl DeviceParts for UnitParts {
+    fn describe(&self, designer: &Designer, config: &Config) {
+        devices::unit::describe(designer, config, &self.0);
+    }
+
+    fn model(&self, _: &Config) -> Box<dyn Model> {
+        golden::unit::model(&self.0)
+    }
+
+    fn contract(&self, _: &Config) -> Box<dyn Contract> {
+        golden::unit::contract(&self.0)
+    }
+}
+
+/// Plans the functions, proves their errors, and merges the plans. The error of a function without a plan names the function.
+pub(super) fn unit(config: &Config) -> PartsResult {
+    Ok(Arc::new(UnitParts(Arc::new(keys::unit::plan(config)?))))
 }
 
 struct ShadingParts(LightParts);
