@@ -33,7 +33,7 @@ pub use refusal::{Refusal, RefusalKind, UnsuitedReduction};
 pub use samples::Samples;
 pub use search::{Wish, reachable_error};
 pub use segments::{Layout, SegmentOffset, Segments};
-pub use shared::{SharedWidths, find_with_widths};
+pub use shared::{SharedWidths, find_with_widths, widths_with_prefix};
 
 /// The largest degree is 3.
 const MOST_SUMS: usize = 4;

@@ -16,6 +16,8 @@ pub struct Wish {
     pub degree: Option<u32>,
     /// The layout of the segments; `None` for the cheapest.
     pub layout: Option<Layout>,
+    /// The number of segments of a uniform layout as a power of two; `None` for the cheapest.
+    pub prefix: Option<u32>,
     /// The identity of the range reduction, for example f(−x) = f(x).
     pub identity: Identity,
     /// The largest number of look-up tables that an approximation may take, or `None` without a limit. The search finds nothing if
@@ -121,7 +123,7 @@ fn attempt(function: &TargetFunction, wish: Wish) -> Result<Option<Piecewise>, R
 
 /// Returns the cheapest approximation with a proved bound, for this numbering of the operands. Fails if the function has no value
 /// at an operand, or if no found approximation can be proved.
-fn attempt_numbered(
+pub(super) fn attempt_numbered(
     function: &TargetFunction,
     wish: Wish,
     numbering: Numbering,
@@ -188,7 +190,7 @@ fn cheapest(seen: &AllowedResults, wish: Wish) -> Option<Piecewise> {
         if wish.degree.is_some_and(|wanted| wanted != degree) {
             continue;
         }
-        for cut in cuts(&few, degree, wish.layout, most_words(seen, degree, least)) {
+        for cut in cuts(&few, degree, wish, most_words(seen, degree, least)) {
             let base = STEP * f64::from(degree) + OCTAVE * f64::from(cut.octaves);
             if cut.words() > most_words(seen, degree, least) {
                 continue;
@@ -230,8 +232,9 @@ fn most_words(seen: &AllowedResults, degree: u32, least: f64) -> usize {
 /// polynomials of degree `degree`. The list has the coarsest division of a layout and a number of octaves, and the same with
 /// twice as many segments. The function leaves out numbers of octaves that make no coarser division than fewer octaves. A
 /// division is fine enough if polynomials with unrounded coefficients keep the error.
-fn cuts(seen: &AllowedResults, degree: u32, layout: Option<Layout>, most: usize) -> Vec<Segments> {
-    let mut search = CutSearch { seen, degree, most, worst: None };
+fn cuts(seen: &AllowedResults, degree: u32, wish: Wish, most: usize) -> Vec<Segments> {
+    let layout = wish.layout;
+    let mut search = CutSearch { seen, degree, most, prefix: wish.prefix, worst: None };
     let mut cuts: Vec<Segments> = Vec::new();
     if layout.is_none_or(|wanted| wanted == Layout::Uniform) {
         cuts.extend(search.coarsest(Layout::Uniform, 0));
@@ -253,6 +256,9 @@ fn cuts(seen: &AllowedResults, degree: u32, layout: Option<Layout>, most: usize)
             }
         }
     }
+    if wish.prefix.is_some() {
+        return cuts;
+    }
     for cut in cuts.clone() {
         let finer = Segments { prefix: cut.prefix + 1, ..cut };
         if search.is_possible(&finer) {
@@ -268,6 +274,8 @@ struct CutSearch<'s> {
     seen: &'s AllowedResults<'s>,
     degree: u32,
     most: usize,
+    /// The only prefix to try, or `None`.
+    prefix: Option<u32>,
     /// An operand in a segment that was too long in an earlier division.
     worst: Option<i64>,
 }
@@ -284,7 +292,8 @@ impl CutSearch<'_> {
     /// Returns the division with the fewest segments for this layout and number of octaves that is fine enough.
     fn coarsest(&mut self, layout: Layout, octaves: u32) -> Option<Segments> {
         let least = u32::from(octaves == 0);
-        for prefix in least..=ADDRESS {
+        let prefixes = self.prefix.map_or(least..=ADDRESS, |prefix| prefix..=prefix);
+        for prefix in prefixes {
             let AllowedResults { bits, overhang, .. } = *self.seen;
             let cut = Segments { bits, layout, octaves, prefix, overhang };
             if !self.is_possible(&cut) {

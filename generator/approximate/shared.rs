@@ -6,7 +6,7 @@
 use super::seen::AllowedResults;
 use super::segments::{Layout, Segments};
 use super::table::{Table, Widths};
-use super::{Piecewise, Refusal, RefusalKind, TargetFunction};
+use super::{Piecewise, Refusal, RefusalKind, TargetFunction, Wish, search};
 
 /// The bit widths of tables whose segments are all equally long.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -36,6 +36,12 @@ impl SharedWidths {
         })
     }
 
+    /// Returns the widths with `bits` more fraction bits of each coefficient.
+    #[must_use]
+    pub fn with_guard(&self, bits: i32) -> Self {
+        Self { guard: self.guard.iter().map(|guard| guard + bits).collect(), ..self.clone() }
+    }
+
     /// Returns widths that are enough for both of two tables of the same degree.
     #[must_use]
     pub fn max(&self, other: &Self) -> Self {
@@ -49,11 +55,25 @@ impl SharedWidths {
     }
 }
 
-impl TargetFunction {
-    /// Returns whether the domain has a few operands beyond a power of two, such as both ends of an octant.
-    pub fn has_overhang(&self) -> bool {
-        self.numbering_with_overhang(None).is_some()
+/// Returns the narrowest widths of polynomials of degree 2 for each of several functions, with 2^`prefix` segments. An entry is
+/// `None` if the function has no such polynomials.
+pub fn widths_with_prefix(functions: &[&TargetFunction], prefix: u32) -> Vec<Option<SharedWidths>> {
+    let wish = Wish {
+        degree: Some(2),
+        layout: Some(Layout::Uniform),
+        prefix: Some(prefix),
+        ..Wish::default()
+    };
+    let mut widths = Vec::new();
+    for function in functions {
+        let numbering = function.numbering_without_overhang();
+        let found = match function.is_wide() {
+            true => None,
+            false => search::attempt_numbered(function, wish, numbering).ok().flatten(),
+        };
+        widths.push(found.and_then(|found| SharedWidths::of(&found)));
     }
+    widths
 }
 
 /// Finds the polynomials of `function` with these widths, and proves their error at every operand. An offset has at most the bits

@@ -99,6 +99,7 @@ pub fn plan(config: &Config) -> Result<FunctionPlan, ConfigError> {
         degree: keys.degree.parse().ok(),
         layout: Layout::NAMES.iter().find(|it| it.0 == keys.segments).map(|it| it.1),
         identity: keys.reduction,
+        prefix: None,
         most_cells: None,
         least_words: 0,
     };

@@ -8,7 +8,7 @@ use std::collections::HashSet;
 use std::sync::Arc;
 
 use glint_approximate::{
-    FULL_CELL, Identity, Layout, Piecewise, RefusalKind, SharedWidths, TargetFunction, Wish,
+    FULL_CELL, Identity, Piecewise, RefusalKind, SharedWidths, TargetFunction, Wish,
 };
 use glint_base::fixed::MAX_WIDTH;
 
@@ -44,8 +44,11 @@ const STYLES: [PlanStyle; 6] = [
 /// A table with at least this many operands is searched in one style only.
 const LONG_DOMAIN: u64 = 1 << 22;
 
-/// The degree of the polynomials whose tables a unit shares.
-const DEGREE_OF_SETS: usize = 2;
+/// The numbers of segments that the tables of a unit may have, as powers of two.
+const PREFIXES: std::ops::RangeInclusive<u32> = 3..=7;
+
+/// The width of a coefficient without guard bits, about which the size of a table is estimated.
+const WIDTH_OF_GUARD_0: i32 = 12;
 
 /// The most by which an evaluation of a formula can exceed an error, in units of the last bit.
 const EVALUATION_ERROR: f64 = 1e-6;
@@ -123,24 +126,50 @@ pub fn find(statement: &ExpressionStatement) -> Result<ProvedPlan, PlanRefusal> 
 pub(super) fn find_set(
     statements: &[ExpressionStatement],
 ) -> Result<Vec<ProvedPlan>, (usize, PlanRefusal)> {
-    let mut widths: Option<SharedWidths> = None;
+    let mut functions: Vec<TargetFunction> = Vec::new();
     for (number, statement) in statements.iter().enumerate() {
-        let candidate = smallest_candidate(statement, TableRule::Plain);
-        let candidate = candidate.map_err(|refusal| (number, refusal))?;
-        for approximation in candidate.plan.approximations() {
-            let found = approximation.polynomials.as_ref().expect("polynomials that were found");
-            let Some(own) = SharedWidths::of(found) else { continue };
-            if found.degree() == DEGREE_OF_SETS {
-                widths = Some(widths.map_or_else(|| own.clone(), |widths| widths.max(&own)));
-            }
+        let search = PlanSearch::new(statement, TableRule::Cheapest);
+        let estimate = allocated(&search, STYLES[0]).map_err(|refusal| (number, refusal))?;
+        for approximation in estimate.plan.approximations() {
+            functions.push(approximation.function.clone());
         }
     }
+    let rule = shared_widths(&functions).map_or(TableRule::Cheapest, TableRule::Shared);
     let mut plans = Vec::new();
     for (number, statement) in statements.iter().enumerate() {
-        let rule = widths.clone().map_or(TableRule::Plain, TableRule::Shared);
-        plans.push(find_with(statement, rule).map_err(|refusal| (number, refusal))?);
+        let plan = find_with(statement, rule.clone());
+        plans.push(plan.map_err(|refusal| (number, refusal))?);
     }
     Ok(plans)
+}
+
+/// Returns widths with which as many of the functions as possible have polynomials, and among such widths those with the smallest
+/// tables. Returns `None` if there are none.
+fn shared_widths(functions: &[TargetFunction]) -> Option<SharedWidths> {
+    let functions: Vec<&TargetFunction> = functions.iter().collect();
+    let mut best: Option<(usize, u32, SharedWidths)> = None;
+    for prefix in PREFIXES {
+        let widths = glint_approximate::widths_with_prefix(&functions, prefix);
+        let mut found = widths.into_iter().flatten();
+        let Some(first) = found.next() else { continue };
+        let mut count = 1;
+        let mut all = first;
+        for own in found {
+            all = all.max(&own);
+            count += 1;
+        }
+        // One more bit lets nearly every function have coefficients of the widest of the others.
+        let all = all.with_guard(1);
+        let size = (1 << prefix)
+            * all.guard.iter().map(|guard| (guard + WIDTH_OF_GUARD_0) as u32).sum::<u32>();
+        let is_better = best
+            .as_ref()
+            .is_none_or(|(most, least, _)| count > *most || count == *most && size < *least);
+        if is_better {
+            best = Some((count, size, all));
+        }
+    }
+    best.map(|(_, _, widths)| widths)
 }
 
 /// Returns the plan for a statement, with tables by the rule `tables`. Fails as [`find`] does.
@@ -304,16 +333,12 @@ fn polynomials_by(
     rule: &TableRule,
     function: &TargetFunction,
 ) -> Result<Arc<Piecewise>, PlanRefusal> {
-    let degree = Some(DEGREE_OF_SETS as u32);
-    let plain = Wish { degree, layout: Some(Layout::Uniform), ..Wish::default() };
-    let found = match rule {
-        TableRule::Shared(widths) if !function.has_overhang() => {
-            glint_approximate::find_with_widths(function, widths).map(Arc::new)
-        }
-        TableRule::Plain if !function.has_overhang() => glint_approximate::find(function, plain),
-        _ => return cheapest_polynomials(function),
-    };
-    found.or_else(|_| cheapest_polynomials(function))
+    if let TableRule::Shared(widths) = rule
+        && let Ok(found) = glint_approximate::find_with_widths(function, widths)
+    {
+        return Ok(Arc::new(found));
+    }
+    cheapest_polynomials(function)
 }
 
 /// Returns the polynomials of a function with the lowest estimated cost in a pipeline, among those of degree 1, 2 and 3 and

@@ -172,10 +172,7 @@ pub(super) struct PlanSearch<'s> {
 pub(super) enum TableRule {
     /// Those with the fewest look-up tables by the estimate.
     Cheapest,
-    /// Those of degree 2 with segments of equal length, so that several tables can have the same widths.
-    Plain,
-    /// Those of degree 2 with these widths. A function that has no such polynomials, or whose domain has a few operands beyond a
-    /// power of two, has the cheapest.
+    /// Those of degree 2 with these widths. A function that has no such polynomials has the cheapest.
     Shared(SharedWidths),
 }
 
