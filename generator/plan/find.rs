@@ -47,8 +47,17 @@ const LONG_DOMAIN: u64 = 1 << 22;
 /// The numbers of segments that the tables of a unit may have, as powers of two.
 const PREFIXES: std::ops::RangeInclusive<u32> = 3..=7;
 
+/// A function of a unit may take 2 to this power pages of the table.
+const MOST_PAGE_BITS: u32 = 2;
+
 /// The width of a coefficient without guard bits, about which the size of a table is estimated.
-const WIDTH_OF_GUARD_0: i32 = 12;
+const WIDTH_WITHOUT_GUARD: i32 = 12;
+
+/// The bits of a table that a look-up table stores.
+const BITS_OF_CELL: f64 = 16.0;
+
+/// The look-up tables of a table that a function of a unit has for itself, with its steps of Horner's rule, about.
+const CELLS_OF_OWN_TABLE: f64 = 300.0;
 
 /// The most by which an evaluation of a formula can exceed an error, in units of the last bit.
 const EVALUATION_ERROR: f64 = 1e-6;
@@ -143,33 +152,27 @@ pub(super) fn find_set(
     Ok(plans)
 }
 
-/// Returns widths with which as many of the functions as possible have polynomials, and among such widths those with the smallest
-/// tables. Returns `None` if there are none.
+/// Returns the widths with which the tables of the functions are smallest by the estimate. A function that has no polynomials with
+/// so few segments counts with a table of its own. Returns `None` if no function has such polynomials.
 fn shared_widths(functions: &[TargetFunction]) -> Option<SharedWidths> {
     let functions: Vec<&TargetFunction> = functions.iter().collect();
-    let mut best: Option<(usize, u32, SharedWidths)> = None;
+    let mut best: Option<(f64, SharedWidths)> = None;
     for prefix in PREFIXES {
         let widths = glint_approximate::widths_with_prefix(&functions, prefix);
-        let mut found = widths.into_iter().flatten();
-        let Some(first) = found.next() else { continue };
-        let mut count = 1;
-        let mut all = first;
-        for own in found {
-            all = all.max(&own);
-            count += 1;
-        }
-        // One more bit lets nearly every function have coefficients of the widest of the others.
+        let found: Vec<SharedWidths> = widths.into_iter().flatten().collect();
+        let count = found.len();
+        let Some(all) = found.into_iter().reduce(|a, b| a.max(&b)) else { continue };
+        // One more bit lets nearly every function have coefficients of the widths that the others need.
         let all = all.with_guard(1);
-        let size = (1 << prefix)
-            * all.guard.iter().map(|guard| (guard + WIDTH_OF_GUARD_0) as u32).sum::<u32>();
-        let is_better = best
-            .as_ref()
-            .is_none_or(|(most, least, _)| count > *most || count == *most && size < *least);
-        if is_better {
-            best = Some((count, size, all));
+        let word: i32 = all.guard.iter().map(|guard| guard + WIDTH_WITHOUT_GUARD).sum();
+        let pages = f64::from(1u32 << prefix) * count as f64;
+        let own_tables = (functions.len() - count) as f64 * CELLS_OF_OWN_TABLE;
+        let cells = pages * f64::from(word) / BITS_OF_CELL + own_tables;
+        if best.as_ref().is_none_or(|(least, _)| cells < *least) {
+            best = Some((cells, all));
         }
     }
-    best.map(|(_, _, widths)| widths)
+    best.map(|(_, widths)| widths)
 }
 
 /// Returns the plan for a statement, with tables by the rule `tables`. Fails as [`find`] does.
@@ -333,10 +336,14 @@ fn polynomials_by(
     rule: &TableRule,
     function: &TargetFunction,
 ) -> Result<Arc<Piecewise>, PlanRefusal> {
-    if let TableRule::Shared(widths) = rule
-        && let Ok(found) = glint_approximate::find_with_widths(function, widths)
-    {
-        return Ok(Arc::new(found));
+    if let TableRule::Shared(widths) = rule {
+        // A steep function may take several pages of the shared table.
+        for prefix in widths.prefix..=widths.prefix + MOST_PAGE_BITS {
+            let own = SharedWidths { prefix, ..widths.clone() };
+            if let Ok(found) = glint_approximate::find_with_widths(function, &own) {
+                return Ok(Arc::new(found));
+            }
+        }
     }
     cheapest_polynomials(function)
 }

@@ -370,12 +370,25 @@ impl Merger<'_> {
         let table = paged(&tables);
         let mut numbers = vec![None; self.functions.len()];
         let mut pages = vec![None; self.functions.len()];
-        for (((function, node), own), page) in members.iter().zip(&tables).zip(&table.pages) {
+        for (member, (function, node)) in members.iter().enumerate() {
             let operand = self.own(*function).node(*node).operation.inputs()[0];
             let operand = self.nodes[*function][operand.0];
-            let number = self.number(*function, operand, own, table.number_bits)?;
-            numbers[*function] = Some(number);
-            pages[*function] = Some(self.plan.constant("page", *page as i128, 0)?);
+            let page_bits = table.page_bits[member];
+            let number =
+                self.number(*function, operand, &tables[member], table.number_bits + page_bits)?;
+            let first = self.plan.constant("page", table.pages[member] as i128, 0)?;
+            let name = &self.functions[*function].name.clone();
+            let in_page = Format::unsigned(table.number_bits as i32, 0);
+            numbers[*function] = Some(self.narrow(&format!("{name}_in_page"), number, in_page)?);
+            pages[*function] = Some(match page_bits {
+                0 => first,
+                bits => {
+                    let upper = self.plan.scale("number_above", number, -in_page.int)?;
+                    let format = Format::unsigned(bits as i32, 0);
+                    let further = self.narrow(&format!("{name}_further_page"), upper, format)?;
+                    self.plan.add(&format!("{name}_page"), first, further)?
+                }
+            });
         }
         let number = self.selected("number", &numbers)?;
         let page = self.selected("page_of_function", &pages)?;
@@ -444,11 +457,9 @@ impl Merger<'_> {
     }
 }
 
-/// Returns whether tables of these widths can be pages of one table: the widths agree, apart from the bits of offsets.
+/// Returns whether tables of these widths can be pages of one table: the widths of the coefficients agree.
 fn fits(own: &SharedWidths, common: &SharedWidths) -> bool {
-    own.prefix == common.prefix
-        && own.guard == common.guard
-        && own.offset.len() == common.offset.len()
+    own.guard == common.guard && own.offset.len() == common.offset.len()
 }
 
 fn table_of(plan: &ExpressionPlan, node: NodeId) -> Option<Arc<Piecewise>> {

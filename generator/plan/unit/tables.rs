@@ -12,38 +12,51 @@ pub(super) struct PagedTable {
     pub(super) polynomials: Piecewise,
     /// The number of bits of an operand's number within a page.
     pub(super) number_bits: u32,
-    /// The page of each function, in the order of the tables.
+    /// The first page of each function, in the order of the tables.
     pub(super) pages: Vec<usize>,
+    /// The number of bits of the page that come from the top of the operand's number, for each function.
+    pub(super) page_bits: Vec<u32>,
 }
 
-/// Returns a table with a page for each different table in `tables`, which must have the same [`SharedWidths`] apart from the
-/// number of bits of an offset. The operand of the new table is an integer: the page, and below it the number of the function's
-/// operand, whose top bits select the segment. A function whose operands have fewer bits has zeros below its number. The value of
-/// the new table has the raw value of the function's table.
+/// Returns a table with pages for each different table in `tables`, which must have the same [`SharedWidths`] apart from the
+/// number of segments and of bits of an offset. A page has as many segments as the smallest table; a larger table has several pages.
+///
+/// The operand of the new table is an integer: the page, and below it the number of the function's operand, whose top bits select the
+/// segment. A function whose operands have fewer bits has zeros below its number. The value of the new table has the raw value of
+/// the function's table.
 pub(super) fn paged(tables: &[Arc<Piecewise>]) -> PagedTable {
     let mut distinct: Vec<&Piecewise> = Vec::new();
-    let mut pages = Vec::new();
     for table in tables {
-        let known = distinct.iter().position(|other| *other == &**table);
-        pages.push(known.unwrap_or_else(|| {
+        if !distinct.contains(&&**table) {
             distinct.push(table);
-            distinct.len() - 1
-        }));
+        }
     }
+    // The first page of a table is then a multiple of the number of its pages.
+    distinct.sort_by_key(|table| std::cmp::Reverse(table.segments.prefix));
+    let prefix = distinct.iter().map(|table| table.segments.prefix).min().expect("a table");
     let widths = distinct.iter().filter_map(|table| SharedWidths::of(table));
     let widths = widths.reduce(|a, b| a.max(&b)).expect("tables with widths");
-    let number_bits = distinct.iter().map(|table| table.segments.bits).max().unwrap_or(1);
-    let page_bits = usize::BITS - (distinct.len() - 1).leading_zeros();
-    let bits = number_bits + page_bits;
-    let prefix = widths.prefix + page_bits;
+    let rests = distinct.iter().map(|table| table.segments.rest());
+    let number_bits = prefix + rests.max().expect("a table");
     let mut words = Vec::new();
+    let mut firsts = Vec::new();
     for table in &distinct {
-        let mut page = table.words.clone();
+        firsts.push(words.len() >> prefix);
+        let mut of_table = table.words.clone();
         // No operand reads the words behind the last one of a function.
-        let last = page.last().expect("a table has words").clone();
-        page.resize(1 << widths.prefix, last);
-        words.extend(page);
+        let last = of_table.last().expect("a table has words").clone();
+        of_table.resize(1 << table.segments.prefix, last);
+        words.extend(of_table);
     }
+    let mut pages = Vec::new();
+    let mut page_bits = Vec::new();
+    for table in tables {
+        let at = distinct.iter().position(|other| *other == &**table).expect("a table of the set");
+        pages.push(firsts[at]);
+        page_bits.push(table.segments.prefix - prefix);
+    }
+    let count = words.len() >> prefix;
+    let bits = number_bits + usize::BITS - (count - 1).leading_zeros();
     let raw_format = |table: &Piecewise, format: Format| {
         let fraction = table.result.frac;
         Format { int: format.int + fraction, frac: format.frac - fraction, ..format }
@@ -62,8 +75,8 @@ pub(super) fn paged(tables: &[Arc<Piecewise>]) -> PagedTable {
         let dropped = widths.guard[k + 1] + *offset as i32 - widths.guard[k];
         steps.push(HornerStep { offset: *offset, dropped: dropped.max(0) as u32 });
     }
-    let segments = Segments { bits, prefix, ..distinct[0].segments };
-    let rest = number_bits - widths.prefix;
+    let segments = Segments { bits, prefix: prefix + bits - number_bits, ..distinct[0].segments };
+    let rest = number_bits - prefix;
     let last = ((words.len() as i64) << rest) - 1;
     let polynomials = Piecewise {
         operand: Format::unsigned(bits as i32, 0),
@@ -79,7 +92,7 @@ pub(super) fn paged(tables: &[Arc<Piecewise>]) -> PagedTable {
         sums,
         bound: f64::INFINITY,
     };
-    PagedTable { polynomials, number_bits, pages }
+    PagedTable { polynomials, number_bits, pages, page_bits }
 }
 
 /// Returns a format with the same fraction bits that can represent all values of two formats.
