@@ -50,6 +50,11 @@ ${ name }$_results ${ name }$_model(${ name }$_operands operands);
 void ${ name }$_model_points(const ${ name }$_operands *operands, ${ name }$_results *results,
                              size_t count);
 <%- endif %>
+<%- for (constant, value) in named_values %>
+
+/* ${ value.doc }$ */
+#define ${ constant }$ ${ value.value }$
+<%- endfor %>
 <%- for field in operands %>
 
 /* ${ field.name }$, ${ field.doc }$ */

@@ -7,7 +7,7 @@ use glint_base::text;
 use glint_config::{Config, Shared};
 use glint_plan::{StatedResult, UnitPlan};
 use glint_rtl::dsl::Designer;
-use glint_rtl::netlist::About;
+use glint_rtl::netlist::{About, NamedValue};
 
 use crate::plan::{PlanOutput, describe_plan};
 
@@ -18,6 +18,14 @@ pub fn describe(d: &Designer, config: &Config, planned: &UnitPlan) {
     let mut outputs = Vec::new();
     for (name, _) in &planned.results {
         outputs.push(PlanOutput { name: format!("{name}_out"), doc: String::new() });
+    }
+    let width = planned.operands[0].format.width();
+    for (opcode, function) in planned.functions.iter().enumerate() {
+        let name = format!("OPCODE_{}", function.name.to_uppercase());
+        let results = function.planned.statement.results.iter();
+        let formulas: Vec<String> = results.map(|result| result.formula.python()).collect();
+        let doc = formulas.join(", ");
+        d.named_value(NamedValue { name, value: opcode as u64, width, doc });
     }
     describe_plan(d, &planned.operands, &planned.plan, &outputs, is_pipelined);
 }

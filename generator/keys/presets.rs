@@ -280,6 +280,62 @@ const EXPRESSIONS: [ExpressionPreset; 20] = [
     },
 ];
 
+/// The functions of the preset `unit`.
+const FUNCTIONS_OF_UNIT: [UnitFunctionPreset; 8] = [
+    UnitFunctionPreset {
+        name: "rcp",
+        operands: &[("x", (false, 16, 8))],
+        results: &[ResultPreset::new("r", "1 / x", 8).promised("x > 0")],
+    },
+    UnitFunctionPreset {
+        name: "rsqrt",
+        operands: &[("x", (false, 16, 8))],
+        results: &[ResultPreset::new("r", "1 / sqrt(x)", 12).promised("x > 0")],
+    },
+    UnitFunctionPreset {
+        name: "sqrt",
+        operands: &[("x", (false, 16, 8))],
+        results: &[ResultPreset::new("r", "sqrt(x)", 12)],
+    },
+    UnitFunctionPreset {
+        name: "exp2",
+        operands: &[("x", (true, 16, 12))],
+        results: &[ResultPreset::new("r", "2^x", 8)],
+    },
+    UnitFunctionPreset {
+        name: "log2",
+        operands: &[("x", (false, 16, 8))],
+        results: &[ResultPreset::new("r", "log2(x)", 12).promised("x > 0")],
+    },
+    UnitFunctionPreset {
+        name: "sincos",
+        operands: &[("turn", PART_OF_ONE)],
+        results: &[
+            ResultPreset::new("sine", "sin(2 * pi * turn)", 15),
+            ResultPreset::new("cosine", "cos(2 * pi * turn)", 15),
+        ],
+    },
+    UnitFunctionPreset {
+        name: "atan2",
+        operands: &[("x", COORDINATE), ("y", COORDINATE)],
+        results: &[ResultPreset::new("angle", "atan2(y, x) / pi", 15).promised("x^2 + y^2 > 0")],
+    },
+    UnitFunctionPreset {
+        name: "divide",
+        operands: &[("x", PART_OF_ONE), ("y", PART_OF_ONE)],
+        results: &[ResultPreset::new("q", "x / y", 15).promised("x < y")],
+    },
+];
+
+struct UnitFunctionPreset {
+    name: &'static str,
+    operands: &'static [(&'static str, OperandFormat)],
+    results: &'static [ResultPreset],
+}
+
+/// The device and the preset of several functions behind one datapath.
+const UNIT: &str = "unit";
+
 /// Returns the names of all presets, first of `function`, then of `expression`.
 pub fn names() -> impl Iterator<Item = &'static str> {
     names_of_functions().chain(names_of_expressions())
@@ -309,6 +365,9 @@ pub fn find(name: &str) -> Option<Preset> {
     if let Some(preset) = FUNCTIONS.iter().find(|preset| preset.0 == name) {
         return Some(Preset { device: FUNCTION, purpose: None, values: of_function(preset) });
     }
+    if name == UNIT {
+        return Some(Preset { device: UNIT, purpose: None, values: of_unit() });
+    }
     let preset = EXPRESSIONS.iter().find(|preset| preset.name == name)?;
     Some(Preset {
         device: "expression",
@@ -332,10 +391,21 @@ fn of_function(preset: &FunctionPreset) -> Vec<(String, Value)> {
     ]
 }
 
-fn of_expression(preset: &ExpressionPreset) -> Vec<(String, Value)> {
-    let text = |text: &str| Value::Text(text.to_owned());
+fn of_unit() -> Vec<(String, Value)> {
+    let mut functions = Vec::new();
+    for UnitFunctionPreset { name, operands, results } in &FUNCTIONS_OF_UNIT {
+        let tables = [
+            ("operands", Value::Table(operand_entries(operands))),
+            ("results", Value::Table(result_entries(results))),
+        ];
+        functions.push(TableEntry::new(name, &tables));
+    }
+    vec![("functions".to_owned(), Value::Table(TableEntries(functions)))]
+}
+
+fn operand_entries(formats: &[(&str, OperandFormat)]) -> TableEntries {
     let mut operands = Vec::new();
-    for (name, (signed, bits, fraction)) in preset.operands {
+    for (name, (signed, bits, fraction)) in formats {
         let mut fields =
             vec![("bits", Value::Integer(*bits)), ("fraction", Value::Integer(*fraction))];
         if *signed {
@@ -343,12 +413,13 @@ fn of_expression(preset: &ExpressionPreset) -> Vec<(String, Value)> {
         }
         operands.push(TableEntry::new(name, &fields));
     }
-    let mut parts = Vec::new();
-    for (name, formula) in preset.parts {
-        parts.push(TableEntry::new(name, &[("formula", text(formula))]));
-    }
+    TableEntries(operands)
+}
+
+fn result_entries(presets: &[ResultPreset]) -> TableEntries {
+    let text = |text: &str| Value::Text(text.to_owned());
     let mut results = Vec::new();
-    for result in preset.results {
+    for result in presets {
         let mut fields = vec![
             ("formula", text(result.formula)),
             ("fraction", Value::Integer(result.fraction)),
@@ -364,10 +435,20 @@ fn of_expression(preset: &ExpressionPreset) -> Vec<(String, Value)> {
         }
         results.push(TableEntry::new(result.name, &fields));
     }
-    let mut values = vec![("operands".to_owned(), Value::Table(TableEntries(operands)))];
+    TableEntries(results)
+}
+
+fn of_expression(preset: &ExpressionPreset) -> Vec<(String, Value)> {
+    let mut parts = Vec::new();
+    for (name, formula) in preset.parts {
+        let formula = Value::Text((*formula).to_owned());
+        parts.push(TableEntry::new(name, &[("formula", formula)]));
+    }
+    let operands = operand_entries(preset.operands);
+    let mut values = vec![("operands".to_owned(), Value::Table(operands))];
     if !parts.is_empty() {
         values.push(("let".to_owned(), Value::Table(TableEntries(parts))));
     }
-    values.push(("results".to_owned(), Value::Table(TableEntries(results))));
+    values.push(("results".to_owned(), Value::Table(result_entries(preset.results))));
     values
 }

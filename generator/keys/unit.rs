@@ -5,6 +5,7 @@
 //! states a function `rcp`.
 
 use glint_base::config_error::ConfigError;
+use glint_base::identifier;
 use glint_config::{Config, Key, Problems, Schema, TableEntries, TableEntry, Value};
 use glint_plan::{ExpressionStatement, MOST_FUNCTIONS, StatedOverflow, UnitPlan, find_unit};
 
@@ -89,13 +90,36 @@ fn within(function: &TableEntry, error: ConfigError) -> ConfigError {
     ConfigError { key, ..error }
 }
 
+/// Checks that the names of functions are legal identifiers, and differ in more than upper and lower case, because the emitted files
+/// define constants such as `OPCODE_RCP`.
+fn check_names(functions: &[TableEntry]) -> Result<(), ConfigError> {
+    for (number, function) in functions.iter().enumerate() {
+        let name = &function.name;
+        let key = format!("functions.{name}");
+        let remedy = "give the function another name";
+        if let Err(reason) = identifier::check(name) {
+            let message = format!("`{name}` cannot be the name of a function: {reason}");
+            return Err(ConfigError::new(key, message, remedy));
+        }
+        let is_same = |other: &TableEntry| other.name.eq_ignore_ascii_case(name);
+        if functions[..number].iter().any(is_same) {
+            let message =
+                format!("another function has the name `{name}`, apart from upper and lower case");
+            return Err(ConfigError::new(key, message, remedy));
+        }
+    }
+    Ok(())
+}
+
 /// Returns the statement of each function.
 ///
 /// # Errors
 /// Fails if a name, an operand, a formula or an allowed error is wrong, or if a result wraps.
 fn statements(config: &Config) -> Result<Vec<ExpressionStatement>, ConfigError> {
+    let functions = Keys::of(config).functions.0;
+    check_names(&functions)?;
     let mut statements = Vec::new();
-    for function in &Keys::of(config).functions.0 {
+    for function in &functions {
         statements.push(statement(function).map_err(|error| within(function, error))?);
     }
     Ok(statements)

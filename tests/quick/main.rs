@@ -41,6 +41,7 @@ mod spread;
 mod streams;
 mod tables;
 mod tune;
+mod units;
 mod words;
 mod worst;
 

@@ -97,7 +97,7 @@ pub use registers::{Counter, Flag, InputOperand, Register, Select};
 pub use rom::Rom;
 pub use signal::{Mux, Signal};
 
-pub use crate::netlist::{About, Note, Topic};
+pub use crate::netlist::{About, NamedValue, Note, Topic};
 use crate::retime::register_held;
 
 use crate::netlist::{
@@ -214,6 +214,12 @@ impl Designer {
     /// Sets the texts about the device for the Verilog header, the manifest and the documentation.
     pub fn about(&self, about: About) {
         self.inner.borrow_mut().design.about = about;
+    }
+
+    /// Gives a value of an operand a name, for which the emitted Verilog and C define a constant. For example, a unit names the
+    /// opcodes of its functions. The name must be in upper case and begin with the name of the operand.
+    pub fn named_value(&self, value: NamedValue) {
+        self.inner.borrow_mut().design.named_values.push(value);
     }
 
     /// Adds a constant. Reports a mistake if `format` cannot represent `value` exactly: `u0.8` can represent 0.75 but not 0.1.

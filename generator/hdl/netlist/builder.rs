@@ -18,6 +18,7 @@ impl Design {
             ports: Vec::new(),
             control: Control::none(),
             pipeline: None,
+            named_values: Vec::new(),
             warnings: Vec::new(),
         }
     }

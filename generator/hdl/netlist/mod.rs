@@ -288,6 +288,18 @@ impl<T: Into<String>> From<T> for Note {
     }
 }
 
+/// A value of an operand with a name. The emitted files define a constant for it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NamedValue {
+    /// The name of the constant, in upper case: `OPCODE_RCP`.
+    pub name: String,
+    pub value: u64,
+    /// The width of the operand in bits.
+    pub width: u32,
+    /// What the value means, on one line.
+    pub doc: String,
+}
+
 /// The netlist of a device: datapath, control unit and ports.
 #[derive(Clone, Debug)]
 pub struct Design {
@@ -306,6 +318,8 @@ pub struct Design {
     pub control: Control,
     /// The facts about the stages, if the design is a pipeline.
     pub pipeline: Option<Pipeline>,
+    /// Values of operands with names for users of the core, such as the opcodes of a unit.
+    pub named_values: Vec<NamedValue>,
     /// Logic on which no output depends, muxes that always pass the same input, and choices that no microinstruction makes.
     pub warnings: Vec<Diagnostic>,
 }

@@ -50,7 +50,11 @@ pub fn assemble(
         graph: &unrolled.graph,
         problems,
         schedule,
-        design: Design { about, ..Design::empty(&sequential.name) },
+        design: Design {
+            about,
+            named_values: sequential.named_values.clone(),
+            ..Design::empty(&sequential.name)
+        },
         pipeline,
         advance: None,
         shared: HashMap::new(),

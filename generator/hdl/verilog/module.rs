@@ -155,6 +155,16 @@ impl<'a> Builder<'a> {
             let width = design.width(design.control.fields[field].net);
             lines.extend(localparam(name, value as u64, width, ""));
         }
+        if !design.named_values.is_empty() {
+            lines.push(
+                "    // For users of the core; the core itself does not need them.".to_owned(),
+            );
+            lines.push("    /* verilator lint_off UNUSEDPARAM */".to_owned());
+            for value in &design.named_values {
+                lines.extend(localparam(&value.name, value.value, value.width, &value.doc));
+            }
+            lines.push("    /* verilator lint_on UNUSEDPARAM */".to_owned());
+        }
         lines
     }
 

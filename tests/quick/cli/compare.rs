@@ -89,7 +89,7 @@ fn every_device_is_there_and_configurations_as_they_are() {
     let mut names = devices.each("name");
     // These are no highlights.
     names.retain(|name| {
-        !["function", "expression", "normaliser", "dot-product", "shading"].contains(name)
+        !["function", "expression", "unit", "normaliser", "dot-product", "shading"].contains(name)
     });
     let value = compared(&["core.toml", "--bits", "10"]);
     names.push("core.toml");

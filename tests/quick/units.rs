@@ -1,0 +1,98 @@
+//! Tests units: several functions behind one datapath, of which an opcode selects one.
+//!
+//! The contract of a unit takes its results from the plan of each function alone, and the exact values from the formulas. Every
+//! combination of opcode and operands is simulated, and each result must be the one of the contract.
+
+use crate::common::cores::{Emitted, assert_agrees, assert_results_as_stated, device, parsed};
+use glint::core::Core;
+use glint::hdl::netlist::{Driver, Net, Op};
+use glint::keys::presets;
+use glint::config::{Config, Value};
+
+/// Five functions with operands of five bits: one and two operands, one and two results, results with and without a sign, shifts
+/// by single bits and by pairs of bits, and an operand that is limited to its domain.
+const SMALL: &str = "device = \"unit\"\nname = \"few\"
+[functions.rcp]
+operands.x = { bits = 5, fraction = 2 }
+results.r = { formula = \"1 / x\", fraction = 3, where = \"x > 0\" }
+[functions.rsqrt]
+operands.x = { bits = 5, fraction = 2 }
+results.r = { formula = \"1 / sqrt(x)\", fraction = 4, where = \"x > 0\" }
+[functions.log2]
+operands.x = { from = \"1/2\", to = 4, fraction = 3, outside = \"clamp\" }
+results.r = { formula = \"log2(x)\", fraction = 4 }
+[functions.divide]
+operands.x = { bits = 4, fraction = 4, signed = true }
+operands.y = { bits = 4, fraction = 4 }
+results.q = { formula = \"x / y\", fraction = 3, where = \"y > 0.2\" }
+results.sum = { formula = \"x + y\", fraction = 4 }
+[functions.exp2]
+operands.x = { bits = 5, fraction = 2, signed = true }
+results.r = { formula = \"2^x\", fraction = 4 }
+";
+
+#[test]
+fn every_opcode_gives_the_results_of_its_function() {
+    for architecture in [
+        "",
+        "architecture = \"pipelined\"\n",
+        "architecture = \"pipelined\"\npipeline.interval = 3\n",
+    ] {
+        let text = SMALL.replacen("[functions", &format!("{architecture}[functions"), 1);
+        let core = parsed("few.toml", &text);
+        assert_agrees(&core, 3000, 1, architecture);
+        assert_results_as_stated(&core, architecture);
+    }
+}
+
+#[test]
+fn an_opcode_without_a_function_gives_0() {
+    let core = parsed("few.toml", SMALL);
+    for opcode in 5..8 {
+        let mut raw = Vec::new();
+        core.contract.results(&[opcode, 7, 9], 0, &mut raw);
+        assert_eq!(raw, [0, 0], "opcode {opcode}");
+    }
+}
+
+/// All eight functions have one multiplier, one normaliser and two tables.
+#[test]
+fn the_functions_of_the_preset_share_the_costly_parts() {
+    let preset = presets::find("unit").expect("a preset");
+    let mut config = Config::defaults(&(device("unit").schema)(), "unit");
+    for (key, value) in preset.values {
+        config.set(&key, value);
+    }
+    let core = Core::new(device("unit"), config).expect("a core");
+    let roms = core.design.roms.iter().filter(|rom| !core.design.is_control_memory(rom)).count();
+    assert_eq!(roms, 2);
+    let is_product = |net: &Net| matches!(net.driver, Driver::Op(Op::Mul(..)));
+    let products = core.design.nets.iter().filter(|net| is_product(net)).count();
+    assert_eq!(products, 1);
+    assert_agrees(&core, 1000, 1, "unit");
+}
+
+#[test]
+fn opcodes_are_constants_in_verilog_and_c() {
+    let text = SMALL.replacen("[functions", "package.software = true\n[functions", 1);
+    let files = Emitted::new(&parsed("few.toml", &text), 1, 1).files;
+    let contents = |end: &str| {
+        let file = files.iter().find(|file| file.path.ends_with(end));
+        &file.unwrap_or_else(|| panic!("no {end}")).contents
+    };
+    assert!(contents("few_datapath.v").contains("localparam [2:0] OPCODE_LOG2 = 3'd2;"));
+    assert!(contents("few_model.h").contains("#define FEW_OPCODE_LOG2 2\n"));
+}
+
+/// A function of a unit has the error that is proved for the function, and the unit has the largest.
+#[test]
+fn a_unit_has_the_largest_bound_of_its_functions() {
+    let core = parsed("few.toml", SMALL);
+    let bounds = core.contract.bounds();
+    assert_eq!(bounds.outputs.len(), 2);
+    assert!(bounds.outputs[0].units < 1.0);
+    // A sum is exact.
+    assert_eq!(bounds.outputs[1].units, 0.0);
+    let Value::Table(functions) = core.config().value("functions") else { panic!("a table") };
+    assert_eq!(functions.0.len(), 5);
+}
