@@ -1,4 +1,4 @@
-//! The hardware description of the device `unit`: several functions behind one datapath, of which an opcode selects one.
+//! The hardware description of the device `unit`: several functions behind one datapath, selected by an opcode.
 //!
 //! The planner ([`glint_plan::find_unit`]) merges the plans of the functions into one list of fixed-point operations. The module
 //! `plan` builds its hardware, in which the functions share the normaliser, the tables, the multiplier and the shifters.

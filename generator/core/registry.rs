@@ -89,7 +89,7 @@ const EXPRESSION: Device = Device {
 
 const UNIT: Device = Device {
     name: "unit",
-    summary: "several functions behind one datapath, of which an opcode selects one",
+    summary: "several functions behind one datapath, selected by an opcode",
     schema: keys::unit::schema,
     parts: planned::unit,
     proved: true,

@@ -11,7 +11,7 @@ use glint_plan::{ExpressionStatement, MOST_FUNCTIONS, StatedOverflow, UnitPlan, 
 
 use super::expression;
 
-/// The tables of a function. Their names are those of the keys of the device `expression`.
+/// The tables of a function. They have the names of the keys of the device `expression`.
 const OPERANDS: &str = "operands";
 const PARTS: &str = "let";
 const RESULTS: &str = "results";

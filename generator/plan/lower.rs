@@ -170,9 +170,9 @@ pub(super) struct PlanSearch<'s> {
 /// How the planner finds the polynomials of the functions in a plan.
 #[derive(Clone, Debug)]
 pub(super) enum TableRule {
-    /// Those with the fewest look-up tables by the estimate.
+    /// The polynomials with the fewest look-up tables by the estimate.
     Cheapest,
-    /// Those of degree 2 with these widths. A function that has no such polynomials has the cheapest.
+    /// Polynomials of degree 2 with these widths. A function that has no such polynomials has the cheapest.
     Shared(SharedWidths),
 }
 

@@ -1,8 +1,8 @@
-//! Plans a unit: several functions behind one datapath, of which an opcode selects one.
+//! Plans a unit: several functions behind one datapath, selected by an opcode.
 //!
 //! Each function has a plan of its own, with a proved error. The plans share the bit widths of their tables ([`find_set`]). The
 //! module `merge` then makes one plan of all: operations of the same kind become one operation, in front of which choices by the
-//! opcode select the inputs. For every opcode, the results of the merged plan are those of the function's own plan.
+//! opcode select the inputs. For every opcode, the merged plan has the results of the function's own plan.
 
 mod align;
 mod merge;

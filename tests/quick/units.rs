@@ -1,13 +1,13 @@
-//! Tests units: several functions behind one datapath, of which an opcode selects one.
+//! Tests units: several functions behind one datapath, selected by an opcode.
 //!
 //! The contract of a unit takes its results from the plan of each function alone, and the exact values from the formulas. Every
 //! combination of opcode and operands is simulated, and each result must be the one of the contract.
 
 use crate::common::cores::{Emitted, assert_agrees, assert_results_as_stated, device, parsed};
+use glint::config::{Config, Value};
 use glint::core::Core;
 use glint::hdl::netlist::{Driver, Net, Op};
 use glint::keys::presets;
-use glint::config::{Config, Value};
 
 /// Five functions with operands of five bits: one and two operands, one and two results, results with and without a sign, shifts
 /// by single bits and by pairs of bits, and an operand that is limited to its domain.
@@ -65,7 +65,8 @@ fn the_functions_of_the_preset_share_the_costly_parts() {
     }
     let core = Core::new(device("unit"), config).expect("a core");
     let roms = core.design.roms.iter().filter(|rom| !core.design.is_control_memory(rom)).count();
-    assert_eq!(roms, 2);
+    // The coefficients, and the page of each function.
+    assert_eq!(roms, 4);
     let is_product = |net: &Net| matches!(net.driver, Driver::Op(Op::Mul(..)));
     let products = core.design.nets.iter().filter(|net| is_product(net)).count();
     assert_eq!(products, 1);

@@ -117,7 +117,7 @@ impl Lowering<'_> {
     }
 
     /// Returns the nodes of floor(a / b) and of the remainder a − b · floor(a / b), for a divisor above 0. Both are exact. The
-    /// location `span` is that of the whole part. For example, 7 and 2 give 3 and 1, and −7 and 2 give −4 and 1.
+    /// location `span` is the one of the whole part. For example, 7 and 2 give 3 and 1, and −7 and 2 give −4 and 1.
     ///
     /// # Errors
     /// Fails if a or b is rounded, if the divisor may be 0 or below 0, or if a node has too many bits.

@@ -7,7 +7,7 @@ use crate::plan::ExpressionPlan;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum SharedKind {
     Normaliser,
-    /// A table whose widths are those of the set.
+    /// A table with the widths of the set.
     Table,
     Product,
     LeftShift,
@@ -16,7 +16,7 @@ pub(super) enum SharedKind {
 
 /// An operation of the merged plan: for each function, the node of its plan that this operation computes, if it has one.
 #[derive(Clone, Debug)]
-pub(super) struct Slot {
+pub(super) struct MergedOperation {
     pub(super) kind: SharedKind,
     pub(super) members: Vec<Option<NodeId>>,
 }
@@ -26,10 +26,10 @@ pub(super) struct Slot {
 ///
 /// The plans are added one after the other, the longest first. For each, dynamic programming finds the alignment with the slots so
 /// far that shares most operations.
-pub(super) fn slots(sequences: &[Vec<(NodeId, SharedKind)>]) -> Vec<Slot> {
+pub(super) fn slots(sequences: &[Vec<(NodeId, SharedKind)>]) -> Vec<MergedOperation> {
     let mut order: Vec<usize> = (0..sequences.len()).collect();
     order.sort_by_key(|function| std::cmp::Reverse(sequences[*function].len()));
-    let mut slots: Vec<Slot> = Vec::new();
+    let mut slots: Vec<MergedOperation> = Vec::new();
     for function in order {
         slots = with_sequence(slots, function, &sequences[function], sequences.len());
     }
@@ -64,11 +64,11 @@ pub(super) fn shared_operations(
 
 /// Adds the operations of a function to the slots: to slots of the same kind as far as possible, and otherwise to new slots.
 fn with_sequence(
-    slots: Vec<Slot>,
+    slots: Vec<MergedOperation>,
     function: usize,
     sequence: &[(NodeId, SharedKind)],
     functions: usize,
-) -> Vec<Slot> {
+) -> Vec<MergedOperation> {
     // The entry `[s][o]` is the largest number of shared operations among the slots from s on and the operations from o on.
     let mut shared = vec![vec![0; sequence.len() + 1]; slots.len() + 1];
     for s in (0..slots.len()).rev() {
@@ -102,8 +102,8 @@ fn with_sequence(
     merged
 }
 
-fn own_slot(kind: SharedKind, node: NodeId, function: usize, functions: usize) -> Slot {
+fn own_slot(kind: SharedKind, node: NodeId, function: usize, functions: usize) -> MergedOperation {
     let mut members = vec![None; functions];
     members[function] = Some(node);
-    Slot { kind, members }
+    MergedOperation { kind, members }
 }

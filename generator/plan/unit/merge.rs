@@ -1,6 +1,6 @@
 //! Merges the plans of several functions into one plan with an opcode.
 //!
-//! The nodes of each plan are copied in their order. Where several functions have an operation in the same slot ([`Slot`]), the
+//! The nodes of each plan are copied in their order. Where several functions have an operation in the same slot ([`MergedOperation`]), the
 //! merged plan has a single node for all, and choices by the opcode select its inputs. Shared operations work on raw integers, so
 //! that the functions may have different binary points. Two functions that compute the same value share its nodes too.
 
@@ -10,7 +10,7 @@ use glint_approximate::{Outside, Piecewise, SharedWidths};
 use glint_base::fixed::{Format, Rounding};
 use glint_formula::Enclosure;
 
-use super::align::{SharedKind, Slot, shared_operations, slots};
+use super::align::{MergedOperation, SharedKind, shared_operations, slots};
 use super::tables::{paged, wide_enough};
 use super::{UnitFunction, opcode_bits};
 use crate::node::{Approximation, NodeId, Operation, PlanNode};
@@ -241,7 +241,7 @@ impl Merger<'_> {
     }
 
     /// Adds the node of a slot, and the nodes of its functions up to it.
-    fn add_slot(&mut self, slot: &Slot) -> Result<(), PlanRefusal> {
+    fn add_slot(&mut self, slot: &MergedOperation) -> Result<(), PlanRefusal> {
         let mut members = Vec::new();
         for (function, node) in slot.members.iter().enumerate() {
             if let Some(node) = node {
@@ -347,7 +347,7 @@ impl Merger<'_> {
         Ok(())
     }
 
-    /// Returns the word and the places of a normaliser by pairs of bits, from those of a normaliser by single bits. After an odd
+    /// Returns the word and the places of a normaliser by pairs of bits, from a normaliser by single bits. After an odd
     /// number of places the word has a zero at its end, so that the shift back loses nothing.
     fn by_pairs(&mut self, normalised: NodeId, places: NodeId) -> Result<[NodeId; 2], PlanRefusal> {
         let width = self.plan.node(normalised).format.frac;
@@ -369,29 +369,33 @@ impl Merger<'_> {
         }
         let table = paged(&tables);
         let mut numbers = vec![None; self.functions.len()];
-        let mut pages = vec![None; self.functions.len()];
+        // The first page of each function, and the further pages that the top of an operand's number selects.
+        let mut first_pages = vec![0; 1 << opcode_bits(self.functions.len())];
+        let mut further_pages = vec![None; self.functions.len()];
+        let no_further_page = self.plan.constant("zero", 0, 0)?;
         for (member, (function, node)) in members.iter().enumerate() {
             let operand = self.own(*function).node(*node).operation.inputs()[0];
             let operand = self.nodes[*function][operand.0];
             let page_bits = table.page_bits[member];
-            let number =
-                self.number(*function, operand, &tables[member], table.number_bits + page_bits)?;
-            let first = self.plan.constant("page", table.pages[member] as i128, 0)?;
+            let bits = table.number_bits + page_bits;
+            let number = self.number(*function, operand, &tables[member], bits)?;
             let name = &self.functions[*function].name.clone();
             let in_page = Format::unsigned(table.number_bits as i32, 0);
             numbers[*function] = Some(self.narrow(&format!("{name}_in_page"), number, in_page)?);
-            pages[*function] = Some(match page_bits {
-                0 => first,
+            first_pages[*function] = table.pages[member] as i128;
+            further_pages[*function] = Some(match page_bits {
+                0 => no_further_page,
                 bits => {
                     let upper = self.plan.scale("number_above", number, -in_page.int)?;
                     let format = Format::unsigned(bits as i32, 0);
-                    let further = self.narrow(&format!("{name}_further_page"), upper, format)?;
-                    self.plan.add(&format!("{name}_page"), first, further)?
+                    self.narrow(&format!("{name}_further_page"), upper, format)?
                 }
             });
         }
         let number = self.selected("number", &numbers)?;
-        let page = self.selected("page_of_function", &pages)?;
+        let first = self.plan.lookup("pages", self.opcode, first_pages, 0)?;
+        let further = self.selected("further_page", &further_pages)?;
+        let page = self.plan.add("page", first, further)?;
         let upper = self.plan.scale("page_above", page, table.number_bits as i32)?;
         let address = self.plan.add("place", upper, number)?;
         let address = self.narrow("place_in_table", address, table.polynomials.operand)?;

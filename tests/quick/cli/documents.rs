@@ -1,4 +1,4 @@
-//! Runs the commands on the pages `README.md`, `docs/shading.md` and `docs/tutorial.md`, with the configurations that these
+//! Runs the commands on the pages `README.md`, `docs/shading.md`, `docs/tutorial.md` and `docs/units.md`, with the configurations that these
 //! pages show. The module also tests that `docs/SUMMARY.md` lists every page.
 
 use std::collections::BTreeSet;
@@ -133,6 +133,11 @@ fn commands_of_the_readme_run() {
 #[test]
 fn commands_on_shading_run() {
     run_all("docs/shading.md");
+}
+
+#[test]
+fn commands_on_units_run() {
+    run_all("docs/units.md");
 }
 
 #[test]
