@@ -137,6 +137,11 @@ fn record(fields: &[Key], shorthand: Option<&str>) -> Json {
         }
         of_fields.insert(field.name.to_owned(), schema);
     }
+    if fields.iter().all(|field| matches!(field.kind, KeyKind::Table { .. })) {
+        let doc = "A configuration of the device expression, whose tables the entry has.";
+        let file = json!({ "type": "string", "description": doc });
+        properties(&mut entry).insert("file".to_owned(), file);
+    }
     match fields.iter().find(|field| Some(field.name) == shorthand) {
         Some(field) => json!({ "anyOf": [of_key(field), entry] }),
         None => entry,

@@ -376,6 +376,11 @@ impl TomlReader<'_> {
         let mut given = Vec::new();
         let mut is_good = true;
         if let DeValue::Table(entry) = entry.get_ref() {
+            if let Some(path) = entry.get(FILE)
+                && table.has_only_tables()
+            {
+                return self.record_of_file(table, name, entry.len(), path);
+            }
             let mut in_order: Vec<_> = entry.iter().collect();
             in_order.sort_by_key(|(field, _)| field.span().start);
             for (field, value) in in_order {
@@ -402,6 +407,83 @@ impl TomlReader<'_> {
             is_good = false;
         }
         is_good.then_some(given)
+    }
+
+    /// Returns the fields of an entry that another configuration has: `file = "fog.toml"`. The fields are the tables of this file
+    /// with the same names; its other keys do not count. Reports a mistake if the file cannot be read, if it configures another
+    /// device than [`DEVICE_OF_FILES`], if it has a wrong field, or if the entry has further fields.
+    fn record_of_file(
+        &mut self,
+        table: &EntriesOf<'_>,
+        name: &str,
+        fields: usize,
+        path: &Spanned<DeValue>,
+    ) -> Option<Vec<(&'static str, Value)>> {
+        let within = format!("{}.{name}.{FILE}", table.name);
+        self.problems.locate(&within, path.span());
+        let given = match fields {
+            1 => self.fields_of_file(table, path),
+            _ => Err((
+                format!("`{}.{name}` has `{FILE}` and other fields", table.name),
+                format!("remove `{FILE}`, or the other fields"),
+            )),
+        };
+        match given {
+            Ok(given) => Some(given),
+            Err((message, remedy)) => {
+                self.report(&within, path.span(), message, remedy);
+                None
+            }
+        }
+    }
+
+    /// Returns the fields as [`Self::record_of_file`] does, or a message and a remedy.
+    fn fields_of_file(
+        &self,
+        table: &EntriesOf<'_>,
+        path: &Spanned<DeValue>,
+    ) -> Result<Vec<(&'static str, Value)>, (String, String)> {
+        let remedy =
+            || "give the path of a configuration, relative to this configuration".to_owned();
+        let DeValue::String(path) = path.get_ref() else {
+            return Err((format!("`{FILE}` must be a string, not {}", described(path)), remedy()));
+        };
+        let shown_path = shown(path);
+        let unread = |error: &dyn std::fmt::Display| {
+            (format!("`{shown_path}` cannot be read: {error}"), remedy())
+        };
+        let text = points::text(&self.directory.join(&**path)).map_err(|error| unread(&error))?;
+        let document = DeTable::parse(&text).map_err(|error| unread(&error.message()))?;
+        let document = document.get_ref();
+        let device = document.get("device").and_then(|device| device.get_ref().as_str());
+        if device != Some(DEVICE_OF_FILES) {
+            let message = format!("`{shown_path}` does not configure the device {DEVICE_OF_FILES}");
+            return Err((message, remedy()));
+        }
+        let mut reader = TomlReader {
+            text: &text,
+            directory: self.directory,
+            newlines: text.match_indices('\n').map(|(offset, _)| offset).collect(),
+            problems: Problems::of_file(&shown_path, &text),
+            broken: BTreeSet::new(),
+            valid_toml: true,
+        };
+        let mut given = Vec::new();
+        for field in table.fields {
+            if let Some(DeValue::Table(entries)) = document.get(field.name).map(Spanned::get_ref)
+                && let Some(inner) = EntriesOf::key(field, field.name)
+            {
+                let value = reader.entries_within(&inner, entries);
+                given.extend(value.map(|value| (field.name, value)));
+            }
+        }
+        match reader.problems.iter().next() {
+            None => Ok(given),
+            Some(problem) => {
+                let message = format!("in `{shown_path}`: {}", problem.error.message);
+                Err((message, problem.error.remedy.clone()))
+            }
+        }
     }
 
     /// Returns the value of a field, or reports that it is wrong.
@@ -511,7 +593,18 @@ struct EntriesOf<'k> {
     shorthand: Option<&'static str>,
 }
 
+/// The field of an entry that is another configuration.
+const FILE: &str = "file";
+
+/// The device that such a configuration must have.
+const DEVICE_OF_FILES: &str = "expression";
+
 impl<'k> EntriesOf<'k> {
+    /// Returns whether each field is itself a table, so that an entry can be another configuration.
+    fn has_only_tables(&self) -> bool {
+        self.fields.iter().all(|field| matches!(field.kind, KeyKind::Table { .. }))
+    }
+
     /// Returns `None` if the key is not for a table.
     fn key(key: &'k Key, name: &'k str) -> Option<Self> {
         match &key.kind {

@@ -63,7 +63,7 @@ fn has_decimal_commas(line: &str) -> bool {
 
 /// Reads a file in UTF-8, and converts the line ends of any system to newlines. The path must name a regular file, because a
 /// pipe may never end.
-fn text(path: &Path) -> io::Result<String> {
+pub(super) fn text(path: &Path) -> io::Result<String> {
     let refused = |message: String| Err(io::Error::new(io::ErrorKind::InvalidInput, message));
     if !fs::metadata(path)?.is_file() {
         return refused("the path is not a regular file".to_owned());

@@ -257,7 +257,7 @@ mod tests {
         let (names, statements) = functions(8);
         let unit = find_unit(&names, &statements).unwrap();
         let mut compared = 0;
-        for opcode in 0..unit.functions.len() {
+        for (opcode, name) in names.iter().enumerate() {
             let statement = &unit.functions[opcode].planned.statement;
             let has_second = statement.operands.len() > 1;
             for a in 0..256 {
@@ -278,7 +278,7 @@ mod tests {
                         continue;
                     }
                     let [merged, own] = unit.both_results(opcode, &[a, b]);
-                    assert_eq!(merged, own, "{} of {a} and {b}", names[opcode]);
+                    assert_eq!(merged, own, "{name} of {a} and {b}");
                     compared += 1;
                 }
             }

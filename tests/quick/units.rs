@@ -9,6 +9,8 @@ use glint::core::Core;
 use glint::hdl::netlist::{Driver, Net, Op};
 use glint::keys::presets;
 
+use crate::workspace::Workspace;
+
 /// Five functions with operands of five bits: one and two operands, one and two results, results with and without a sign, shifts
 /// by single bits and by pairs of bits, and an operand that is limited to its domain.
 const SMALL: &str = "device = \"unit\"\nname = \"few\"
@@ -83,6 +85,38 @@ fn opcodes_are_constants_in_verilog_and_c() {
     };
     assert!(contents("few_datapath.v").contains("localparam [2:0] OPCODE_LOG2 = 3'd2;"));
     assert!(contents("few_model.h").contains("#define FEW_OPCODE_LOG2 2\n"));
+}
+
+/// A function can be a configuration of `expression` in a file of its own, whose other keys do not count.
+#[test]
+fn a_function_can_be_in_a_file() {
+    let unit = "device = \"unit\"\n[functions.fog]\nfile = \"fog.toml\"\n";
+    let dir = Workspace::with("sfu.toml", unit);
+    let fog = "device = \"expression\"\narchitecture = \"pipelined\"
+operands.z = { bits = 6, fraction = 6 }\nlet.twice = \"2 * z\"
+results.f = { formula = \"1 - twice / 4\", fraction = 6 }\n";
+    dir.write("fog.toml", fog);
+    let said = dir.done(["eval", "sfu.toml", "opcode=0", "a=32"]);
+    assert!(said.contains("| r_out  |    48 |   48.000000000 |"), "{said}");
+    // Each with the file of the function, and what the message says.
+    let cases = [
+        ("device = \"function\"\n", "does not configure the device expression"),
+        ("device = \"expression\"\noperands = 3 3\n", "`fog.toml` cannot be read"),
+        (
+            &fog.replace("bits = 6", "bits = 99"),
+            "in `fog.toml`: `operands.z.bits` = 99 is out of range",
+        ),
+        (&fog.replace("2 * z", "2 * y"), "there is no operand and no earlier part `y`"),
+    ];
+    for (file, message) in cases {
+        dir.write("fog.toml", file);
+        dir.glint(["generate", "sfu.toml"]).refused(1, &[message]);
+    }
+    dir.write("sfu.toml", unit.replace("fog.toml", "haze.toml"));
+    dir.glint(["generate", "sfu.toml"]).refused(1, &["`haze.toml` cannot be read"]);
+    dir.write("sfu.toml", format!("{unit}operands.z = {{ bits = 6, fraction = 6 }}\n"));
+    dir.glint(["generate", "sfu.toml"])
+        .refused(1, &["`functions.fog` has `file` and other fields"]);
 }
 
 /// A function of a unit has the error that is proved for the function, and the unit has the largest.

@@ -50,9 +50,8 @@ pub(super) fn merged(
     for slot in slots(&merger.sequences()) {
         merger.add_slot(&slot)?;
     }
-    for function in 0..functions.len() {
-        let all = functions[function].planned.plan.nodes.len();
-        merger.copy_until(function, all)?;
+    for (number, function) in functions.iter().enumerate() {
+        merger.copy_until(number, function.planned.plan.nodes.len())?;
     }
     for (number, (name, format)) in results.iter().enumerate() {
         merger.add_result(number, name, *format)?;
