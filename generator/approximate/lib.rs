@@ -175,7 +175,9 @@ impl TargetFunction {
         Ok(Enclosure::between(low * unit, high * unit))
     }
 
-    /// Returns the width of an interval of values that is exact enough for the allowed error, in units of the result's last bit.
+    /// Returns the largest width of an interval from `f64` that [`TargetFunction::limits`] accepts, in units of the result's
+    /// last bit. If the interval is wider, [`TargetFunction::limits`] evaluates the formula again with more bits. For example,
+    /// an allowed error of 1 unit gives 1/16.
     fn tolerance(&self) -> f64 {
         ((self.error - 0.5) / 8.0).max(1.0 / 1024.0)
     }

@@ -383,7 +383,9 @@ impl<'s> Table<'s> {
         formats
     }
 
-    /// Returns the number of bits by which each coefficient except the constant is wider than a multiplier's factor.
+    /// Returns by how many bits each coefficient is too wide for a multiplier of an FPGA, whose factors have [`FACTOR`] bits
+    /// with the sign. The constant is left out, because no multiplier reads it. For example, a signed coefficient of 20 bits
+    /// gives 2, and one of 18 bits gives 0.
     fn excess(formats: &[Format]) -> impl Iterator<Item = u32> {
         formats.iter().skip(1).map(|format| {
             let signed_width = format.width() + u32::from(!format.signed);

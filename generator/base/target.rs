@@ -1,9 +1,12 @@
-//! Data of the FPGA families that Glint supports: delays, multipliers, commands of Yosys, chips, and weights for estimates of
-//! cost. Each family has a file of its own, except the two families of Gowin, which share one. The file `generic.rs` has the
-//! delays of a device that does not exist.
+//! Data of the FPGA families that Glint supports: delays, multipliers, Yosys commands, chips, and the weights with which Glint
+//! estimates the area of a core. Each family has its own file, except that the two families of Gowin share `gowin.rs`. The file
+//! `generic.rs` has invented delays, for a pipeline whose FPGA is not chosen yet (`pipeline.target = "generic"`).
 //!
 //! A delay is in nanoseconds and includes the wire to the next cell. The head of a family's file says which of its delays were
 //! measured, and how. The script `benches/pipeline/delays.py` measures delays.
+//!
+//! The heads have tables of measurements. In these tables, `any of 4` is the OR of 4 bits, and `equal 16` compares two numbers
+//! of 16 bits. `words of 5 bits of address` reads a table of 32 words that is stored in look-up tables.
 
 mod ecp5;
 mod gatemate;

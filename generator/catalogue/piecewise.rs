@@ -1,8 +1,8 @@
-//! Builds the hardware of a piecewise polynomial: a table of coefficients, and Horner's rule with one product and one sum in each
-//! step. The devices `function`, `expression`, `blinn` and `gauss` use it.
+//! Builds the hardware of a piecewise polynomial: a table of coefficients, and Horner's rule with one product and one sum in
+//! each step. The devices `function`, `expression`, `unit`, `blinn` and `gauss` use it.
 //!
-//! The position of the operand within its domain addresses the table, which gives the coefficients of the operand's segment. One
-//! multiplier serves all polynomials of a device; in a pipeline, each step can get its own.
+//! The position of the operand within its domain addresses the table, which gives the coefficients of the operand's segment.
+//! One multiplier serves all polynomials of a device; in a pipeline, each step can get its own.
 
 use std::ops::Range;
 

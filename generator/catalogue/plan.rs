@@ -328,7 +328,9 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
         steps
     }
 
-    /// Appends a number to `name` if an operand's name begins with it.
+    /// Returns `name` as the name of a net of the multiplier, or `name` with a number if an operand's name begins with `name`.
+    /// Otherwise the net could have the same name as a net of the operand. For example, `product` becomes `product2` if there
+    /// is an operand `product`.
     fn beside_operands(&self, name: &str) -> String {
         let mut free = name.to_owned();
         let mut number = 2;

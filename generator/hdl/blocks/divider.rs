@@ -129,7 +129,8 @@ impl<'d> Divider<'d> {
         self.quotient.q()
     }
 
-    /// Loads dividend and divisor at the end of the clock.
+    /// Returns the settings of a microinstruction that loads dividend and divisor. The registers take the values at the end of
+    /// its clock.
     #[track_caller]
     pub fn load(&self) -> [StepSetting; 4] {
         [
@@ -140,7 +141,8 @@ impl<'d> Divider<'d> {
         ]
     }
 
-    /// Computes the next bit of the quotient at the end of the clock.
+    /// Returns the settings of a microinstruction that computes the next bit of the quotient. The register takes the bit at the
+    /// end of the clock. A quotient of Q bits needs Q executions of this microinstruction after [`Self::load`].
     #[track_caller]
     pub fn step(&self) -> [StepSetting; 4] {
         [

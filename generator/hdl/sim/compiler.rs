@@ -134,7 +134,8 @@ impl<'a> Compiler<'a> {
         slot
     }
 
-    /// Returns the value of a slot if it is a constant.
+    /// Returns the value of a slot, a place in the simulator's memory for the value of a net. Returns `None` if the value is
+    /// not constant. The compiler simplifies instructions with constant operands.
     pub(super) fn known_value(&self, slot: Slot) -> Option<u64> {
         let constant = self.sources[slot as usize] == 0;
         constant.then(|| self.initial[slot as usize][0])

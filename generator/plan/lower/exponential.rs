@@ -96,9 +96,12 @@ fn scaled_by(factor: &Expression, formula: &Expression) -> Expression {
 }
 
 impl Lowering<'_> {
-    /// Returns the node of a constant times a logarithm. `function` must be the formula with `x` in the place of its operand, the
-    /// expression `core`. Returns `None` for any other function, if its operand may be 0 or less, or if the largest operand is
-    /// less than `FEW_OCTAVES` times the smallest. Fails if a part has too many bits, no finite values, or no rule.
+    /// Returns the node of a constant times a logarithm, such as `3 * log2(a)`. `core` is the operand of the logarithm, here
+    /// `a`, and `function` is the formula with `x` in place of `core`: `3 * log2(x)`.
+    ///
+    /// Returns `None` for any other function, or if `core` may be 0 or less. Also returns `None` if the largest value of `core`
+    /// is less than `FEW_OCTAVES` times the smallest: one table then computes the whole logarithm. Fails if a part of the
+    /// formula has too many bits or no finite values, or if the planner has no rule for an operation.
     pub(super) fn logarithm(
         &mut self,
         core: &Expression,

@@ -89,7 +89,9 @@ pub(super) fn is_size_of(part: &Expression, core: &Expression) -> bool {
     matches!(&part.kind, Kind::Unary(Function::Abs, a) if **a == *core)
 }
 
-/// Returns whether a part limits `core`: it is a minimum or a maximum of `core` and a constant.
+/// Returns whether `part` limits `core`: `part` is the minimum or the maximum of `core` and a constant. For example, the part
+/// `max(0, x)` limits x. The planner then lets a table read the limited value, because a table over all values of x would be
+/// larger.
 pub(super) fn is_limit_of(part: &Expression, core: &Expression) -> bool {
     match &part.kind {
         Kind::Binary(Operator::Min | Operator::Max, a, b) => {

@@ -212,8 +212,9 @@ impl Lowering<'_> {
         self.plan.choose(&format!("{name}_with_sign"), is_negative, [size, negated])
     }
 
-    /// Returns whether the formulas of the statement have both the sine and the cosine of the same angle: `core` times
-    /// 2^`power` in quarter turns.
+    /// Returns whether the formulas of the results contain both the sine and the cosine of one angle, so that both can share
+    /// two tables. The angle in quarter turns is `core` times 2^`power`. For example, `sin(2 * pi * x)` and `cos(2 * pi * x)`
+    /// have the `core` x and the `power` 2.
     fn has_sine_and_cosine(&self, core: &Expression, power: i32) -> bool {
         let has = |kind: Function| {
             let wanted = (kind, power);

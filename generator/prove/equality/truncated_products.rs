@@ -51,7 +51,9 @@ impl PipelineComparison<'_> {
         Ok(true)
     }
 
-    /// Returns how `factor` follows from `of`, a factor of the pipeline, if the solver proves it.
+    /// Returns how `factor`, a factor of the core's product, follows from `of`, a factor of the pipeline's product. Either both
+    /// are equal, or `of` has only the low bits of `factor`, with zeros above them. Returns `None` if the solver proves
+    /// neither.
     fn made(&mut self, factor: VectorTermId, of: VectorTermId) -> Result<Option<Factor>> {
         if self.same(factor, of)? {
             return Ok(Some(Factor::Same));

@@ -1,8 +1,12 @@
-//! Checks the error bound with a generated C program that computes every combination of operands. The program compares the
-//! results of the core's C model with the formulas, by MPFR and the C library, and not by Glint's arithmetic.
+//! Checks the error bound with a generated C program. The program computes the result of the core's C model for every
+//! combination of operands, and compares it with the exact value of the formula. It evaluates the formula with MPFR and the C
+//! library, so that the verdict does not depend on Glint's own arithmetic.
 //!
-//! For an expression, the program uses MPFR only if doubles, with a margin for their rounding, cannot decide. Without
-//! `--full`, the check is left out for more than 2^24 combinations of an expression, or 2^20 operands of a function.
+//! For the device `function`, the program uses MPFR at every operand. For `expression`, the program evaluates in doubles first.
+//! It uses MPFR only if the rounding errors of the doubles leave the verdict open.
+//!
+//! Without `--full`, `glint verify` skips this check if it would take minutes: for an `expression` with more than 2^24
+//! combinations of operands, and for a `function` with more than 2^20 operands.
 
 use std::fs;
 use std::path::Path;

@@ -202,7 +202,9 @@ impl<'a> Printer<'a> {
         }
     }
 
-    /// Returns the expression that computes a value from its operands, even if the value has a variable.
+    /// Returns the C expression that computes a value from its operands, even if a C variable already holds the value.
+    /// [`Printer::lines`] needs this expression to define the variable. Later statements use [`Printer::text`], which prefers
+    /// the variable.
     fn expression(&self, id: NodeId) -> CExpression {
         let node = self.graph.node(id);
         let width = node.format.width();

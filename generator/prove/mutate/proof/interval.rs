@@ -1,9 +1,10 @@
-//! Computes the interval of values of each net from the cell that drives it and the intervals of the cell's operands. The
-//! proofs about faults try only values within these intervals.
+//! Computes the interval of values that each net can have, from the cell that drives the net and the intervals of the cell's
+//! operands. The proofs about faults try only values within these intervals.
 //!
-//! The device's description also states intervals. The module uses them only for registers that are not internal and whose
-//! interval contains 0, because a register is 0 at power-up. The stated interval of an operand of a shared multiplier may hold
-//! for some of its products only.
+//! The device's description states intervals too, but a stated interval may be too narrow for a proof. For example, the stated
+//! interval of a shared multiplier's operand may hold for only some of the products. The module trusts a stated interval only
+//! for a register that is not of the kind `Internal`, such as an operand register. The interval must also contain 0, because
+//! every register is 0 at power-up.
 
 use super::pairs::{self, Pairs};
 use glint_base::interval::{Interval, fits, hull, of_values};
