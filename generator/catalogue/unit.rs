@@ -21,7 +21,7 @@ pub fn describe(d: &Designer, config: &Config, planned: &UnitPlan) {
     }
     let width = planned.operands[0].format.width();
     for (opcode, function) in planned.functions.iter().enumerate() {
-        let name = format!("OPCODE_{}", function.name.to_uppercase());
+        let name = format!("FUNCTION_{}", function.name.to_uppercase());
         let results = function.planned.statement.results.iter();
         let formulas: Vec<String> = results.map(|result| result.formula.python()).collect();
         let doc = formulas.join(", ");

@@ -11,6 +11,9 @@ use glint_plan::{ExpressionStatement, MOST_FUNCTIONS, StatedOverflow, UnitPlan, 
 
 use super::expression;
 
+/// The longest name of a function, as for modules.
+const LONGEST_NAME: usize = 60;
+
 /// The tables of a function. They have the names of the keys of the device `expression`.
 const OPERANDS: &str = "operands";
 const PARTS: &str = "let";
@@ -92,12 +95,16 @@ fn within(function: &TableEntry, error: ConfigError) -> ConfigError {
 }
 
 /// Checks that the names of functions are legal identifiers, and differ in more than upper and lower case, because the emitted files
-/// define constants such as `OPCODE_RCP`.
+/// define constants such as `FUNCTION_RCP`.
 fn check_names(functions: &[TableEntry]) -> Result<(), ConfigError> {
     for (number, function) in functions.iter().enumerate() {
         let name = &function.name;
         let key = format!("functions.{name}");
         let remedy = "give the function another name";
+        if name.chars().count() > LONGEST_NAME {
+            let message = format!("the name of a function has at most {LONGEST_NAME} letters");
+            return Err(ConfigError::new(key, message, remedy));
+        }
         if let Err(reason) = identifier::check(name) {
             let message = format!("`{name}` cannot be the name of a function: {reason}");
             return Err(ConfigError::new(key, message, remedy));

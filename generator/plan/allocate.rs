@@ -211,7 +211,11 @@ impl ExcessiveResult {
         largest.1.ok_or_else(|| self.refusal(statement, plan))
     }
 
-    fn refusal(&self, statement: &ExpressionStatement, plan: &ExpressionPlan) -> PlanRefusal {
+    pub(super) fn refusal(
+        &self,
+        statement: &ExpressionStatement,
+        plan: &ExpressionPlan,
+    ) -> PlanRefusal {
         let message = format!(
             "the error of `{}` {} for {}, with any widths of the parts",
             statement.results[self.result].name,

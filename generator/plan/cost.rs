@@ -89,6 +89,11 @@ impl ExpressionPlan {
         matches!(self.node(id).operation, Operation::Constant { raw: 0, .. })
     }
 
+    /// Returns the number of products of all nodes.
+    pub(super) fn count_products(&self) -> usize {
+        (0..self.nodes.len()).map(|at| self.products(NodeId(at))).sum()
+    }
+
     /// Returns the number of products that a node computes. For example, a table of polynomials of degree 2 computes two.
     pub fn products(&self, id: NodeId) -> usize {
         match &self.node(id).operation {

@@ -59,6 +59,9 @@ const BITS_OF_CELL: f64 = 16.0;
 /// The look-up tables of a table that a function of a unit has for itself, with its steps of Horner's rule, about.
 const CELLS_OF_OWN_TABLE: f64 = 300.0;
 
+/// The most guard bits that the planner adds because polynomials have other errors than estimated. Each addition searches them again.
+const MOST_CORRECTIONS: usize = 12;
+
 /// The most by which an evaluation of a formula can exceed an error, in units of the last bit.
 const EVALUATION_ERROR: f64 = 1e-6;
 
@@ -182,15 +185,7 @@ fn find_with(
 ) -> Result<ProvedPlan, PlanRefusal> {
     let PlanCandidate { plan: whole, divisions } = smallest_candidate(statement, tables)?;
     let (plan, renumbered) = whole.with_reductions()?;
-    let [first, second] = plan.multiplier_widths();
-    if first + second > MAX_WIDTH {
-        let message = format!(
-            "one multiplier for all products would give numbers of {} bits, more than {MAX_WIDTH}",
-            first + second
-        );
-        let remedy = "give the operands fewer bits, or the results fewer fraction bits";
-        return Err(PlanRefusal::new(message, remedy));
-    }
+    check_multiplier(&plan)?;
     let enclosed = enclosed_errors(statement, &whole, divisions.max(DIVISIONS))?;
     let mut bounds = enclosed.clone();
     let mut proof = ProofKind::Enclosed;
@@ -220,6 +215,34 @@ fn find_with(
     }
     let statement = statement.clone();
     Ok(ProvedPlan { statement, plan, whole_functions: whole, bounds, enclosed, shares, proof })
+}
+
+/// Checks that one multiplier can compute all products of a plan. Fails if a product would have more bits than a net; the refusal
+/// concerns the first result that reads the widest product.
+fn check_multiplier(plan: &ExpressionPlan) -> Result<(), PlanRefusal> {
+    let [first, second] = plan.multiplier_widths();
+    let width = first + second;
+    if width <= MAX_WIDTH {
+        return Ok(());
+    }
+    let message = match plan.count_products() {
+        1 => format!("the product would have {width} bits with its sign, more than {MAX_WIDTH}"),
+        _ => format!(
+            "one multiplier for all products would have {width} bits, more than {MAX_WIDTH}"
+        ),
+    };
+    let remedy = "give the operands fewer bits, or the results fewer fraction bits";
+    let refusal = PlanRefusal::new(message, remedy);
+    let is_product = |id: &usize| matches!(plan.nodes[*id].operation, Operation::Multiply(..));
+    let products = (0..plan.nodes.len()).filter(is_product);
+    let Some(widest) = products.max_by_key(|id| plan.nodes[*id].format.width()) else {
+        return Err(refusal);
+    };
+    let reader = (0..plan.results.len()).find(|result| plan.needed_for(*result)[widest]);
+    Err(match reader {
+        Some(result) => refusal.of_result(result),
+        None => refusal,
+    })
 }
 
 /// Returns the node of `plan` that has the rounding error of node number `at` of the plan without range reductions. This node
@@ -293,13 +316,18 @@ fn candidate_with(search: &PlanSearch<'_>, style: PlanStyle) -> Result<PlanCandi
     let statement = search.statement;
     let mut plan = with_polynomials(search, &guards, estimate)?;
     // The polynomials can have other formats than estimated, and then other errors.
-    while let Some(excess) = largest_excess(statement, &plan, divisions, &mut partitions) {
+    for _ in 0..MOST_CORRECTIONS {
+        let excess = largest_excess(statement, &plan, divisions, &mut partitions);
+        let Some(excess) = excess else { return Ok(PlanCandidate { plan, divisions }) };
         let source = excess.source(statement, &plan, &guards)?;
         guards.add_bit(source);
         let estimate = lowered(search, &guards, 0, &FoundPolynomials::default())?.0;
         plan = with_polynomials(search, &guards, estimate)?;
     }
-    Ok(PlanCandidate { plan, divisions })
+    match largest_excess(statement, &plan, divisions, &mut partitions) {
+        Some(excess) => Err(excess.refusal(statement, &plan)),
+        None => Ok(PlanCandidate { plan, divisions }),
+    }
 }
 
 /// Returns the plan with polynomials for all of its functions. Fails if a function has no polynomials, or if the plan cannot be

@@ -14,6 +14,7 @@ use glint_approximate::Outside;
 use glint_base::fixed::Format;
 
 use super::find::{ProvedPlan, find_set};
+use super::node::Operation;
 use super::plan::ExpressionPlan;
 use super::refusal::PlanRefusal;
 use super::statement::{ExpressionStatement, StatedOperand};
@@ -69,11 +70,26 @@ pub fn find_unit(
     let operands = operand_ports(&functions);
     let results = result_ports(&functions);
     let plan = merge::merged(&functions, &operands, &results).map_err(|refusal| (0, refusal))?;
+    if !reads_opcode(&plan) {
+        let message = "all functions of the unit compute the same results";
+        let remedy = "keep one of them, as a configuration of the device expression";
+        return Err((0, PlanRefusal::new(message, remedy)));
+    }
     let unit = UnitPlan { functions, plan, operands, results };
     for opcode in 0..unit.functions.len() {
         unit.compare(opcode).map_err(|refusal| (opcode, refusal))?;
     }
     Ok(unit)
+}
+
+/// Returns whether a result depends on the opcode, which is operand 0.
+fn reads_opcode(plan: &ExpressionPlan) -> bool {
+    let is_read = plan.read_nodes();
+    let mut nodes = plan.nodes.iter().zip(is_read).filter(|(_, is_read)| *is_read);
+    nodes.any(|(node, _)| {
+        let mut inputs = node.operation.hardware_inputs().into_iter();
+        inputs.any(|input| matches!(plan.node(input).operation, Operation::Operand(0)))
+    })
 }
 
 impl UnitPlan {

@@ -83,8 +83,31 @@ fn opcodes_are_constants_in_verilog_and_c() {
         let file = files.iter().find(|file| file.path.ends_with(end));
         &file.unwrap_or_else(|| panic!("no {end}")).contents
     };
-    assert!(contents("few_datapath.v").contains("localparam [2:0] OPCODE_LOG2 = 3'd2;"));
-    assert!(contents("few_model.h").contains("#define FEW_OPCODE_LOG2 2\n"));
+    assert!(contents("few_datapath.v").contains("localparam [2:0] FUNCTION_LOG2 = 3'd2;"));
+    assert!(contents("few_model.h").contains("#define FEW_FUNCTION_LOG2 2\n"));
+}
+
+/// The constants of functions differ from the limits of ports, such as `TWO_OPCODE_MAX`.
+#[test]
+fn functions_may_have_the_names_of_limits() {
+    let mut text = "device = \"unit\"\nname = \"two\"\npackage.software = true\n".to_owned();
+    for (name, formula) in
+        [("max", "x * x"), ("min", "3 * x"), ("width", "x + 1"), ("fraction_bits", "x / 2")]
+    {
+        text += &format!(
+            "functions.{name}.operands.x = {{ bits = 3, fraction = 1 }}\n\
+             functions.{name}.results.r = {{ formula = \"{formula}\", fraction = 1 }}\n"
+        );
+    }
+    let files = Emitted::new(&parsed("two.toml", &text), 1, 1).files;
+    let header = files.iter().find(|file| file.path.ends_with("two_model.h")).expect("a header");
+    let defines = header.contents.lines().filter_map(|line| line.strip_prefix("#define "));
+    let mut names: Vec<&str> = defines.filter_map(|line| line.split(' ').next()).collect();
+    assert!(names.contains(&"TWO_FUNCTION_MAX") && names.contains(&"TWO_OPCODE_MAX"));
+    let count = names.len();
+    names.sort_unstable();
+    names.dedup();
+    assert_eq!(names.len(), count);
 }
 
 /// A function can be a configuration of `expression` in a file of its own, whose other keys do not count.

@@ -217,7 +217,7 @@ impl Designer {
     }
 
     /// Gives a value of an operand a name, for which the emitted Verilog and C define a constant. For example, a unit names the
-    /// opcodes of its functions. The name must be in upper case and begin with the name of the operand.
+    /// opcodes of its functions. The name must be in upper case, and no port may have it.
     pub fn named_value(&self, value: NamedValue) {
         self.inner.borrow_mut().design.named_values.push(value);
     }

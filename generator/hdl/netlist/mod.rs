@@ -291,7 +291,7 @@ impl<T: Into<String>> From<T> for Note {
 /// A value of an operand with a name. The emitted files define a constant for it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NamedValue {
-    /// The name of the constant, in upper case: `OPCODE_RCP`.
+    /// The name of the constant, in upper case: `FUNCTION_RCP`.
     pub name: String,
     pub value: u64,
     /// The width of the operand in bits.
