@@ -84,6 +84,7 @@ fn opcodes_are_constants_in_verilog_and_c() {
         &file.unwrap_or_else(|| panic!("no {end}")).contents
     };
     assert!(contents("few_datapath.v").contains("localparam [2:0] FUNCTION_LOG2 = 3'd2;"));
+    assert!(!contents("few_control.v").contains("FUNCTION_"));
     assert!(contents("few_model.h").contains("#define FEW_FUNCTION_LOG2 2\n"));
 }
 

@@ -155,7 +155,8 @@ impl<'a> Builder<'a> {
             let width = design.width(design.control.fields[field].net);
             lines.extend(localparam(name, value as u64, width, ""));
         }
-        if !design.named_values.is_empty() {
+        let is_control = self.partition == Partition::Control;
+        if !is_control && !design.named_values.is_empty() {
             lines.push(
                 "    // For users of the core; the core itself does not need them.".to_owned(),
             );
