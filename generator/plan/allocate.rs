@@ -9,7 +9,7 @@ use super::boxes::{BoxError, Partitions, ResultProof, undivided};
 use super::lower::{FoundPolynomials, Guards, PlanSearch, PlanStyle, lowered};
 use super::plan::ExpressionPlan;
 use super::refusal::PlanRefusal;
-use super::statement::ExpressionStatement;
+use super::statement::{ExpressionStatement, HALF_A_UNIT};
 
 /// The guard bits with which each operation begins.
 const FIRST_GUARD: i32 = -3;
@@ -222,7 +222,11 @@ impl ExcessiveResult {
             self.worst.words(plan),
             statement.place(&self.worst.limits)
         );
+        let is_nearest = statement.results[self.result].error <= HALF_A_UNIT;
         let remedy = match self.worst.units.is_finite() {
+            true if is_nearest => {
+                "allow a larger error, such as 0.6: the nearest value, with error = 0.5, is possible only for a / b with b != 0, sqrt(s) and hypot, of sums and products of operands"
+            }
             true => "allow a larger error, or exclude these operands with `where`",
             // No error that can be stated is large enough.
             false => "exclude these operands with `where`, or with the domains of the operands",

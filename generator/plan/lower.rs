@@ -816,7 +816,18 @@ impl<'s> Lowering<'s> {
             // Rounding can make the hardware take the other case, so that the value of each case matters for all operands.
             [self.part(yes)?, self.part(no)?]
         };
-        if comparison.or_equal {
+        self.chosen(comparison.or_equal, [left, right], [yes, no])
+    }
+
+    /// Returns the node of the value of `yes` where the first number is larger than the second, or equal if `or_equal`, and of `no`
+    /// elsewhere. Fails if a node has too many bits.
+    fn chosen(
+        &mut self,
+        or_equal: bool,
+        [left, right]: [NodeId; 2],
+        [yes, no]: [NodeId; 2],
+    ) -> Result<NodeId, PlanRefusal> {
+        if or_equal {
             // Equivalent to `left >= right`, because the cases are swapped.
             let is_less = self.plan.less("is_less", left, right)?;
             self.plan.choose("chosen", is_less, [yes, no])

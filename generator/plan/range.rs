@@ -44,7 +44,8 @@ fn limiting_remedy(
 }
 
 /// Returns a condition under which the innermost part without a value has one: a divisor or the operand of a logarithm is above 0,
-/// or the operand of a root is not below 0. Returns `None` if no such part is found, or if the condition would be long.
+/// or the operand of a root is not below 0. Returns `None` if no such part is found, if the part is a constant, or if
+/// the condition would be long.
 fn condition_for(part: &Expression, operands: &[(&str, Enclosure)]) -> Option<String> {
     for inner in part.parts() {
         if inner.enclose(operands).map_or(true, |value| !value.is_finite()) {
@@ -58,7 +59,8 @@ fn condition_for(part: &Expression, operands: &[(&str, Enclosure)]) -> Option<St
         Kind::Unary(Function::Sqrt, operand) => (operand, ">="),
         _ => return None,
     };
-    (limited.size() <= MOST_PARTS_OF_A_CONDITION).then(|| format!("{} {sign} 0", limited.python()))
+    (limited.varies() && limited.size() <= MOST_PARTS_OF_A_CONDITION)
+        .then(|| format!("{} {sign} 0", limited.python()))
 }
 
 /// The reason why no interval for the values of a part was found.

@@ -28,7 +28,21 @@ const TINY: &str =
 operands.c = { bits = 3, fraction = 40 }\noperands.d = { bits = 3, fraction = 40 }";
 
 /// Operands, and results that other results read or that need no operation.
-const CASES: [(&str, &str); 34] = [
+const CASES: [(&str, &str); 36] = [
+    (
+        // The divisor has both signs.
+        SIGNED,
+        "results.whole = { formula = \"int(x / y)\", fraction = 0, error = 0.5, where = \"y != 0\" }
+results.rest = { formula = \"x % y\", fraction = 4, error = 0.5, where = \"y != 0\" }
+results.near = { formula = \"x / abs(y) / 2\", fraction = 3, error = 0.5, where = \"y != 0\" }",
+    ),
+    (
+        // The nearest value in the cases of a choice, which a quotient decides.
+        SIGNED,
+        "results.q = { formula = \"if(y == 0, 0, x / y)\", fraction = 3, error = 0.5 }
+results.c = { formula = \"if(y != 0 and x / y > 1, x / y, y)\", fraction = 4, error = 0.5 }
+results.root = { formula = \"if(x < y, x, sqrt(x - y))\", fraction = 4, error = 0.5 }",
+    ),
     (
         // The exponential function has a table over an octave, and its results need no shift.
         "operands.y = { from = \"-9 / 4\", to = \"15 / 4\", to_included = true, fraction = 2, outside = \"anything\" }",

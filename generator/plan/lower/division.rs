@@ -58,16 +58,29 @@ fn is_one(part: &Expression) -> bool {
     !part.varies() && *part == number("1")
 }
 
-/// Writes a formula as a quotient with a divisor that varies. For example, `x / y + 1/2` is `(x + 1/2 * y) / y`. Returns `None` for a
-/// formula without such a quotient.
+/// Writes a formula as a quotient with a divisor that varies. For example, `x / y + 1/2` is `(x + 1/2 * y) / y`, and `x / y / 2` is
+/// `x / (y * 2)`. Returns `None` for a formula without such a quotient.
 pub(super) fn quotient_of(formula: &Expression) -> Option<QuotientParts> {
     let made = |kind: Kind| Expression::new(kind, formula.span.clone());
     let binary = |operator, a: &Expression, b: &Expression| {
         made(Kind::Binary(operator, Arc::new(a.clone()), Arc::new(b.clone())))
     };
     match &formula.kind {
-        Kind::Binary(Operator::Div, a, b) if b.varies() => {
-            Some(QuotientParts { dividend: (**a).clone(), divisor: (**b).clone() })
+        Kind::Binary(Operator::Div, a, b) => match quotient_of(a) {
+            Some(QuotientParts { dividend, divisor }) => {
+                let divisor = binary(Operator::Mul, &divisor, b);
+                Some(QuotientParts { dividend, divisor })
+            }
+            None if b.varies() => {
+                Some(QuotientParts { dividend: (**a).clone(), divisor: (**b).clone() })
+            }
+            None => None,
+        },
+        Kind::Binary(Operator::Mul, a, b) if !a.varies() || !b.varies() => {
+            let (constant, other) = if a.varies() { (b, a) } else { (a, b) };
+            let QuotientParts { dividend, divisor } = quotient_of(other)?;
+            let dividend = binary(Operator::Mul, constant, &dividend);
+            Some(QuotientParts { dividend, divisor })
         }
         Kind::Unary(Function::Negate, a) => {
             let QuotientParts { dividend, divisor } = quotient_of(a)?;
@@ -88,14 +101,18 @@ pub(super) fn quotient_of(formula: &Expression) -> Option<QuotientParts> {
     }
 }
 
+/// Returns the comparison `part < 0`.
+fn is_negative(part: &Expression) -> Comparison {
+    let zero = Arc::new(number("0"));
+    Comparison { left: zero, right: Arc::new(part.clone()), or_equal: false }
+}
+
 impl Lowering<'_> {
-    /// Returns an equivalent comparison without a quotient on one side, if the divisor is above 0 wherever the comparison matters.
+    /// Returns an equivalent comparison without a quotient on one side, if the divisor is not 0 wherever the comparison matters.
     /// For example, `x / y > 2` becomes `x > 2 * y`. Products of operands are exact, so that the comparison is decided without
     /// rounding. Returns `None` if no side is a quotient with such a divisor.
     pub(super) fn without_quotients(&self, comparison: &Comparison) -> Option<Comparison> {
         let Comparison { left, right, or_equal } = comparison;
-        let is_positive =
-            |divisor: &Expression| self.range_here(divisor).is_ok_and(|values| values.low > 0.0);
         let times = |part: &Arc<Expression>, divisor: &Expression| {
             if part.rational().is_some_and(|value| value.is_zero()) {
                 return part.clone();
@@ -104,23 +121,41 @@ impl Lowering<'_> {
             Arc::new(Expression::new(kind, part.span.clone()))
         };
         let or_equal = *or_equal;
-        if let Some(QuotientParts { dividend, divisor }) =
-            quotient_of(left).filter(|it| is_positive(&it.divisor))
-        {
+        let quotient =
+            |part: &Expression| quotient_of(part).and_then(|it| self.with_positive_divisor(it));
+        if let Some(QuotientParts { dividend, divisor }) = quotient(left) {
             let right = times(right, &divisor);
             return Some(Comparison { left: Arc::new(dividend), right, or_equal });
         }
-        let QuotientParts { dividend, divisor } =
-            quotient_of(right).filter(|it| is_positive(&it.divisor))?;
+        let QuotientParts { dividend, divisor } = quotient(right)?;
         let left = times(left, &divisor);
         Some(Comparison { left, right: Arc::new(dividend), or_equal })
     }
 
-    /// Returns the nodes of floor(a / b) and of the remainder a − b · floor(a / b), for a divisor above 0. Both are exact. The
-    /// location `span` is the one of the whole part. For example, 7 and 2 give 3 and 1, and −7 and 2 give −4 and 1.
+    /// Returns an equal quotient with a divisor above 0. If the divisor may be below 0, the dividend takes its sign: x / y is
+    /// `if(y < 0, -x, x) / abs(y)`. Returns `None` if the divisor may be 0 where the quotient matters.
+    pub(super) fn with_positive_divisor(&self, quotient: QuotientParts) -> Option<QuotientParts> {
+        let QuotientParts { dividend, divisor } = quotient;
+        if self.range_here(&divisor).is_ok_and(|values| values.low > 0.0) {
+            return Some(QuotientParts { dividend, divisor });
+        }
+        let with_kind = |kind: Kind| Expression::new(kind, divisor.span.clone());
+        let size = with_kind(Kind::Unary(Function::Abs, Arc::new(divisor.clone())));
+        if self.range_here(&size).is_ok_and(|values| values.low <= 0.0) {
+            return None;
+        }
+        let dividend = Arc::new(dividend);
+        let negated = Arc::new(with_kind(Kind::Unary(Function::Negate, dividend.clone())));
+        let signed = with_kind(Kind::If(is_negative(&divisor), negated, dividend));
+        Some(QuotientParts { dividend: signed, divisor: size })
+    }
+
+    /// Returns the nodes of floor(a / b) and of the remainder a − b · floor(a / b), for a divisor that is not 0. Both are exact. The
+    /// location `span` is the one of the whole part. For example, 7 and 2 give 3 and 1, −7 and 2 give −4 and 1, and 7 and −2 give
+    /// −4 and −1.
     ///
     /// # Errors
-    /// Fails if a or b is rounded, if the divisor may be 0 or below 0, or if a node has too many bits.
+    /// Fails if a or b is rounded, if the divisor may be 0, or if a node has too many bits.
     pub(super) fn whole_quotient(
         &mut self,
         a: &Expression,
@@ -144,13 +179,12 @@ impl Lowering<'_> {
             let message = "Glint computes an integer quotient or a remainder only of values that are not rounded";
             return Err(PlanRefusal::new(message, EXACT_NUMBERS));
         }
-        let divisors = self.range_here(b)?;
-        if divisors.low <= 0.0 {
-            let message =
-                "Glint computes an integer quotient or a remainder only for divisors above 0";
-            let remedy = format!("limit the divisor, for example where = \"{} > 0\"", b.python());
+        let parts = QuotientParts { dividend: a.clone(), divisor: b.clone() };
+        let Some(positive) = self.with_positive_divisor(parts) else {
+            let message = "the divisor of this integer quotient or remainder may be 0";
+            let remedy = format!("limit the divisor, for example where = \"{} != 0\"", b.python());
             return Err(PlanRefusal::new(message, remedy));
-        }
+        };
         let binary = |operator, a: &Expression, b: &Expression| {
             let kind = Kind::Binary(operator, Arc::new(a.clone()), Arc::new(b.clone()));
             Expression::new(kind, span.clone())
@@ -168,6 +202,7 @@ impl Lowering<'_> {
         let bits =
             Format::holding(values.low.floor() as i128, values.high.ceil() as i128, 0).width();
         let nodes = match bits > MOST_QUOTIENT_BITS {
+            _ if positive.divisor != *b => self.quotient_of_positive(positive, b, span),
             true if values.low < 0.0 => self.quotient_of_size(a, b, span),
             true => self.quotient_by_digits(a, b, span),
             false => self.corrected_quotient(a, b, values),
@@ -182,6 +217,31 @@ impl Lowering<'_> {
             self.known.push(KnownPart { part, node, uses, is_limited: false });
         }
         Ok(nodes)
+    }
+
+    /// Returns the nodes of the integer part of a quotient with a divisor above 0, and of the remainder with the sign of the divisor
+    /// `signed`, from which [`Self::with_positive_divisor`] made the quotient. Fails if a node has too many bits.
+    fn quotient_of_positive(
+        &mut self,
+        quotient: QuotientParts,
+        signed: &Expression,
+        span: &TextSpan,
+    ) -> Result<[NodeId; 2], PlanRefusal> {
+        let [whole, rest] = self.whole_quotient(&quotient.dividend, &quotient.divisor, span)?;
+        let divisor = self.part(signed)?;
+        let zero = self.plan.constant("zero", 0, 0)?;
+        let is_negative = self.plan.less("divisor_is_negative", divisor, zero)?;
+        let negated = self.plan.negate("rest_negated", rest)?;
+        let rest = self.plan.choose("rest_of_divisor", is_negative, [rest, negated])?;
+        // The results have stated values of their own.
+        Ok([("whole_of_positive", whole), ("rest_with_sign", rest)]
+            .map(|it| self.without_statement(it)))
+    }
+
+    /// Adds a copy of a node that states no value, under a name of its own, and returns the copy.
+    fn without_statement(&mut self, (name, node): (&str, NodeId)) -> NodeId {
+        let copy = PlanNode { name: name.to_owned(), stated: None, ..self.plan.node(node).clone() };
+        self.plan.push_copy(&copy, Operation::Scale(node))
     }
 
     /// Adds the results that read one of the parts for all operands, and that have the same condition as a result of the present
@@ -211,12 +271,11 @@ impl Lowering<'_> {
         let (dividend, divisor) = (self.part(a)?, self.part(b)?);
         let frac = self.plan.node(dividend).format.frac.max(self.plan.node(divisor).format.frac);
         let unit = Arc::new(number(&exp2(-frac).to_string()));
-        let zero = Arc::new(number("0"));
+        let is_negative = is_negative(a);
         let a = Arc::new(a.clone());
         let negated = Arc::new(with_kind(Kind::Unary(Function::Negate, a.clone())));
         let flipped = Arc::new(with_kind(Kind::Binary(Operator::Sub, negated, unit.clone())));
-        let is_positive = Comparison { left: a.clone(), right: zero, or_equal: true };
-        let size = with_kind(Kind::If(is_positive, a, flipped));
+        let size = with_kind(Kind::If(is_negative, flipped, a));
         let node = {
             let zero = self.plan.constant("zero", 0, 0)?;
             let is_negative = self.plan.less("dividend_is_negative", dividend, zero)?;
@@ -269,16 +328,8 @@ impl Lowering<'_> {
             self.plan.scale("quotient_upper", upper_quotient, DIGIT_BITS as i32)?;
         let whole = self.plan.add("quotient_of_digits", upper_quotient, lower_quotient)?;
         // The results have stated values of their own.
-        let [whole, last] =
-            [("whole_of_digits", whole), ("last_remainder", last)].map(|(name, node)| {
-                let copy = PlanNode {
-                    name: name.to_owned(),
-                    stated: None,
-                    ..self.plan.node(node).clone()
-                };
-                self.plan.push_copy(&copy, Operation::Scale(node))
-            });
-        Ok([whole, last])
+        Ok([("whole_of_digits", whole), ("last_remainder", last)]
+            .map(|it| self.without_statement(it)))
     }
 
     /// Returns the nodes of the integer part of the quotient a / b, and of its remainder. `values` has the limits of the quotient.

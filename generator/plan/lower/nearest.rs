@@ -8,7 +8,7 @@
 use std::sync::Arc;
 
 use glint_base::fixed::{Format, Rounding, exp2};
-use glint_formula::{Enclosure, Expression, Function, Kind, Operator, TextSpan};
+use glint_formula::{Comparison, Enclosure, Expression, Function, Kind, Operator, TextSpan};
 
 use super::division::{QuotientParts, quotient_of};
 use super::shape::number;
@@ -26,9 +26,24 @@ const GUARD_BITS: std::ops::RangeInclusive<i32> = 2..=8;
 /// The largest power of two by which a formula is multiplied at once.
 const LARGEST_SHIFT: i32 = 30;
 
+/// Returns whether a formula has sums, products, absolute values and choices alone, so that its value can be exact.
+fn has_no_function(formula: &Expression) -> bool {
+    let is_function = |kind: &Kind| match kind {
+        Kind::Unary(function, _) => !matches!(function, Function::Negate | Function::Abs),
+        Kind::Binary(operator, _, exponent) => match operator {
+            Operator::Power => exponent.varies(),
+            Operator::Div => exponent.varies(),
+            Operator::Atan2 | Operator::Mod => true,
+            _ => false,
+        },
+        _ => false,
+    };
+    !formula.has(&is_function)
+}
+
 impl Lowering<'_> {
     /// Returns the node of `formula`, rounded to the nearest value with `frac` fraction bits. Returns `None` unless `formula` is a
-    /// quotient with a divisor above 0, or a square root, of sums and products of operands.
+    /// quotient with a divisor that is not 0, or a square root, of exact numbers, or a choice with such a case.
     ///
     /// # Errors
     /// Fails if a part has too many bits or no finite values, or if no estimate is near enough.
@@ -37,16 +52,20 @@ impl Lowering<'_> {
         formula: &Expression,
         frac: i32,
     ) -> Result<Option<NodeId>, PlanRefusal> {
+        if let Kind::If(comparison, yes, no) = &formula.kind {
+            return self.nearest_choice(comparison, yes, no, frac);
+        }
         let integer = if let Kind::Unary(Function::Sqrt, square) = &formula.kind
             && is_polynomial(self.statement, square)
         {
             self.nearest_root(formula, square, frac)?
         } else if let Some(QuotientParts { dividend, divisor }) = quotient_of(formula)
-            && is_polynomial(self.statement, &dividend)
-            && is_polynomial(self.statement, &divisor)
-            && self.range_here(&divisor)?.low > 0.0
+            && has_no_function(&dividend)
+            && has_no_function(&divisor)
+            && self.are_exact([&dividend, &divisor])?
+            && let Some(quotient) = self.with_positive_divisor(QuotientParts { dividend, divisor })
         {
-            self.nearest_quotient(&dividend, &divisor, frac, &formula.span)?
+            self.nearest_quotient(&quotient.dividend, &quotient.divisor, frac, &formula.span)?
         } else {
             return Ok(None);
         };
@@ -56,6 +75,61 @@ impl Lowering<'_> {
         let stated = Some(StatedValue { formula, accuracy: ValueAccuracy::Nearest });
         let node = PlanNode { name: "nearest".to_owned(), format, stated, ..whole };
         Ok(Some(self.plan.push_copy(&node, Operation::Scale(integer))))
+    }
+
+    /// Returns the node of a choice with cases that are rounded to the nearest value with `frac` fraction bits. Returns `None` if the
+    /// compared numbers are rounded, or if a case is neither such a value nor exact. Fails as [`Self::nearest`] does.
+    fn nearest_choice(
+        &mut self,
+        comparison: &Comparison,
+        yes: &Expression,
+        no: &Expression,
+        frac: i32,
+    ) -> Result<Option<NodeId>, PlanRefusal> {
+        let without = self.without_quotients(comparison);
+        let comparison = without.as_ref().unwrap_or(comparison);
+        let (left, right) = (&*comparison.left, &*comparison.right);
+        if !has_no_function(left) || !has_no_function(right) || !self.are_exact([left, right])? {
+            return Ok(None);
+        }
+        let compared = [self.part(left)?, self.part(right)?];
+        let yes = self.under(comparison, true, |own| own.nearest_case(yes, frac))?;
+        let no = self.under(comparison, false, |own| own.nearest_case(no, frac))?;
+        match (yes, no) {
+            (Some(yes), Some(no)) => {
+                Ok(Some(self.chosen(comparison.or_equal, compared, [yes, no])?))
+            }
+            _ => Ok(None),
+        }
+    }
+
+    /// Returns the node of a case of a choice: a value that is rounded to the nearest one, or an exact value with at most `frac`
+    /// fraction bits. Returns `None` for another case. Fails as [`Self::nearest`] does.
+    fn nearest_case(
+        &mut self,
+        case: &Expression,
+        frac: i32,
+    ) -> Result<Option<NodeId>, PlanRefusal> {
+        if let Some(node) = self.nearest(case, frac)? {
+            return Ok(Some(node));
+        }
+        if !has_no_function(case) {
+            return Ok(None);
+        }
+        let node = self.part(case)?;
+        let is_kept = self.is_exact(node) && self.plan.node(node).format.frac <= frac;
+        Ok(is_kept.then_some(node))
+    }
+
+    /// Returns whether no part is rounded. Fails if a part has too many bits.
+    fn are_exact(&mut self, parts: [&Expression; 2]) -> Result<bool, PlanRefusal> {
+        for part in parts {
+            let node = self.part(part)?;
+            if !self.is_exact(node) {
+                return Ok(false);
+            }
+        }
+        Ok(true)
     }
 
     /// Returns the node of the nearest integer to a / b · 2^`frac`. Fails if a node has too many bits.
