@@ -5,7 +5,7 @@
 
 use glint_base::text;
 use glint_config::{Config, Shared};
-use glint_keys::expression::Keys;
+use glint_keys::expression::{Keys, result_entry};
 use glint_plan::ProvedPlan;
 use glint_rtl::dsl::Designer;
 use glint_rtl::netlist::About;
@@ -18,9 +18,9 @@ pub fn describe(d: &Designer, config: &Config, planned: &ProvedPlan) {
     d.about(about(&keys, planned));
     let is_pipelined = Shared::of(config).architecture == "pipelined";
     let mut outputs = Vec::new();
-    for record in &keys.results.0 {
-        let doc = record.text("doc").unwrap_or_default().to_owned();
-        outputs.push(PlanOutput { name: format!("{}_out", record.name), doc });
+    for result in &planned.statement.results {
+        let doc = result_entry(&keys, &result.name).text("doc").unwrap_or_default().to_owned();
+        outputs.push(PlanOutput { name: format!("{}_out", result.name), doc });
     }
     describe_plan(d, &planned.statement.operands, &planned.plan, &outputs, is_pipelined);
 }
@@ -31,18 +31,27 @@ fn about(keys: &Keys, planned: &ProvedPlan) -> About {
         formulas.push(format!("{} = {}", record.name, record.text("formula").unwrap_or_default()));
     }
     let mut notes = Vec::new();
-    for (record, bound) in keys.results.0.iter().zip(&planned.bounds) {
+    for record in &keys.results.0 {
         let name = &record.name;
+        let results = planned.statement.results.iter().zip(&planned.bounds);
+        let own: Vec<f64> = results
+            .filter(|(result, _)| result_entry(keys, &result.name).name == *name)
+            .map(|(_, bound)| *bound)
+            .collect();
         formulas.push(format!("{name} = {}", record.text("formula").unwrap_or_default()));
         let promise = match record.text("where") {
             Some(promise) => format!(" where {promise}"),
             None => String::new(),
         };
-        let bound = text::rounded_up(*bound, 4);
+        let bound = text::rounded_up(own.iter().copied().fold(0.0, f64::max), 4);
+        let subject = match own.len() {
+            1 => name.clone(),
+            count => format!("each of the {count} numbers of {name}"),
+        };
         let proof = planned.proof.words();
         notes.push(
             format!(
-                "The error of {name} is at most {bound} units of its last place{promise}: {proof}."
+                "The error of {subject} is at most {bound} units of its last place{promise}: {proof}."
             )
             .into(),
         );

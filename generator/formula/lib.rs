@@ -10,6 +10,7 @@ mod condition;
 mod enclosure;
 mod evaluate;
 mod exact;
+mod list;
 mod literal;
 mod parse;
 mod precise;
@@ -26,8 +27,11 @@ use std::sync::Arc;
 
 pub use dashu_ratio::RBig;
 pub use enclosure::Enclosure;
+pub use list::{LONGEST_LIST, NumberList, NumberOrList};
 pub use literal::Literal;
-pub use parse::{FUNCTIONS, parse, parse_condition};
+pub use parse::{
+    FUNCTIONS, NamedLists, parse, parse_condition, parse_condition_with_lists, parse_with_lists,
+};
 pub use print::CArithmetic;
 
 /// A formula, or a part of one, as a tree. Two formulas are equal if their kinds are equal, even at different locations.

@@ -4,6 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::condition::JoinedCondition;
+use super::list::{self, NumberList, NumberOrList};
 use super::{Comparison, Expression, Fault, Function, Kind, Literal, Operator, TextSpan};
 
 /// The functions of one number that a formula may call.
@@ -121,9 +122,19 @@ const MOST_PARTS: usize = 4096;
 /// functions, and `if(a < b, x, y)`. A choice may also have the notation of Python or C: `x if a < b else y` or `a < b ? x : y`.
 ///
 /// # Errors
-/// Fails at the first mistake, with its location.
+/// Fails at the first mistake, with its location. Also fails for a list of numbers.
 pub fn parse(text: &str) -> Result<Expression, Fault> {
-    let mut parser = Parser { text, tokens: tokens(text)?, at: 0, depth: 0, conditions: 0 };
+    let formula = parse_with_lists(text, &|_| None)?.number()?;
+    Ok(Arc::unwrap_or_clone(formula))
+}
+
+/// Parses a formula whose operands and parts can be lists: `lists` returns the list that a name stands for, or `None` for the name of
+/// a number. An operator on lists gives a list. For example, `2 * v` is `[2 * v_0, 2 * v_1]`.
+///
+/// # Errors
+/// Fails at the first mistake, with its location.
+pub fn parse_with_lists(text: &str, lists: NamedLists<'_>) -> Result<NumberOrList, Fault> {
+    let mut parser = Parser::new(text, lists)?;
     let formula = parser.choice()?;
     match parser.tokens.get(parser.at) {
         None => Ok(formula),
@@ -139,13 +150,22 @@ pub fn parse(text: &str) -> Result<Expression, Fault> {
 /// Parses a condition, such as `x < y`, `0 < x <= 2`, or `x > 0 and y != 0`, into a single comparison that is equivalent. Fails
 /// at the first mistake, with its location.
 pub fn parse_condition(text: &str) -> Result<Comparison, Fault> {
-    let mut parser = Parser { text, tokens: tokens(text)?, at: 0, depth: 0, conditions: 0 };
+    parse_condition_with_lists(text, &|_| None)
+}
+
+/// Parses a condition as [`parse_condition`] does, with lists by their names, as [`parse_with_lists`] does. The condition compares
+/// numbers, such as `dot(a, b) > 0`. Fails at the first mistake, with its location.
+pub fn parse_condition_with_lists(text: &str, lists: NamedLists<'_>) -> Result<Comparison, Fault> {
+    let mut parser = Parser::new(text, lists)?;
     let condition = parser.condition()?;
     match parser.tokens.get(parser.at) {
         None => Ok(condition.comparison()),
         Some(rest) => Err(Fault::new(rest.clone(), "this does not belong here")),
     }
 }
+
+/// A function that returns the list that a name stands for.
+pub type NamedLists<'t> = &'t dyn Fn(&str) -> Option<NumberList>;
 
 /// Returns the ranges of bytes of all names, numbers and signs: `2*x` gives 0..1, 1..2 and 2..3. Fails at a character that no
 /// formula can have.
@@ -243,9 +263,14 @@ struct Parser<'t> {
     depth: usize,
     /// The number of comparisons, and of the signs that join them, so far.
     conditions: usize,
+    lists: NamedLists<'t>,
 }
 
-impl Parser<'_> {
+impl<'t> Parser<'t> {
+    fn new(text: &'t str, lists: NamedLists<'t>) -> Result<Self, Fault> {
+        Ok(Self { text, tokens: tokens(text)?, at: 0, depth: 0, conditions: 0, lists })
+    }
+
     /// Returns the text of the next token, or an empty text at the end.
     fn peek(&self) -> &str {
         self.tokens.get(self.at).map_or("", |token| &self.text[token.clone()])
@@ -279,7 +304,7 @@ impl Parser<'_> {
         self.tokens[from].start..self.tokens[self.at - 1].end
     }
 
-    fn choice(&mut self) -> Result<Expression, Fault> {
+    fn choice(&mut self) -> Result<NumberOrList, Fault> {
         if self.depth == DEEPEST {
             return self.fault(format!("the formula is nested more than {DEEPEST} deep"));
         }
@@ -294,13 +319,13 @@ impl Parser<'_> {
         };
         if SIGNS_OF_COMPARISONS.contains(&self.peek()) {
             // As in C: `a < b ? x : y`.
-            let condition = self.condition_of(choice)?;
+            let condition = self.condition_of(choice.number()?)?;
             choice = self.cases_in_c(from, &condition)?;
         } else if self.taken(&["if"]) {
             let condition = self.condition()?;
             self.expect("else")?;
-            let other = Arc::new(self.choice()?);
-            choice = condition.choice(Arc::new(choice), other, self.span(from));
+            let other = self.choice()?;
+            choice = self.chosen(from, &condition, choice, other)?;
         }
         self.depth -= 1;
         Ok(choice)
@@ -311,12 +336,32 @@ impl Parser<'_> {
         &mut self,
         from: usize,
         condition: &JoinedCondition,
-    ) -> Result<Expression, Fault> {
+    ) -> Result<NumberOrList, Fault> {
         self.expect("?")?;
-        let yes = Arc::new(self.choice()?);
+        let yes = self.choice()?;
         self.expect(":")?;
-        let no = Arc::new(self.choice()?);
-        Ok(condition.choice(yes, no, self.span(from)))
+        let no = self.choice()?;
+        self.chosen(from, condition, yes, no)
+    }
+
+    /// Makes a choice, which begins at token number `from`, from its two cases. Fails if they are lists of different sizes.
+    fn chosen(
+        &self,
+        from: usize,
+        condition: &JoinedCondition,
+        yes: NumberOrList,
+        no: NumberOrList,
+    ) -> Result<NumberOrList, Fault> {
+        let span = self.span(from);
+        list::for_each_element(&[yes, no], &span, |cases| {
+            let [yes, no] = [0, 1].map(|case| Arc::new(cases[case].clone()));
+            Ok(condition.choice(yes, no, span.clone()))
+        })
+    }
+
+    /// Parses a sum that is a number.
+    fn number(&mut self) -> Result<Expression, Fault> {
+        Ok(Arc::unwrap_or_clone(self.sum()?.number()?))
     }
 
     /// Parses comparisons joined by `and`, `or` and `not`.
@@ -332,7 +377,7 @@ impl Parser<'_> {
     }
 
     /// Parses the rest of a condition whose first number is `first`.
-    fn condition_of(&mut self, first: Expression) -> Result<JoinedCondition, Fault> {
+    fn condition_of(&mut self, first: Arc<Expression>) -> Result<JoinedCondition, Fault> {
         let comparison = self.comparisons(first)?;
         self.joined(comparison)
     }
@@ -385,7 +430,7 @@ impl Parser<'_> {
             self.expect(")")?;
             return Ok(inner);
         }
-        let first = self.sum()?;
+        let first = Arc::new(self.number()?);
         self.comparisons(first)
     }
 
@@ -418,8 +463,8 @@ impl Parser<'_> {
     }
 
     /// Parses the comparisons that follow a number, for example `< x <= 2`.
-    fn comparisons(&mut self, first: Expression) -> Result<JoinedCondition, Fault> {
-        let mut first = Arc::new(first);
+    fn comparisons(&mut self, first: Arc<Expression>) -> Result<JoinedCondition, Fault> {
+        let mut first = first;
         let mut all: Option<JoinedCondition> = None;
         loop {
             let sign = self.peek().to_owned();
@@ -428,7 +473,7 @@ impl Parser<'_> {
                 return all.map_or_else(|| self.fault(missing), Ok);
             }
             self.count_joined()?;
-            let second = Arc::new(self.sum()?);
+            let second = Arc::new(self.number()?);
             let comparison = JoinedCondition::Is(self.compared(first, &sign, second.clone()));
             all = Some(match all {
                 None => comparison,
@@ -473,31 +518,47 @@ impl Parser<'_> {
     fn chain(
         &mut self,
         signs: &[(&str, Operator)],
-        part: fn(&mut Self) -> Result<Expression, Fault>,
-    ) -> Result<Expression, Fault> {
+        part: fn(&mut Self) -> Result<NumberOrList, Fault>,
+    ) -> Result<NumberOrList, Fault> {
         let from = self.at;
         let mut all = part(self)?;
         while let Some((_, operator)) = signs.iter().find(|(sign, _)| *sign == self.peek()) {
             self.at += 1;
-            let kind = Kind::Binary(*operator, Arc::new(all), Arc::new(part(self)?));
-            all = self.made(from, kind);
+            let next = part(self)?;
+            all = self.joined_by(from, *operator, all, next)?;
         }
         Ok(all)
     }
 
-    fn sum(&mut self) -> Result<Expression, Fault> {
+    /// Applies an operator to two numbers, or to each pair of elements. The text of the result begins at token number `from`. Fails for
+    /// lists of different sizes.
+    fn joined_by(
+        &self,
+        from: usize,
+        operator: Operator,
+        a: NumberOrList,
+        b: NumberOrList,
+    ) -> Result<NumberOrList, Fault> {
+        let span = self.span(from);
+        list::for_each_element(&[a, b], &span, |pair| {
+            let [a, b] = [0, 1].map(|at| Arc::new(pair[at].clone()));
+            Ok(Expression::new(Kind::Binary(operator, a, b), span.clone()))
+        })
+    }
+
+    fn sum(&mut self) -> Result<NumberOrList, Fault> {
         let signs = [("+", Operator::Add), ("-", Operator::Sub), ("−", Operator::Sub)];
         self.chain(&signs, Self::product)
     }
 
-    fn product(&mut self) -> Result<Expression, Fault> {
+    fn product(&mut self) -> Result<NumberOrList, Fault> {
         use Operator::{Div, Mod, Mul};
         let signs = [("*", Mul), ("·", Mul), ("×", Mul), ("/", Div), ("%", Mod)];
         self.chain(&signs, Self::signed)
     }
 
     /// Parses a power with a sign before it, which is applied after the power: `-x^2` is −(x²).
-    fn signed(&mut self) -> Result<Expression, Fault> {
+    fn signed(&mut self) -> Result<NumberOrList, Fault> {
         let from = self.at;
         let mut negations = 0;
         loop {
@@ -508,23 +569,47 @@ impl Parser<'_> {
             }
         }
         let base = self.at;
-        let mut part = self.atom()?;
+        let mut part = self.element()?;
         if self.taken(&["^", "**"]) {
             if self.depth == DEEPEST {
                 return self.fault(format!("the formula is nested more than {DEEPEST} deep"));
             }
             self.depth += 1;
-            let kind = Kind::Binary(Operator::Power, Arc::new(part), Arc::new(self.signed()?));
+            let exponent = self.signed()?;
             self.depth -= 1;
-            part = self.made(base, kind);
+            part = self.joined_by(base, Operator::Power, part, exponent)?;
         }
         if negations % 2 == 1 {
-            part = self.made(from, Kind::Unary(Function::Negate, Arc::new(part)));
+            let span = self.span(from);
+            part = list::for_each_element(&[part], &span, |numbers| {
+                let number = Arc::new(numbers[0].clone());
+                Ok(Expression::new(Kind::Unary(Function::Negate, number), span.clone()))
+            })?;
         }
         Ok(part)
     }
 
-    fn atom(&mut self) -> Result<Expression, Fault> {
+    /// Parses a number or a list, and what selects elements of the list: an index or axes, as in `v[2]` and `n.xy`.
+    fn element(&mut self) -> Result<NumberOrList, Fault> {
+        let from = self.at;
+        let mut part = self.atom()?;
+        while let NumberOrList::List(list) = &part {
+            if self.taken(&["["]) {
+                let index = self.choice()?.number()?;
+                self.expect("]")?;
+                part = list.element(&index)?.into();
+            } else if self.taken(&["."]) {
+                let letters = self.peek().to_owned();
+                self.at = (self.at + 1).min(self.tokens.len());
+                part = list.on_axes(&letters, self.span(from))?;
+            } else {
+                break;
+            }
+        }
+        Ok(part)
+    }
+
+    fn atom(&mut self) -> Result<NumberOrList, Fault> {
         let from = self.at;
         let token = self.peek().to_owned();
         if token.is_empty() {
@@ -535,26 +620,39 @@ impl Parser<'_> {
             self.expect(")")?;
             return Ok(inner);
         }
+        if self.taken(&["["]) {
+            let mut parts = vec![self.choice()?];
+            while self.taken(&[","]) {
+                parts.push(self.choice()?);
+            }
+            self.expect("]")?;
+            return list::list_of(parts, self.span(from));
+        }
         if token.starts_with(|c: char| c.is_ascii_digit() || c == '.') {
             let Some(literal) = Literal::read(&token) else {
                 return self.fault("this is not a number");
             };
             self.at += 1;
-            return Ok(self.made(from, Kind::Number(literal)));
+            return Ok(self.made(from, Kind::Number(literal)).into());
         }
         if self.taken(&[PI]) {
-            return Ok(self.made(from, Kind::Constant(CONSTANTS[0].0, CONSTANTS[0].1)));
+            return Ok(self.made(from, Kind::Constant(CONSTANTS[0].0, CONSTANTS[0].1)).into());
         }
         if !token.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_') {
             return self.fault("a number, an operand or a function is missing before this");
         }
         self.at += 1;
+        if self.peek() != "("
+            && let Some(list) = (self.lists)(&token)
+        {
+            return Ok(NumberOrList::List(NumberList { span: self.span(from).into(), ..list }));
+        }
         if self.taken(&["["]) {
             // The index of a word is an integer. In Python, `int` makes it one.
             self.taken(&["int"]);
-            let place = Arc::new(self.choice()?);
+            let place = self.choice()?.number()?;
             self.expect("]")?;
-            return Ok(self.made(from, Kind::Word(token, place)));
+            return Ok(self.made(from, Kind::Word(token, place)).into());
         }
         if !self.taken(&["("]) {
             let constant = CONSTANTS.iter().find(|(name, _)| *name == token);
@@ -562,60 +660,84 @@ impl Parser<'_> {
                 Some((name, value)) => Kind::Constant(name, *value),
                 None => Kind::Operand(token),
             };
-            return Ok(self.made(from, kind));
+            return Ok(self.made(from, kind).into());
         }
         self.call(from, &token)
     }
 
     /// Parses the arguments of a call of the function `name`; the opening parenthesis has been read. Fails if there is no such
     /// function, or at the first mistake in an argument.
-    fn call(&mut self, from: usize, name: &str) -> Result<Expression, Fault> {
+    fn call(&mut self, from: usize, name: &str) -> Result<NumberOrList, Fault> {
         if name == "if" {
             let condition = self.condition()?;
             self.expect(",")?;
-            let yes = Arc::new(self.choice()?);
+            let yes = self.choice()?;
             self.expect(",")?;
-            let no = Arc::new(self.choice()?);
+            let no = self.choice()?;
             self.expect(")")?;
-            return Ok(condition.choice(yes, no, self.span(from)));
+            return self.chosen(from, &condition, yes, no);
         }
-        let operator = named(&FUNCTIONS_OF_TWO, name);
-        let function = named(&FUNCTIONS, name);
-        let defined = named(&DEFINED, name);
-        let defined_of_two = named(&DEFINED_OF_TWO, name);
-        let defined_of_three = named(&DEFINED_OF_THREE, name);
-        let count = match (operator, function.is_some() || defined.is_some()) {
-            (Some(_), _) => 2,
-            (None, true) => 1,
-            _ if defined_of_two.is_some() => 2,
-            _ if defined_of_three.is_some() => 3,
-            _ => return Err(Fault::new(self.tokens[from].clone(), unknown_function(name))),
+        let of_lists = list::arguments_of(name);
+        let Some(count) = of_lists.or_else(|| arguments_of(name)) else {
+            return Err(Fault::new(self.tokens[from].clone(), unknown_function(name)));
         };
+        let takes_many = FUNCTIONS_OF_MANY.contains(&name);
         let mut arguments = vec![self.choice()?];
-        while arguments.len() < count || FUNCTIONS_OF_MANY.contains(&name) && self.peek() == "," {
+        let is_of_one_list =
+            takes_many && self.peek() == ")" && matches!(arguments[0], NumberOrList::List(_));
+        while !is_of_one_list && (arguments.len() < count || takes_many && self.peek() == ",") {
             self.expect(",")?;
             arguments.push(self.choice()?);
         }
         self.expect(")")?;
-        let span = self.tokens[from].start..self.tokens[self.at - 1].end;
-        if name == "hypot" && arguments.len() > 2 {
-            return length_of_many(&arguments, span);
+        let span = self.span(from);
+        if is_of_one_list || of_lists.is_some() {
+            return list::list_function(name, &arguments, span);
         }
-        if let Some(body) = defined.or(defined_of_two).or(defined_of_three) {
-            return written_out(name, body, &arguments, span);
-        }
-        let mut arguments = arguments.into_iter().map(Arc::new);
-        let first = arguments.next().expect("a call has an argument");
-        if let Some(function) = function {
-            return Ok(Expression::new(Kind::Unary(function, first), span));
-        }
-        let operator = operator.expect("a function of one number or of two");
-        let mut all = first;
-        for argument in arguments {
-            all = Arc::new(Expression::new(Kind::Binary(operator, all, argument), span.clone()));
-        }
-        Ok(Arc::unwrap_or_clone(all))
+        list::for_each_element(&arguments, &span, |numbers| {
+            function_of_numbers(name, numbers, span.clone())
+        })
     }
+}
+
+/// Returns the least number of arguments of a function of numbers. Returns `None` if there is no such function.
+fn arguments_of(name: &str) -> Option<usize> {
+    let is_of_one = named(&FUNCTIONS, name).is_some() || named(&DEFINED, name).is_some();
+    let is_of_two =
+        named(&FUNCTIONS_OF_TWO, name).is_some() || named(&DEFINED_OF_TWO, name).is_some();
+    match (is_of_one, is_of_two) {
+        (true, _) => Some(1),
+        (_, true) => Some(2),
+        _ => named(&DEFINED_OF_THREE, name).map(|_| 3),
+    }
+}
+
+/// Returns a call of a function with as many numbers as it takes. `span` is the location of the call. Fails as [`written_out`] does.
+fn function_of_numbers(
+    name: &str,
+    arguments: &[Expression],
+    span: Range<usize>,
+) -> Result<Expression, Fault> {
+    if name == "hypot" && arguments.len() > 2 {
+        return length_of_many(arguments, span);
+    }
+    let body = named(&DEFINED, name)
+        .or_else(|| named(&DEFINED_OF_TWO, name))
+        .or_else(|| named(&DEFINED_OF_THREE, name));
+    if let Some(body) = body {
+        return written_out(name, body, arguments, span);
+    }
+    let mut arguments = arguments.iter().cloned().map(Arc::new);
+    let first = arguments.next().expect("a call has an argument");
+    if let Some(function) = named(&FUNCTIONS, name) {
+        return Ok(Expression::new(Kind::Unary(function, first), span));
+    }
+    let operator = named(&FUNCTIONS_OF_TWO, name).expect("a function of one number or of two");
+    let mut all = first;
+    for argument in arguments {
+        all = Arc::new(Expression::new(Kind::Binary(operator, all, argument), span.clone()));
+    }
+    Ok(Arc::unwrap_or_clone(all))
 }
 
 fn named<T: Copy>(table: &[(&str, T)], name: &str) -> Option<T> {
@@ -634,6 +756,7 @@ fn unknown_function(name: &str) -> String {
     all.extend(DEFINED_OF_TWO.map(|(own, _)| own));
     all.extend(DEFINED_OF_THREE.map(|(own, _)| own));
     all.push("if");
+    all.extend(list::names_of_list_functions());
     format!("there is no function `{name}`; there are {}", all.join(", "))
 }
 

@@ -11,15 +11,22 @@ use glint_base::config_error::ConfigError;
 use glint_base::fixed::{Format, MAX_WIDTH, exp2};
 use glint_config::{Config, Key, Problems, Schema, TableEntries, TableEntry, TextPattern, Value};
 use glint_formula::{
-    Comparison, Expression, Fault, Kind, Operator, TextSpan, parse, parse_condition,
+    Comparison, Expression, Fault, Kind, NumberList, NumberOrList, Operator, TextSpan, parse,
+    parse_condition_with_lists, parse_with_lists,
 };
 use glint_plan::{
     ExpressionStatement, Operation, PlanRefusal, ProvedPlan, StatedOperand, StatedOverflow,
     StatedResult, StatedWidth, find, least_size,
 };
 
+use lists::{MOST_NUMBERS, OperandPorts, axes_of, element_names, operand_entry};
+
 use super::function::End;
 use super::port_names::{self, NameFault, NamedTable};
+
+pub use lists::result_entry;
+
+mod lists;
 
 /// The errors that a configuration may allow, in units of a result's last bit.
 const LEAST_ERROR: f64 = 0.5;
@@ -31,18 +38,25 @@ const RELATIVE_ERROR: &str =
 
 glint_config::keys! {
     pub struct Keys {
-        operands: TableEntries = Key::records("operands", &example_operands(), operand_fields(), None, 1..=8,
+        operands: TableEntries = Key::records("operands", &example_operands(), operand_fields(), None, 1..=16,
             "The operands, in the order of the ports. The field bits gives an operand a whole format; the \
-             fields from and to give it a domain."),
+             fields from and to give it a domain. The field size or axes makes it a list of numbers."),
         parts: TableEntries = Key::records("let", &[], part_fields(), Some("formula"), 0..=32,
             "Named parts of the formulas. The formula of a part may use operands and earlier parts."),
-        results: TableEntries = Key::records("results", &example_results(), result_fields(), None, 1..=8,
+        results: TableEntries = Key::records("results", &example_results(), result_fields(), None, 1..=16,
             "The results, in the order of the ports. The formula of a result may use operands and named parts."),
     }
 }
 
 fn operand_fields() -> Vec<Key> {
     vec![
+        Key::integer("size", 3, 2..=16, "The number of numbers of a list. Each has a port."),
+        Key::text(
+            "axes",
+            "xyz",
+            TextPattern::Name,
+            "A letter for each number of a list, for the names of the ports.",
+        ),
         Key::integer("fraction", 12, -40..=40, "Fraction bits."),
         Key::integer("bits", 12, 1..=32, "The width. The domain is then the whole format."),
         Key::flag("signed", true, "Together with bits: whether the operand is signed."),
@@ -71,7 +85,18 @@ fn part_fields() -> Vec<Key> {
 
 fn result_fields() -> Vec<Key> {
     vec![
-        Key::text("formula", "sqrt(s)", TextPattern::Formula, "The formula."),
+        Key::text(
+            "formula",
+            "sqrt(s)",
+            TextPattern::Formula,
+            "The formula. A list gives a result for each of its numbers.",
+        ),
+        Key::text(
+            "axes",
+            "xyz",
+            TextPattern::Name,
+            "A letter for each number of a list, for the names of the ports.",
+        ),
         Key::integer("fraction", 12, 0..=40, "Fraction bits."),
         Key::number(
             "error",
@@ -159,13 +184,13 @@ pub fn plan(config: &Config) -> Result<ProvedPlan, ConfigError> {
     let keys = Keys::of(config);
     let statement = statement(&keys)?;
     let plan = find(&statement).map_err(|refusal| refused(&keys, &statement, refusal))?;
-    check_operands_have_readers(&plan)?;
+    check_operands_have_readers(&keys, &plan)?;
     Ok(plan)
 }
 
 /// Fails for an operand that the plan does not read, because every choice or remainder that reads it was decided: `if(x < 100, y,
 /// x)` with x below 2 is y.
-fn check_operands_have_readers(found: &ProvedPlan) -> Result<(), ConfigError> {
+fn check_operands_have_readers(keys: &Keys, found: &ProvedPlan) -> Result<(), ConfigError> {
     let plan = &found.plan;
     let is_read = |node: usize| {
         let mut results = 0..found.statement.results.len();
@@ -176,12 +201,13 @@ fn check_operands_have_readers(found: &ProvedPlan) -> Result<(), ConfigError> {
             && !is_read(at)
         {
             let name = &found.statement.operands[number].name;
+            let entry = &operand_entry(keys, name).name;
             let message = format!(
                 "no result changes with `{name}`, because each choice or remainder that reads it is the same for all values \
                  in the domains"
             );
             let remedy = "remove the operand, or give the operands larger domains";
-            return Err(ConfigError::new(format!("operands.{name}"), message, remedy));
+            return Err(ConfigError::new(format!("operands.{entry}"), message, remedy));
         }
     }
     Ok(())
@@ -196,7 +222,10 @@ pub(super) fn refused(
     let of_part = |place: &TextSpan| Some(&keys.parts.0.get(place.text.checked_sub(1)?)?.name);
     let key = match (refusal.place.as_ref().and_then(of_part), refusal.result) {
         (Some(name), _) => part_key(name),
-        (None, Some(number)) => format!("results.{}.formula", statement.results[number].name),
+        (None, Some(number)) => {
+            let entry = result_entry(keys, &statement.results[number].name);
+            format!("results.{}.formula", entry.name)
+        }
         (None, None) => "results".to_owned(),
     };
     let place = refusal.place.map(|place| place.bytes);
@@ -207,36 +236,93 @@ pub(super) fn refused(
 /// ([`TextSpan::text`]).
 type Parts = Vec<(String, Arc<Expression>)>;
 
+/// The names that a formula may have: operands, and earlier parts.
+#[derive(Default)]
+struct KnownNames {
+    /// The names of the ports of all operands.
+    operands: Vec<String>,
+    /// The parts that are numbers.
+    parts: Parts,
+    /// The operands and parts that are lists.
+    lists: Vec<(String, NumberList)>,
+}
+
+impl KnownNames {
+    fn list(&self, name: &str) -> Option<NumberList> {
+        let found = self.lists.iter().find(|(own, _)| own == name);
+        found.map(|(_, list)| list.clone())
+    }
+
+    fn is_operand(&self, name: &str) -> bool {
+        self.operands.iter().any(|operand| operand == name)
+    }
+
+    /// Returns the names in the order of the configuration, for messages.
+    fn all(&self, keys: &Keys) -> String {
+        let mut names: Vec<&str> = Vec::new();
+        names.extend(keys.operands.0.iter().map(|operand| operand.name.as_str()));
+        let is_known =
+            |name: &str| self.parts.iter().any(|(own, _)| own == name) || self.list(name).is_some();
+        let parts = keys.parts.0.iter().map(|part| part.name.as_str());
+        names.extend(parts.filter(|name| is_known(name)));
+        names.join(", ")
+    }
+}
+
 fn part_key(name: &str) -> String {
     format!("let.{name}.formula")
 }
 
-/// Returns the operands and results that a configuration states, with the formulas of named parts in place of their names.
+/// Returns the operands and results that a configuration states, with the formulas of named parts in place of their names, and with
+/// numbers in place of lists.
 ///
 /// # Errors
-/// Fails if an entry is wrong, if two entries have the same name, if no result depends on an operand, or if [`error_of_relative`]
-/// fails.
+/// Fails if an entry is wrong, if two entries have the same name, if no result depends on an operand, if there are more than
+/// [`MOST_NUMBERS`] operands or results, or if [`error_of_relative`] fails.
 pub(super) fn statement(keys: &Keys) -> Result<ExpressionStatement, ConfigError> {
-    check_names(keys)?;
+    let mut known = KnownNames::default();
     let mut operands = Vec::new();
     for record in &keys.operands.0 {
-        operands.push(operand(record)?);
+        let ports = OperandPorts::of(record)?;
+        let operand = operand(record)?;
+        for name in &ports.names {
+            operands.push(StatedOperand { name: name.clone(), ..operand.clone() });
+            known.operands.push(name.clone());
+        }
+        if let Some(list) = ports.list() {
+            known.lists.push((record.name.clone(), list));
+        }
     }
-    let mut parts: Parts = Vec::new();
+    check_count("operands", operands.len())?;
+    let stated: Vec<&str> = keys.results.0.iter().map(|record| record.name.as_str()).collect();
+    check_names(keys, &known.operands, &stated)?;
     for (number, record) in keys.parts.0.iter().enumerate() {
         let key = part_key(&record.name);
-        let formula = formula(record.text("formula"), &key, keys, &parts)?;
-        parts.push((record.name.clone(), Arc::new(formula.in_text(number + 1))));
+        match formula(record.text("formula"), &key, keys, &known)? {
+            NumberOrList::Number(formula) => {
+                let formula = Arc::new(formula.in_text(number + 1));
+                known.parts.push((record.name.clone(), formula));
+            }
+            NumberOrList::List(mut list) => {
+                for element in &mut list.elements {
+                    *element = Arc::new(element.in_text(number + 1));
+                }
+                known.lists.push((record.name.clone(), list));
+            }
+        }
     }
     let mut results = Vec::new();
     for record in &keys.results.0 {
-        results.push(result(record, keys, &parts)?);
+        results.extend(results_of(record, keys, &known)?);
     }
+    check_count("results", results.len())?;
+    let names: Vec<&str> = results.iter().map(|result| result.name.as_str()).collect();
+    check_names(keys, &known.operands, &names)?;
     for operand in &operands {
         let names_it =
             |result: &StatedResult| result.formula.operands().contains(&operand.name.as_str());
         if !results.iter().any(names_it) {
-            let key = format!("operands.{}", operand.name);
+            let key = format!("operands.{}", operand_entry(keys, &operand.name).name);
             let message = format!("no result depends on `{}`", operand.name);
             return Err(ConfigError::new(
                 key,
@@ -246,12 +332,24 @@ pub(super) fn statement(keys: &Keys) -> Result<ExpressionStatement, ConfigError>
         }
     }
     let mut statement = ExpressionStatement { operands, results };
-    for (number, record) in keys.results.0.iter().enumerate() {
+    for number in 0..statement.results.len() {
+        let record = result_entry(keys, &statement.results[number].name);
         if let Some(text) = record.text("error_relative") {
             statement.results[number].error = error_of_relative(keys, &statement, number, text)?;
         }
     }
     Ok(statement)
+}
+
+/// Fails if a table states more than [`MOST_NUMBERS`] numbers.
+fn check_count(table: &str, count: usize) -> Result<(), ConfigError> {
+    if count <= MOST_NUMBERS {
+        return Ok(());
+    }
+    let message = format!(
+        "the {table} have {count} numbers together, and at most {MOST_NUMBERS} are possible"
+    );
+    Err(ConfigError::new(table, message, "give fewer numbers, or make two cores"))
 }
 
 /// Returns the allowed error of the result with the index `number`, in units of its last bit, at most [`LARGEST_ERROR`]. `text`
@@ -268,7 +366,7 @@ fn error_of_relative(
     text: &str,
 ) -> Result<f64, ConfigError> {
     let StatedResult { name, fraction, .. } = &statement.results[number];
-    let key = format!("results.{name}.error_relative");
+    let key = format!("results.{}.error_relative", result_entry(keys, name).name);
     let part = parse(text).and_then(|part| part.enclose(&[])).map_err(|fault| {
         ConfigError::new(&key, fault.message, RELATIVE_ERROR).at(fault.span.bytes)
     })?;
@@ -300,20 +398,24 @@ fn error_of_relative(
     Ok(units.min(LARGEST_ERROR))
 }
 
-/// Checks the names of operands, parts and results, and fails at the first one that cannot be used.
-fn check_names(keys: &Keys) -> Result<(), ConfigError> {
-    let tables = [
-        (NamedTable::Operands, &keys.operands),
-        (NamedTable::Parts, &keys.parts),
-        (NamedTable::Results, &keys.results),
-    ];
-    let mut entries = Vec::new();
-    for (table, records) in tables {
-        entries.extend(records.0.iter().map(|record| (table, record.name.as_str())));
+/// Checks the names of operands, parts and results, and fails at the first one that cannot be used. `operands` and `results` have the
+/// names of the ports.
+fn check_names(keys: &Keys, operands: &[String], results: &[&str]) -> Result<(), ConfigError> {
+    let mut names: Vec<(NamedTable, &str, &str)> = Vec::new();
+    for name in operands {
+        names.push((NamedTable::Operands, name, &operand_entry(keys, name).name));
     }
+    for TableEntry { name, .. } in &keys.parts.0 {
+        names.push((NamedTable::Parts, name, name));
+    }
+    for name in results {
+        names.push((NamedTable::Results, name, &result_entry(keys, name).name));
+    }
+    let entries: Vec<(NamedTable, &str)> =
+        names.iter().map(|(table, name, _)| (*table, *name)).collect();
     port_names::check(&entries).map_err(|NameFault { entry, message, remedy }| {
-        let (table, name) = entries[entry];
-        ConfigError::new(format!("{}.{name}", table.key()), message, remedy)
+        let (table, _, record) = names[entry];
+        ConfigError::new(format!("{}.{record}", table.key()), message, remedy)
     })
 }
 
@@ -411,7 +513,12 @@ fn end(text: &str, fraction: u32, key: String) -> Result<End, ConfigError> {
         .map_err(|refusal| ConfigError::new(key, refusal.message, refusal.remedy).at(refusal.place))
 }
 
-fn result(record: &TableEntry, keys: &Keys, parts: &Parts) -> Result<StatedResult, ConfigError> {
+/// Returns the result of an entry, or a result for each number of a list.
+fn results_of(
+    record: &TableEntry,
+    keys: &Keys,
+    known: &KnownNames,
+) -> Result<Vec<StatedResult>, ConfigError> {
     let name = record.name.clone();
     let whole = format!("results.{name}");
     let Some(fraction) = record.bits("fraction") else {
@@ -428,9 +535,10 @@ fn result(record: &TableEntry, keys: &Keys, parts: &Parts) -> Result<StatedResul
             "add a formula: for example, formula = \"x * y\"",
         ));
     }
-    let formula = formula(record.text("formula"), &key, keys, parts)?;
+    let formula = formula(record.text("formula"), &key, keys, known)?;
+    let names = result_names(record, &formula)?;
     let promise = match record.text("where") {
-        Some(text) => Some(promise(text, &format!("{whole}.where"), keys, parts)?),
+        Some(text) => Some(promise(text, &format!("{whole}.where"), keys, known)?),
         None => None,
     };
     if record.field("error").is_some() && record.field("error_relative").is_some() {
@@ -442,16 +550,16 @@ fn result(record: &TableEntry, keys: &Keys, parts: &Parts) -> Result<StatedResul
         ));
     }
     let error = record.number("error").unwrap_or(1.0);
-    let width = record.bits("bits").map(|bits| {
-        let format = stated_format(record, bits, fraction);
+    let width_of = |formula: &Expression| {
+        let format = stated_format(record, record.bits("bits")?, fraction);
         let overflow = match record.text("overflow") {
-            Some("saturate") => StatedOverflow::Saturate(limited(&formula, format)),
+            Some("saturate") => StatedOverflow::Saturate(limited(formula, format)),
             Some("wrap") => StatedOverflow::Wrap,
             _ => StatedOverflow::Refuse,
         };
-        StatedWidth { format, overflow }
-    });
-    if width.is_none() {
+        Some(StatedWidth { format, overflow })
+    };
+    if record.field("bits").is_none() {
         for field in ["signed", "overflow"] {
             if record.field(field).is_some() {
                 let message = format!("`{field}` has no effect without `bits`");
@@ -460,7 +568,40 @@ fn result(record: &TableEntry, keys: &Keys, parts: &Parts) -> Result<StatedResul
             }
         }
     }
-    Ok(StatedResult { name, formula, fraction, error, promise, width })
+    let mut results = Vec::new();
+    for (name, formula) in names.into_iter().zip(formula.elements()) {
+        let (formula, promise) = ((**formula).clone(), promise.clone());
+        let width = width_of(&formula);
+        results.push(StatedResult { name, formula, fraction, error, promise, width });
+    }
+    Ok(results)
+}
+
+/// Returns the names of the results of an entry. Without axes of its own, a list has the axes of the lists in its formula. Fails if the
+/// entry has axes and is no list of as many numbers.
+fn result_names(record: &TableEntry, formula: &NumberOrList) -> Result<Vec<String>, ConfigError> {
+    let name = &record.name;
+    let key = format!("results.{name}.axes");
+    let own = axes_of(record, &key)?;
+    let list = match formula {
+        NumberOrList::List(list) => list,
+        NumberOrList::Number(_) if own.is_some() => {
+            let message = format!("`{name}` has axes, and its formula gives a single number");
+            return Err(ConfigError::new(key, message, "remove `axes`"));
+        }
+        NumberOrList::Number(_) => return Ok(vec![name.clone()]),
+    };
+    let count = list.elements.len();
+    if let Some(axes) = own.as_ref().filter(|axes| axes.len() != count) {
+        let message =
+            format!("`{name}` has {} axes, and its formula gives {count} numbers", axes.len());
+        return Err(ConfigError::new(key, message, "give as many axes as numbers"));
+    }
+    let axes = own.or_else(|| list.axes.clone()).filter(|axes| {
+        // `n.xx` repeats an axis, so that its letters are no names.
+        axes.chars().enumerate().all(|(at, axis)| axes.find(axis) == Some(at))
+    });
+    Ok(element_names(name, count, axes.as_deref()))
 }
 
 /// Returns the format of a result, with a sign if the field `signed` of the entry says so.
@@ -489,45 +630,69 @@ fn formula(
     text: Option<&str>,
     key: &str,
     keys: &Keys,
-    parts: &Parts,
-) -> Result<Expression, ConfigError> {
+    known: &KnownNames,
+) -> Result<NumberOrList, ConfigError> {
     let text = text.unwrap_or_default();
-    let formula = parse(text).map_err(|fault| misread(key.to_owned(), fault))?;
-    resolved(&formula, key, keys, parts)
+    let formula = parse_with_lists(text, &|name| known.list(name))
+        .map_err(|fault| misread(key.to_owned(), fault))?;
+    Ok(match formula {
+        NumberOrList::Number(number) => {
+            NumberOrList::Number(Arc::new(resolved(&number, key, keys, known)?))
+        }
+        NumberOrList::List(list) => NumberOrList::List(resolved_list(list, key, keys, known)?),
+    })
+}
+
+/// Replaces the names in a list as [`resolved`] does. Parts that several numbers share stay shared. Fails as [`resolved`] does.
+fn resolved_list(
+    list: NumberList,
+    key: &str,
+    keys: &Keys,
+    known: &KnownNames,
+) -> Result<NumberList, ConfigError> {
+    let mut elements = Vec::new();
+    for element in &list.elements {
+        elements.push(Arc::new(resolved(element, key, keys, known)?));
+    }
+    Ok(NumberList { elements, ..list })
 }
 
 /// The name of 2 π in formulas, unless an operand or a part has this name, such as a time constant.
 const TAU: &str = "tau";
 
 /// Replaces the names of parts by their formulas, and [`TAU`] by its value. Fails if the formula has a name that is neither an
-/// operand nor one of `parts`.
+/// operand nor an earlier part.
 fn resolved(
     formula: &Expression,
     key: &str,
     keys: &Keys,
-    parts: &Parts,
+    known: &KnownNames,
 ) -> Result<Expression, ConfigError> {
     let mut unknown = None;
     formula.walk(&mut |part| {
         let (Kind::Operand(name) | Kind::Word(name, _)) = &part.kind else { return };
-        let is_operand = keys.operands.0.iter().any(|operand| operand.name == *name);
-        let is_part = parts.iter().any(|(own, _)| own == name) || name == TAU;
-        if !is_operand && !is_part || matches!(part.kind, Kind::Word(..)) {
-            unknown.get_or_insert((part.span.bytes.clone(), name.clone()));
+        let is_part = known.parts.iter().any(|(own, _)| own == name) || name == TAU;
+        let is_known = known.is_operand(name) || is_part;
+        if !is_known || matches!(part.kind, Kind::Word(..)) {
+            unknown.get_or_insert((part.span.bytes.clone(), name.clone(), is_known));
         }
     });
-    if let Some((span, name)) = unknown {
-        let mut names: Vec<&str> = Vec::new();
-        names.extend(keys.operands.0.iter().map(|operand| operand.name.as_str()));
-        names.extend(parts.iter().map(|(part, _)| part.as_str()));
-        let message = format!("there is no operand and no earlier part `{name}`");
-        let remedy = format!("use one of these names: {}", names.join(", "));
+    if let Some((span, name, is_known)) = unknown {
+        let (message, remedy) = match is_known {
+            true => {
+                (format!("`{name}` is a number and has no index"), "write only its name".to_owned())
+            }
+            false => (
+                format!("there is no operand and no earlier part `{name}`"),
+                format!("use one of these names: {}", known.all(keys)),
+            ),
+        };
         return Err(ConfigError::new(key, message, remedy).at(span));
     }
-    let is_operand = |name: &str| keys.operands.0.iter().any(|operand| operand.name == name);
     let of_part = |name: &str| {
-        let part = parts.iter().find(|(own, _)| own == name).map(|(_, formula)| formula.clone());
-        let is_whole_turn = name == TAU && part.is_none() && !is_operand(name);
+        let part = known.parts.iter().find(|(own, _)| own == name);
+        let part = part.map(|(_, formula)| formula.clone());
+        let is_whole_turn = name == TAU && part.is_none() && !known.is_operand(name);
         if is_whole_turn { parse("2 * pi").ok().map(Arc::new) } else { part }
     };
     Ok(formula.with_operands(&of_part))
@@ -535,13 +700,19 @@ fn resolved(
 
 /// Parses a condition, for example `x < y` or `0 < x < y`, into an equivalent comparison, and replaces named parts. Fails if the
 /// text is not a condition, or as [`resolved`] does.
-fn promise(text: &str, key: &str, keys: &Keys, parts: &Parts) -> Result<Comparison, ConfigError> {
-    let comparison = parse_condition(text).map_err(|fault| {
-        let remedy = "give a condition, for example `x < y` or `s > 0 and x != 0`";
-        ConfigError::new(key, fault.message, remedy).at(fault.span.bytes)
-    })?;
+fn promise(
+    text: &str,
+    key: &str,
+    keys: &Keys,
+    known: &KnownNames,
+) -> Result<Comparison, ConfigError> {
+    let comparison =
+        parse_condition_with_lists(text, &|name| known.list(name)).map_err(|fault| {
+            let remedy = "give a condition, for example `x < y` or `s > 0 and x != 0`";
+            ConfigError::new(key, fault.message, remedy).at(fault.span.bytes)
+        })?;
     let Comparison { left, right, or_equal } = comparison;
-    let left = Arc::new(resolved(&left, key, keys, parts)?);
-    let right = Arc::new(resolved(&right, key, keys, parts)?);
+    let left = Arc::new(resolved(&left, key, keys, known)?);
+    let right = Arc::new(resolved(&right, key, keys, known)?);
     Ok(Comparison { left, right, or_equal })
 }

@@ -5,7 +5,7 @@
 //! allowed error. If this finds no plan, the module tries the same number of guard bits for every operation. Afterwards it
 //! removes bits that are not needed.
 
-use super::boxes::{BoxError, Partitions, ResultProof, undivided};
+use super::boxes::{BoxError, ErrorSearches, ResultProof, has_few_operands, undivided};
 use super::lower::{FoundPolynomials, Guards, PlanSearch, PlanStyle, lowered};
 use super::plan::ExpressionPlan;
 use super::refusal::PlanRefusal;
@@ -32,7 +32,7 @@ pub(super) struct Allocation {
     /// The number of divisions of the domain with which the errors were computed.
     pub(super) divisions: usize,
     /// The boxes of operands with which the errors were computed.
-    pub(super) partitions: Partitions,
+    pub(super) searches: ErrorSearches,
 }
 
 /// Returns guard bits with which every result keeps its allowed error, and the plan with them. The errors of polynomials are
@@ -56,24 +56,30 @@ fn allocated_with(
     none: &Guards,
     divisions: usize,
 ) -> Result<Allocation, PlanRefusal> {
-    let mut partitions = undivided(search.statement);
-    let (mut guards, mut plan) = match grown(search, none, divisions, &mut partitions) {
+    let mut searches = undivided(search.statement);
+    let (mut guards, mut plan) = match grown(search, none, divisions, &mut searches) {
         Ok(enough) => enough,
-        Err(refusal) => equally_many(search, none, divisions, &mut partitions).ok_or(refusal)?,
+        Err(refusal) => equally_many(search, none, divisions, &mut searches).ok_or(refusal)?,
     };
     for source in 0..guards.bits.len() {
+        let siblings = siblings_of(search.statement, &plan, source);
+        if siblings.first().is_some_and(|first| *first < source) {
+            continue;
+        }
         while guards.bits[source] > FIRST_GUARD {
             let mut fewer = guards.clone();
-            fewer.bits[source] -= 1;
+            for sibling in &siblings {
+                fewer.bits[*sibling] = (fewer.bits[*sibling] - 1).max(FIRST_GUARD);
+            }
             let Ok(candidate) = with_guards(search, &mut fewer, FIRST_GUARD) else { break };
-            if largest_excess(search.statement, &candidate, divisions, &mut partitions).is_some() {
+            if largest_excess(search.statement, &candidate, divisions, &mut searches).is_some() {
                 break;
             }
             guards = fewer;
             plan = candidate;
         }
     }
-    Ok(Allocation { guards, plan, divisions, partitions })
+    Ok(Allocation { guards, plan, divisions, searches })
 }
 
 /// Returns guard bits with which every result keeps its allowed error, and the plan with them. The function begins with few
@@ -83,17 +89,40 @@ fn grown(
     search: &PlanSearch<'_>,
     none: &Guards,
     divisions: usize,
-    partitions: &mut Partitions,
+    searches: &mut ErrorSearches,
 ) -> Result<(Guards, ExpressionPlan), PlanRefusal> {
     let (mut guards, mut plan) = first_plan(search, none)?;
     let statement = search.statement;
-    while let Some(excess) = largest_excess(statement, &plan, divisions, partitions) {
+    while let Some(excess) = largest_excess(statement, &plan, divisions, searches) {
         let source = excess.source(statement, &plan, &guards)?;
-        guards.add_bit(source);
+        for sibling in siblings_of(statement, &plan, source) {
+            guards.add_bit(sibling);
+        }
         plan = with_guards(search, &mut guards, FIRST_GUARD)
             .map_err(|_| excess.refusal(statement, &plan))?;
     }
     Ok((guards, plan))
+}
+
+/// Returns the rounding operations that get and lose guard bits together with `source`, in ascending order. With few operands, this is
+/// `source` alone. An expression with many operands mostly has the same parts for each element of a list. Operations with the same
+/// name, apart from the number at its end, then have the same number of guard bits, so that the search is shorter: `exponent`
+/// and `exponent2` belong together.
+fn siblings_of(
+    statement: &ExpressionStatement,
+    plan: &ExpressionPlan,
+    source: usize,
+) -> Vec<usize> {
+    let name_of = |source: usize| {
+        let node = plan.nodes.iter().find(|node| node.source == Some(source))?;
+        Some(node.name.trim_end_matches(|c: char| c.is_ascii_digit()))
+    };
+    let own = name_of(source);
+    if has_few_operands(statement) || own.is_none() {
+        return vec![source];
+    }
+    let most = plan.nodes.iter().filter_map(|node| node.source).max().unwrap_or(source);
+    (0..=most).filter(|other| name_of(*other) == own).collect()
 }
 
 /// Returns the same number of guard bits for all operations, with which every result keeps its allowed error; `None` if no
@@ -102,12 +131,12 @@ fn equally_many(
     search: &PlanSearch<'_>,
     none: &Guards,
     divisions: usize,
-    partitions: &mut Partitions,
+    searches: &mut ErrorSearches,
 ) -> Option<(Guards, ExpressionPlan)> {
     for guard in (0..=MOST_FIRST_GUARD).step_by(3) {
         let mut guards = none.clone();
         let Ok(plan) = with_guards(search, &mut guards, guard) else { continue };
-        if largest_excess(search.statement, &plan, divisions, partitions).is_none() {
+        if largest_excess(search.statement, &plan, divisions, searches).is_none() {
             return Some((guards, plan));
         }
     }
@@ -162,17 +191,17 @@ pub(super) struct ExcessiveResult {
 }
 
 /// Returns the result that exceeds its allowed error by the largest factor; `None` if every result keeps its error. The search begins
-/// with `partitions`, and replaces them ([`ResultProof::excess`]).
+/// with `searches`, and replaces them ([`ResultProof::excess`]).
 pub(super) fn largest_excess(
     statement: &ExpressionStatement,
     plan: &ExpressionPlan,
     divisions: usize,
-    partitions: &mut Partitions,
+    searches: &mut ErrorSearches,
 ) -> Option<ExcessiveResult> {
     let mut largest: Option<(f64, ExcessiveResult)> = None;
     for (result, stated) in statement.results.iter().enumerate() {
         let proof = ResultProof::new(statement, plan, result);
-        let Some(worst) = proof.excess(divisions, &mut partitions[result]) else { continue };
+        let Some(worst) = proof.excess(divisions, &mut searches[result]) else { continue };
         let factor = worst.units / stated.error;
         if largest.as_ref().is_some_and(|(most, _)| *most >= factor) {
             continue;

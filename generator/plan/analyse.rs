@@ -60,6 +60,15 @@ impl NodeError {
         self.ideal.is_finite() && self.error.is_finite()
     }
 
+    /// Returns limits that contain both values.
+    fn hull(self, other: Self) -> Self {
+        Self {
+            ideal: self.ideal.hull(other.ideal),
+            error: self.error.hull(other.error),
+            actual: self.actual.hull(other.actual),
+        }
+    }
+
     /// Returns the value, with its ideal value limited to `limits` too. The caller must know that `limits` contain it.
     fn within(self, limits: Enclosure) -> Self {
         let low = self.ideal.low.max(limits.low);
@@ -97,13 +106,80 @@ struct Known {
 }
 
 /// The analysis of the errors of a plan.
+///
+/// Each value of an integer part is a branch of its own. If a plan has several integer parts, the branches of one of
+/// them end where they meet again ([`joins`]), so that their numbers add up and do not multiply.
 #[derive(Clone, Copy)]
 pub(super) struct ErrorAnalysis<'p> {
     pub(super) plan: &'p ExpressionPlan,
     /// For each node, whether its value is needed. The other nodes get the value 0.
     pub(super) needed: &'p [bool],
+    /// For each node, the node at which the branches of its values end ([`joins`]).
+    pub(super) joins: &'p [Option<NodeId>],
     /// The only rounding operation whose error counts, by its number; `None` if all errors count.
     pub(super) only: Option<usize>,
+}
+
+/// Returns for each integer part of a plan the first later node through which `result` reads it, if `result` depends on several integer
+/// parts. Returns `None` for the other nodes, and for an integer part that reaches `result` only by several ways. `needed` must have
+/// the nodes on which `result` depends.
+pub(super) fn joins(plan: &ExpressionPlan, needed: &[bool], result: NodeId) -> Vec<Option<NodeId>> {
+    let is_integer = |node: usize| {
+        needed[node] && matches!(plan.nodes[node].operation, Operation::IntegerPart(_))
+    };
+    let integers: Vec<usize> = (0..plan.nodes.len()).filter(|node| is_integer(*node)).collect();
+    let mut joins = vec![None; plan.nodes.len()];
+    if integers.len() < 2 {
+        return joins;
+    }
+    // For each node, the first later node that is on all ways from it to the result.
+    let mut next: Vec<Option<usize>> = vec![None; plan.nodes.len()];
+    let mut is_on_a_way = vec![false; plan.nodes.len()];
+    is_on_a_way[result.0] = true;
+    for at in (0..=result.0).rev() {
+        if !is_on_a_way[at] || !needed[at] {
+            continue;
+        }
+        for input in plan.nodes[at].operation.inputs() {
+            next[input.0] = match is_on_a_way[input.0] {
+                false => Some(at),
+                true => common_way(&next, next[input.0], Some(at)),
+            };
+            is_on_a_way[input.0] = true;
+        }
+    }
+    // The branches of these nodes have values that later nodes must know, so that none of them joins others.
+    let branches = |node: usize| {
+        let operation = &plan.nodes[node].operation;
+        matches!(
+            operation,
+            Operation::Normalise { .. } | Operation::Places(_) | Operation::IntegerPart(_)
+        )
+    };
+    for integer in integers {
+        let mut join = next[integer];
+        while let Some(at) = join.filter(|at| branches(*at)) {
+            join = next[at];
+        }
+        joins[integer] = join.filter(|join| *join != result.0).map(NodeId);
+    }
+    joins
+}
+
+/// Returns the first node that is on the ways of both nodes. `next` has the next node of each node on its way.
+fn common_way(
+    next: &[Option<usize>],
+    mut first: Option<usize>,
+    mut second: Option<usize>,
+) -> Option<usize> {
+    loop {
+        match (first, second) {
+            (Some(a), Some(b)) if a == b => return first,
+            (Some(a), Some(b)) if a < b => first = next[a],
+            (Some(_), Some(b)) => second = next[b],
+            _ => return None,
+        }
+    }
 }
 
 impl ErrorAnalysis<'_> {
@@ -111,11 +187,19 @@ impl ErrorAnalysis<'_> {
     /// `operands` has the limits of the operands' values.
     pub(super) fn run(&self, operands: &[(&str, Enclosure)], visit: &mut Visit<'_>) {
         let values = Vec::with_capacity(self.plan.nodes.len());
-        self.run_from(Known { values, undecided: None }, operands, visit);
+        let known = Known { values, undecided: None };
+        self.run_from(known, self.plan.nodes.len(), operands, visit);
     }
 
-    fn run_from(&self, mut known: Known, operands: &[(&str, Enclosure)], visit: &mut Visit<'_>) {
-        while known.values.len() < self.plan.nodes.len() {
+    /// Analyses the nodes after those of `known`, up to the node number `end`, which is not analysed.
+    fn run_from(
+        &self,
+        mut known: Known,
+        end: usize,
+        operands: &[(&str, Enclosure)],
+        visit: &mut Visit<'_>,
+    ) {
+        while known.values.len() < end {
             let id = NodeId(known.values.len());
             let node = self.plan.node(id);
             let inputs = node.operation.inputs();
@@ -126,11 +210,14 @@ impl ErrorAnalysis<'_> {
             } else if !node.has_stated_error() && !is_choice && inputs.iter().any(is_unknown) {
                 known.values.push(NodeError::UNKNOWN);
             } else if let Operation::Normalise { word, by_pairs } = node.operation {
-                return self.each_shift(word, by_pairs, &known, operands, visit);
+                return self.each_shift(word, by_pairs, &known, end, operands, visit);
             } else if let Operation::IntegerPart(a) = node.operation
                 && let Some(integers) = self.integers(a, &known.values)
             {
-                return self.each_integer(a, integers, &known, operands, visit);
+                match self.joins[id.0].filter(|join| join.0 + 1 < end) {
+                    None => return self.each_integer(a, integers, &known, end, operands, visit),
+                    Some(join) => known = self.joined(a, integers, &known, join, operands),
+                }
             } else {
                 match self.value(id, &known.values, operands) {
                     Ok(value) => known.values.push(value),
@@ -150,6 +237,7 @@ impl ErrorAnalysis<'_> {
         word: NodeId,
         by_pairs: bool,
         known: &Known,
+        end: usize,
         operands: &[(&str, Enclosure)],
         visit: &mut Visit<'_>,
     ) {
@@ -165,7 +253,7 @@ impl ErrorAnalysis<'_> {
             self.limit(&mut branch.values, word, NOTHING);
             branch.values.push(NodeError::exactly(NOTHING));
             let places = Enclosure::exactly(f64::from(all_places / step));
-            self.with_places(branch, places, operands, visit);
+            self.with_places(branch, places, end, operands, visit);
         }
         let mut places = 0;
         while places < format.width() {
@@ -192,7 +280,7 @@ impl ErrorAnalysis<'_> {
                 actual: scaled(actual, factor),
             });
             let count = Enclosure::exactly(f64::from(shift / step));
-            self.with_places(branch, count, operands, visit);
+            self.with_places(branch, count, end, operands, visit);
         }
     }
 
@@ -210,6 +298,7 @@ impl ErrorAnalysis<'_> {
         id: NodeId,
         (first, last): (i64, i64),
         known: &Known,
+        end: usize,
         operands: &[(&str, Enclosure)],
         visit: &mut Visit<'_>,
     ) {
@@ -219,8 +308,40 @@ impl ErrorAnalysis<'_> {
             let limits = Enclosure::between(integer as f64, integer as f64 + 1.0 - unit);
             self.limit(&mut branch.values, id, limits);
             branch.values.push(NodeError::exactly(Enclosure::exactly(integer as f64)));
-            self.run_from(branch, operands, visit);
+            self.run_from(branch, end, operands, visit);
         }
+    }
+
+    /// Analyses the nodes up to `join`, once for each value that an integer part can have, and returns limits that contain the
+    /// values of all branches.
+    fn joined(
+        &self,
+        id: NodeId,
+        integers: (i64, i64),
+        known: &Known,
+        join: NodeId,
+        operands: &[(&str, Enclosure)],
+    ) -> Known {
+        let mut all: Option<Known> = None;
+        let before = known.values.len();
+        self.each_integer(id, integers, known, join.0 + 1, operands, &mut |values, undecided| {
+            match &mut all {
+                None => {
+                    let mut joined = known.clone();
+                    joined.values.extend_from_slice(&values[before..]);
+                    joined.undecided = undecided.cloned();
+                    all = Some(joined);
+                }
+                Some(joined) => {
+                    for (joined, value) in joined.values[before..].iter_mut().zip(&values[before..])
+                    {
+                        *joined = joined.hull(*value);
+                    }
+                    joined.undecided = joined.undecided.take().or_else(|| undecided.cloned());
+                }
+            }
+        });
+        all.expect("an integer part has a value")
     }
 
     /// Continues the analysis after a normalised word, which is the last value of `branch`. The next node is the number of bits
@@ -229,11 +350,12 @@ impl ErrorAnalysis<'_> {
         &self,
         mut branch: Known,
         places: Enclosure,
+        end: usize,
         operands: &[(&str, Enclosure)],
         visit: &mut Visit<'_>,
     ) {
         branch.values.push(NodeError::exactly(places));
-        self.run_from(branch, operands, visit);
+        self.run_from(branch, end, operands, visit);
     }
 
     /// Limits a node to hardware values within `limits`, and also the nodes from which it is computed, if limits for them
@@ -456,6 +578,10 @@ impl ErrorAnalysis<'_> {
                 let [low, high] = [low, high].map(|raw| rounding.shift(raw, places));
                 let after = Enclosure::between(node.format.to_f64(low), node.format.to_f64(high));
                 shortened(a, after)
+            }
+            // A shift keeps the sign.
+            Operation::ShiftRight(a, _) | Operation::Scale(a) if input(a).low >= 0.0 => {
+                Enclosure::between(0.0, f64::INFINITY)
             }
             Operation::Middle(a) => {
                 let before = self.plan.node(a).format;

@@ -13,7 +13,8 @@ use std::collections::BinaryHeap;
 
 use glint_base::fixed::exp2;
 
-use super::analyse::{ErrorAnalysis, NodeError, Undecided};
+use super::analyse::{ErrorAnalysis, NodeError, Undecided, joins};
+use super::node::NodeId;
 use super::plan::ExpressionPlan;
 use super::statement::ExpressionStatement;
 
@@ -76,12 +77,62 @@ fn size_of(limits: &OperandBox) -> u128 {
 /// A search that begins with many boxes makes at least one division for so many that it may make.
 const LEAST_SHARE_OF_DIVISIONS: usize = 4;
 
-/// For each result, boxes that together contain all operands for which it is promised.
-pub(super) type Partitions = Vec<Vec<OperandBox>>;
+/// The most operands of an expression whose domain is divided as often as the caller wishes.
+const FEW_OPERANDS: usize = 3;
 
-/// Returns partitions that consist of the whole domain.
-pub(super) fn undivided(statement: &ExpressionStatement) -> Partitions {
-    vec![vec![statement.domain()]; statement.results.len()]
+/// The least number of divisions of a domain with many operands.
+const LEAST_DIVISIONS: usize = 8;
+
+/// What the search for an excessive error of a result learns from the plans before.
+#[derive(Clone)]
+pub(super) struct ErrorSearch {
+    /// Boxes that together contain all operands for which the result is promised.
+    boxes: Vec<OperandBox>,
+    /// Single combinations with large errors, if the expression has many operands. They are tried first.
+    examples: Vec<OperandBox>,
+}
+
+/// What is known about the errors of each result.
+pub(super) type ErrorSearches = Vec<ErrorSearch>;
+
+/// Returns searches that consist of the whole domain.
+pub(super) fn undivided(statement: &ExpressionStatement) -> ErrorSearches {
+    let domain = statement.domain();
+    let examples = if has_few_operands(statement) { Vec::new() } else { corners(&domain) };
+    vec![ErrorSearch { boxes: vec![domain], examples }; statement.results.len()]
+}
+
+/// Returns whether the domain of a statement is divided as often as the caller wishes.
+pub(super) fn has_few_operands(statement: &ExpressionStatement) -> bool {
+    statement.operands.len() <= FEW_OPERANDS
+}
+
+/// Returns the number of divisions of the domain that take an acceptable time: `wished` with up to 3 operands, a 16th of it with 4, and
+/// half as many with each further operand.
+pub(super) fn affordable(statement: &ExpressionStatement, wished: usize) -> usize {
+    match statement.operands.len().saturating_sub(FEW_OPERANDS) {
+        0 => wished,
+        more => (wished >> (3 + more).min(16)).max(LEAST_DIVISIONS),
+    }
+}
+
+/// Returns combinations at the ends of a domain: all operands at the same end, or one operand at the other end.
+fn corners(domain: &OperandBox) -> Vec<OperandBox> {
+    let end = |(low, high): (i64, i64), is_high: bool| {
+        let value = if is_high { high } else { low };
+        (value, value)
+    };
+    let mut corners = Vec::new();
+    for is_high in [false, true] {
+        let all: OperandBox = domain.iter().map(|limits| end(*limits, is_high)).collect();
+        for (operand, limits) in domain.iter().enumerate() {
+            let mut corner = all.clone();
+            corner[operand] = end(*limits, !is_high);
+            corners.push(corner);
+        }
+        corners.push(all);
+    }
+    corners
 }
 
 /// The proof of an error bound for one result of a plan.
@@ -91,6 +142,8 @@ pub(super) struct ResultProof<'p> {
     pub(super) result: usize,
     /// For each node, whether the result depends on it.
     pub(super) needed: Vec<bool>,
+    /// For each node, the node at which the branches of its values end ([`joins`]).
+    joins: Vec<Option<NodeId>>,
 }
 
 impl<'p> ResultProof<'p> {
@@ -99,7 +152,9 @@ impl<'p> ResultProof<'p> {
         plan: &'p ExpressionPlan,
         result: usize,
     ) -> Self {
-        Self { statement, plan, result, needed: plan.needed_for(result) }
+        let needed = plan.needed_for(result);
+        let joins = joins(plan, &needed, plan.proved[result]);
+        Self { statement, plan, result, needed, joins }
     }
 
     /// Returns the box with the largest error. Boxes are divided until this error is at most `enough` units, or `divisions`
@@ -107,6 +162,7 @@ impl<'p> ResultProof<'p> {
     /// if the result is promised for no operands.
     pub(super) fn worst(&self, enough: f64, divisions: usize) -> Option<BoxError> {
         let mut open = self.errors_in(&[self.statement.domain()]);
+        let divisions = affordable(self.statement, divisions);
         self.divide(&mut open, divisions, &mut |worst| worst.units <= enough);
         open.pop()
     }
@@ -117,6 +173,7 @@ impl<'p> ResultProof<'p> {
     pub(super) fn whole_units(&self, unit: f64, divisions: usize) -> Option<f64> {
         let whole = |error: &BoxError| (error.units / unit).ceil();
         let mut open = self.errors_in(&[self.statement.domain()]);
+        let divisions = affordable(self.statement, divisions);
         self.divide(&mut open, divisions, &mut |worst| {
             let single = self.error_in(middle_of(&worst.limits));
             single.is_some_and(|single| whole(&single) == whole(worst))
@@ -129,16 +186,20 @@ impl<'p> ResultProof<'p> {
     /// error that is not allowed, or if the result is promised for no operands.
     ///
     /// A single combination ends the search early, because no division shows a smaller error for it. The search begins with the
-    /// boxes in `partition`, which together contain all operands for which the result is promised. If the error is allowed, the
-    /// boxes that show it replace them, because they mostly show it for a similar plan, too.
+    /// examples and the boxes in `search_before`. If the error is allowed, the boxes that show it replace them, because they mostly show
+    /// it for a similar plan, too. Otherwise, a single combination becomes an example if the expression has many operands.
     pub(super) fn excess(
         &self,
         divisions: usize,
-        partition: &mut Vec<OperandBox>,
+        search_before: &mut ErrorSearch,
     ) -> Option<BoxError> {
         let stated = &self.statement.results[self.result];
         let exceeds = |error: &BoxError| !stated.allows(error.units);
-        let mut open = self.errors_in(partition);
+        if let Some(example) = self.errors_in(&search_before.examples).pop().filter(exceeds) {
+            return Some(example);
+        }
+        let mut open = self.errors_in(&search_before.boxes);
+        let divisions = affordable(self.statement, divisions);
         let least = divisions / LEAST_SHARE_OF_DIVISIONS;
         let divisions = divisions.saturating_sub(open.len()).max(least);
         let mut single = None;
@@ -148,13 +209,16 @@ impl<'p> ResultProof<'p> {
             }
             !exceeds(worst) || single.is_some()
         });
-        if single.is_some() {
-            return single;
+        if let Some(single) = single {
+            if !has_few_operands(self.statement) {
+                search_before.examples.push(single.limits.clone());
+            }
+            return Some(single);
         }
         if open.peek().is_some_and(exceeds) {
             return open.pop();
         }
-        *partition = open.into_iter().map(|error| error.limits).collect();
+        search_before.boxes = open.into_iter().map(|error| error.limits).collect();
         None
     }
 
@@ -207,7 +271,8 @@ impl<'p> ResultProof<'p> {
         only: Option<usize>,
         visit: &mut dyn FnMut(&NodeError, Option<&Undecided>),
     ) {
-        let analysis = ErrorAnalysis { plan: self.plan, needed: &self.needed, only };
+        let (plan, needed, joins) = (self.plan, &self.needed, &self.joins);
+        let analysis = ErrorAnalysis { plan, needed, joins, only };
         let node = self.plan.proved[self.result];
         let operands = self.statement.enclosed_operands(limits);
         analysis.run(&operands, &mut |values, undecided| visit(&values[node.0], undecided));

@@ -10,6 +10,7 @@ use std::sync::Arc;
 
 use glint_formula::{Comparison, Enclosure, Expression, Function, Kind, Operator, RBig};
 
+use super::order;
 use super::statement::{ExpressionStatement, StatedResult};
 use super::uses::PartUses;
 
@@ -414,11 +415,18 @@ impl GuardedFormula {
         formula: &Expression,
     ) -> Self {
         let facts = facts_of(statement, uses);
-        let is_plain = facts.is_empty() && !formula.has(&|kind| matches!(kind, Kind::If(..)));
+        let is_guarded = |kind: &Kind| {
+            let is_extreme =
+                matches!(kind, Kind::Binary(Operator::Max | Operator::Min, a, _) if a.varies());
+            is_extreme || matches!(kind, Kind::If(..))
+        };
+        let is_plain = facts.is_empty() && !formula.has(&is_guarded);
         if is_plain {
             return Self { formula: Arc::new(formula.clone()), parts: Vec::new() };
         }
-        let mut rewriting = GuardRewriting { statement, parts: Vec::new(), cases: 0 };
+        let domain = statement.domain();
+        let operands = statement.enclosed_operands(&domain);
+        let mut rewriting = GuardRewriting { statement, operands, parts: Vec::new(), cases: 0 };
         let formula = rewriting.rewritten(formula, &facts, false, &mut HashMap::new());
         Self { formula, parts: rewriting.parts }
     }
@@ -440,6 +448,8 @@ type RewrittenParts = HashMap<*const Expression, Arc<Expression>>;
 /// The rewriting of a formula, in which operands replace the parts with facts.
 struct GuardRewriting<'s> {
     statement: &'s ExpressionStatement,
+    /// The operands with the limits of their domains.
+    operands: Vec<(&'s str, Enclosure)>,
     parts: Vec<GuardedPart>,
     /// The number of cases of choices so far.
     cases: usize,
@@ -499,7 +509,8 @@ impl GuardRewriting<'_> {
                 Kind::If(Comparison { left, right, or_equal }, yes, no)
             }
         };
-        Arc::new(Expression::new(kind, part.span.clone()))
+        let rewritten = Arc::new(Expression::new(kind, part.span.clone()));
+        order::clamped(part, &rewritten, &self.operands).unwrap_or(rewritten)
     }
 
     /// Returns a case of a choice, in which the facts of the comparison's outcome hold too. The facts of further cases are left out

@@ -311,20 +311,20 @@ fn has_long_table(plan: &ExpressionPlan) -> bool {
 /// Returns a plan in the given style that keeps the allowed errors, as far as `divisions` divisions of the domain show. Fails
 /// if the style has no such plan.
 fn candidate_with(search: &PlanSearch<'_>, style: PlanStyle) -> Result<PlanCandidate, PlanRefusal> {
-    let Allocation { mut guards, plan: estimate, divisions, mut partitions } =
+    let Allocation { mut guards, plan: estimate, divisions, mut searches } =
         allocated(search, style)?;
     let statement = search.statement;
     let mut plan = with_polynomials(search, &guards, estimate)?;
     // The polynomials can have other formats than estimated, and then other errors.
     for _ in 0..MOST_CORRECTIONS {
-        let excess = largest_excess(statement, &plan, divisions, &mut partitions);
+        let excess = largest_excess(statement, &plan, divisions, &mut searches);
         let Some(excess) = excess else { return Ok(PlanCandidate { plan, divisions }) };
         let source = excess.source(statement, &plan, &guards)?;
         guards.add_bit(source);
         let estimate = lowered(search, &guards, 0, &FoundPolynomials::default())?.0;
         plan = with_polynomials(search, &guards, estimate)?;
     }
-    match largest_excess(statement, &plan, divisions, &mut partitions) {
+    match largest_excess(statement, &plan, divisions, &mut searches) {
         Some(excess) => Err(excess.refusal(statement, &plan)),
         None => Ok(PlanCandidate { plan, divisions }),
     }

@@ -47,6 +47,7 @@ mod facts;
 mod find;
 mod lower;
 mod node;
+mod order;
 mod plan;
 mod range;
 mod refusal;

@@ -24,7 +24,8 @@ use glint_formula::{Comparison, Enclosure, Expression, Function, Kind, Operator}
 
 use super::boxes::ResultProof;
 use super::facts::{has_fact, is_polynomial};
-use super::node::{Approximation, NodeId, Operation, StatedValue, ValueAccuracy};
+use super::node::{Approximation, NodeId, Operation, PlanNode, StatedValue, ValueAccuracy};
+use super::order;
 use super::plan::ExpressionPlan;
 use super::range::{LIMIT_THE_OPERANDS, RangeMemo};
 use super::refusal::PlanRefusal;
@@ -403,7 +404,8 @@ impl<'s> Lowering<'s> {
     /// Returns the node of a part of a formula. Adds the node and all nodes that it reads if the part has no node. Fails if a
     /// part has too many bits, no finite values, or no rule. The refusal has the location of the part.
     fn part(&mut self, part: &Expression) -> Result<NodeId, PlanRefusal> {
-        let is_limited = has_fact(self.statement, &self.uses_of(part), part);
+        let is_limited = has_fact(self.statement, &self.uses_of(part), part)
+            || order::has_limits(part, &self.whole_domain());
         let same = self.known_part(part, is_limited).or_else(|| self.known_part(part, false));
         if let Some(known) = same
             && known.is_limited == is_limited
@@ -434,11 +436,23 @@ impl<'s> Lowering<'s> {
         })
     }
 
+    /// Returns the operands with the limits of their domains.
+    fn whole_domain(&self) -> Vec<(&str, Enclosure)> {
+        self.statement.enclosed_operands(&self.statement.domain())
+    }
+
     /// Returns a node with the value of `node`, which is the node of `part`, within the limits that follow from the conditions of
-    /// its uses. Returns `node` itself if it is rounded. Fails if the part has no finite values.
+    /// its uses, or from a maximum in the part. Returns a copy of `node` if it is rounded. Fails if the part has no finite values.
     fn limited_by_facts(&mut self, part: &Expression, node: NodeId) -> Result<NodeId, PlanRefusal> {
         if !self.is_exact(node) {
-            return Ok(node);
+            let limits = order::limits(part, &self.whole_domain());
+            if !limits.low.is_finite() && !limits.high.is_finite() {
+                return Ok(node);
+            }
+            // The rounded value can lie beyond the limits, so that only the exact value has them.
+            let own = self.plan.node(node).clone();
+            let copy = PlanNode { limits, source: None, stated: None, ..own };
+            return Ok(self.plan.push_copy(&copy, Operation::Scale(node)));
         }
         let limits = self.range(part)?;
         if self.is_promised_alone() && !self.plan.is_narrower(node, limits) {

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use glint_formula::{Comparison, Enclosure, Expression, Function, Kind, Operator};
 
-use super::boxes::{BoxScore, OperandBox, best_halves};
+use super::boxes::{BoxScore, OperandBox, affordable, best_halves};
 use super::facts::GuardedFormula;
 use super::refusal::PlanRefusal;
 use super::statement::{ExpressionStatement, StatedResult};
@@ -219,9 +219,11 @@ fn range_of(
     }
     let high_of = |it: BoxValues| BoxEnd { limits: it.limits, end: it.values.high };
     let low_of = |it: BoxValues| BoxEnd { limits: it.limits, end: -it.values.low };
+    let divisions = affordable(statement, DIVISIONS_OF_AN_END);
+    let boxes = finite.iter().cloned();
     let high =
-        largest(finite.iter().cloned().map(high_of), &|limits| values_in(limits).map(high_of));
-    let low = largest(finite.iter().cloned().map(low_of), &|limits| values_in(limits).map(low_of));
+        largest(divisions, boxes.clone().map(high_of), &|limits| values_in(limits).map(high_of));
+    let low = largest(divisions, boxes.map(low_of), &|limits| values_in(limits).map(low_of));
     Ok(Enclosure::between(-low, high))
 }
 
@@ -245,15 +247,16 @@ pub fn least_size(statement: &ExpressionStatement, result: usize) -> Result<f64,
     values.map(|values| values.low.max(0.0)).map_err(|refusal| refusal.of_result(result))
 }
 
-/// Returns an upper limit of the values in all of the boxes. `end_in` returns the upper limit in a box, or `None` if nothing is
+/// Returns an upper limit of the values in all of the boxes, after `divisions` divisions of the box with the largest limit. `end_in` returns the upper limit in a box, or `None` if nothing is
 /// promised there.
 fn largest(
+    divisions: usize,
     boxes: impl Iterator<Item = BoxEnd>,
     end_in: &dyn Fn(&OperandBox) -> Option<BoxEnd>,
 ) -> f64 {
     let mut open: BinaryHeap<BoxEnd> = boxes.collect();
     let mut end = f64::NEG_INFINITY;
-    for _ in 0..DIVISIONS_OF_AN_END {
+    for _ in 0..divisions {
         let Some(first) = open.pop() else { break };
         end = first.end;
         match best_halves(&first.limits, end_in) {

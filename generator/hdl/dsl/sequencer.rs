@@ -1,13 +1,13 @@
 //! Builds the sequencer of a device, which executes its microprogram: the address counter, the run flag, the control ROM and the
 //! handshake outputs.
 
-use std::collections::HashSet;
+use std::collections::{BTreeSet, HashMap, HashSet};
 
 use super::Designer;
 use crate::netlist::microcode;
 use crate::netlist::{
-    Control, Driver, Field, FieldId, Microinstruction, NetId, NetlistRom as NetRom, Op, Partition,
-    RegisterKind, Role,
+    Control, Driver, Field, FieldId, FieldKind, Microinstruction, NetId, NetlistRom as NetRom, Op,
+    Partition, RegisterKind, Role,
 };
 use glint_base::diagnostic::SourceLocation;
 use glint_base::fixed::{Format, MAX_WIDTH};
@@ -151,21 +151,28 @@ fn valid_line(d: &Designer) -> NetId {
     source
 }
 
-/// Limits the control word to 64 bits: moves fields of parts, the last field first,
-/// into ROMs of their own with the same address. Fields of the description itself always stay.
+/// Limits the control word to 64 bits: moves fields into ROMs of their own with the same address, the last field first. The fields of
+/// parts move before those of the description itself. Of these, only the enables of registers can move.
 fn moved_beside(d: &Designer, microinstructions: &mut [Microinstruction], address: NetId) {
     let width_of = |field: &Field| d.net(field.net).format.width();
     let mut fields = d.with(|inner| inner.design.control.fields.clone());
     let mut total: u32 = fields.iter().map(width_of).sum();
     let mut left: Vec<u32> = (0..fields.len() as u32).collect();
     let mut beside: Vec<(Field, Vec<u64>)> = Vec::new();
-    for at in (0..fields.len()).rev() {
-        if total <= MAX_WIDTH || !d.with(|inner| inner.placed.contains(&fields[at].net)) {
-            continue;
+    let is_of_part = |field: &Field| d.with(|inner| inner.placed.contains(&field.net));
+    let (of_parts, own): (Vec<usize>, Vec<usize>) =
+        (0..fields.len()).rev().partition(|at| is_of_part(&fields[*at]));
+    let enables = own.into_iter().filter(|at| matches!(fields[*at].kind, FieldKind::Enable));
+    let mut moved = BTreeSet::new();
+    for at in of_parts.into_iter().chain(enables) {
+        if total > MAX_WIDTH {
+            total -= width_of(&fields[at]);
+            moved.insert(at);
         }
+    }
+    for at in moved.into_iter().rev() {
         left.remove(at);
         let field = fields.remove(at);
-        total -= width_of(&field);
         let values = microinstructions.iter_mut().map(|it| it.values.remove(at)).collect();
         beside.push((field, values));
     }
@@ -174,13 +181,17 @@ fn moved_beside(d: &Designer, microinstructions: &mut [Microinstruction], addres
             inner.design.nets[field.net.index()].driver = Driver::Field(FieldId(at as u32));
         }
         inner.design.control.fields = fields;
-        let mut partly_used = HashSet::new();
-        for (at, before) in (0..).zip(&left) {
-            if inner.partly_used.contains(&FieldId(*before)) {
-                partly_used.insert(FieldId(at));
-            }
+        let numbers: HashMap<FieldId, FieldId> =
+            (0..).zip(&left).map(|(at, before)| (FieldId(*before), FieldId(at))).collect();
+        let renumbered = |fields: &HashSet<FieldId>| -> HashSet<FieldId> {
+            fields.iter().filter_map(|field| numbers.get(field).copied()).collect()
+        };
+        inner.partly_used = renumbered(&inner.partly_used);
+        inner.picked = renumbered(&inner.picked);
+        inner.views.retain(|_, view| numbers.contains_key(&view.field));
+        for view in inner.views.values_mut() {
+            view.field = numbers[&view.field];
         }
-        inner.partly_used = partly_used;
     });
     let mut number = 1;
     while !beside.is_empty() {

@@ -1,0 +1,103 @@
+//! Operands and results of the device `expression` that are lists of numbers.
+//!
+//! An entry with the field `size` or `axes` is a list. Each of its numbers is a port: `n = { axes = "xyz", … }` has the ports `nx`, `ny`
+//! and `nz`, and `v = { size = 2, … }` has the ports `v_0` and `v_1`.
+
+use std::sync::Arc;
+
+use glint_base::config_error::ConfigError;
+use glint_config::TableEntry;
+use glint_formula::{Expression, LONGEST_LIST, NumberList};
+
+use super::Keys;
+
+/// The most numbers that all operands, or all results, have together.
+pub(super) const MOST_NUMBERS: usize = 32;
+
+/// Returns the names of the ports of a list: one for each axis, or numbers from 0 on.
+pub(super) fn element_names(name: &str, count: usize, axes: Option<&str>) -> Vec<String> {
+    match axes {
+        Some(axes) => axes.chars().map(|axis| format!("{name}{axis}")).collect(),
+        None => (0..count).map(|number| format!("{name}_{number}")).collect(),
+    }
+}
+
+/// Returns the names of the ports that an operand has: its own name, or one for each number of a list. `axes` has the axes of a
+/// list with axes.
+pub(super) struct OperandPorts {
+    pub(super) names: Vec<String>,
+    pub(super) axes: Option<String>,
+    pub(super) is_list: bool,
+}
+
+impl OperandPorts {
+    /// # Errors
+    /// Fails if the axes are no different letters, or if their number is not `size`.
+    pub(super) fn of(record: &TableEntry) -> Result<Self, ConfigError> {
+        let key = |field: &str| format!("operands.{}.{field}", record.name);
+        let name = &record.name;
+        let axes = axes_of(record, &key("axes"))?;
+        let size = record.bits("size").map(|size| size as usize);
+        let Some(count) = axes.as_ref().map(String::len).or(size) else {
+            return Ok(Self { names: vec![name.clone()], axes: None, is_list: false });
+        };
+        if let Some(size) = size.filter(|size| *size != count) {
+            let message = format!("`{name}` has {size} numbers and {count} axes");
+            return Err(ConfigError::new(key("size"), message, "give as many axes as numbers"));
+        }
+        Ok(Self { names: element_names(name, count, axes.as_deref()), axes, is_list: true })
+    }
+
+    /// Returns the list that the operand's name stands for in a formula; `None` for a number.
+    pub(super) fn list(&self) -> Option<NumberList> {
+        let elements = self.names.iter().map(|name| Arc::new(Expression::operand(name))).collect();
+        let span = (0..0).into();
+        self.is_list.then(|| NumberList { elements, axes: self.axes.clone(), span })
+    }
+}
+
+/// Returns the axes that an entry states. Fails unless they are 2 to 16 different letters.
+pub(super) fn axes_of(record: &TableEntry, key: &str) -> Result<Option<String>, ConfigError> {
+    let Some(axes) = record.text("axes") else { return Ok(None) };
+    let is_repeated =
+        |(at, axis): (usize, char)| axes.chars().take(at).any(|before| before == axis);
+    let are_letters = axes.chars().all(|axis| axis.is_ascii_lowercase());
+    if !are_letters || axes.chars().enumerate().any(is_repeated) {
+        let message = format!("`{axes}` are no axes");
+        return Err(ConfigError::new(
+            key,
+            message,
+            "give different small letters, such as \"xyz\"",
+        ));
+    }
+    if !(2..=LONGEST_LIST).contains(&axes.len()) {
+        let message = format!("a list has 2 to {LONGEST_LIST} axes");
+        return Err(ConfigError::new(key, message, "give a letter for each number of the list"));
+    }
+    Ok(Some(axes.to_owned()))
+}
+
+/// Returns the entry of the table `results` that states the result with the name `port`.
+///
+/// # Panics
+/// Panics if no entry has such a result.
+pub fn result_entry<'k>(keys: &'k Keys, port: &str) -> &'k TableEntry {
+    entry(&keys.results.0, port)
+}
+
+/// Returns the entry of the table `operands` that states the operand with the name `port`. Panics if no entry has such an operand.
+pub(super) fn operand_entry<'k>(keys: &'k Keys, port: &str) -> &'k TableEntry {
+    entry(&keys.operands.0, port)
+}
+
+fn entry<'k>(records: &'k [TableEntry], port: &str) -> &'k TableEntry {
+    let is_element = |record: &TableEntry| {
+        let end = port.strip_prefix(record.name.as_str());
+        end.is_some_and(|end| match end.strip_prefix('_') {
+            Some(number) => number.bytes().all(|digit| digit.is_ascii_digit()),
+            None => end.len() == 1,
+        })
+    };
+    let own = records.iter().find(|record| record.name == port);
+    own.or_else(|| records.iter().find(|record| is_element(record))).expect("a stated port")
+}

@@ -1,0 +1,188 @@
+//! What a maximum or a minimum says about parts of formulas that compare numbers with it.
+//!
+//! A number minus a maximum that includes it is never above 0: `v0 - max(v0, v1)` ≤ 0. At least one of these
+//! differences is 0, so that a sum of functions of all of them has a lower limit: `exp(v0 - m) + exp(v1 - m)` ≥ 1, with m the
+//! maximum. Interval arithmetic alone shows neither, because it counts the number and the maximum as independent.
+
+use std::sync::Arc;
+
+use glint_formula::{Enclosure, Expression, Kind, Operator};
+
+/// The most numbers of a maximum or a minimum, and the most terms of a sum.
+const MOST_NUMBERS: usize = 32;
+
+/// The most parts of a sum that is examined.
+const MOST_PARTS: u32 = 4000;
+
+/// The smallest difference from a maximum for which a term of a sum is examined. A term with an exponential function is
+/// 0 beyond it.
+const LEAST_DIFFERENCE: f64 = -1e6;
+
+/// Returns limits of the values of `part` that hold for all operands. `operands` has limits of the operands. The limits are infinite
+/// if nothing is known.
+pub(super) fn limits(part: &Expression, operands: &[(&str, Enclosure)]) -> Enclosure {
+    let mut limits = Enclosure::between(f64::NEG_INFINITY, f64::INFINITY);
+    match &part.kind {
+        Kind::Binary(Operator::Sub, a, b) => {
+            if has_number(b, Operator::Max, a) || has_number(a, Operator::Min, b) {
+                limits.high = 0.0;
+            }
+            if has_number(a, Operator::Max, b) || has_number(b, Operator::Min, a) {
+                limits.low = 0.0;
+            }
+        }
+        Kind::Binary(Operator::Add, ..) => {
+            if let Some(least) = least_sum(part, operands) {
+                limits.low = least;
+            }
+        }
+        _ => {}
+    }
+    limits
+}
+
+/// Returns whether [`limits`] states a limit.
+pub(super) fn has_limits(part: &Expression, operands: &[(&str, Enclosure)]) -> bool {
+    let limits = limits(part, operands);
+    limits.low.is_finite() || limits.high.is_finite()
+}
+
+/// Returns an equal formula whose enclosure keeps the limits: the part is compared with them. The operands in `part` must be those
+/// of the statement. Returns `None` without limits.
+pub(super) fn clamped(
+    part: &Expression,
+    rewritten: &Arc<Expression>,
+    operands: &[(&str, Enclosure)],
+) -> Option<Arc<Expression>> {
+    let limits = limits(part, operands);
+    let with = |operator, limit: f64| {
+        // The decimal number may be above the binary one by less than half a unit.
+        let limit = if limit.fract() == 0.0 { limit } else { limit.next_down() };
+        let limit = glint_formula::parse(&format!("{limit:e}")).ok()?;
+        let kind = Kind::Binary(operator, rewritten.clone(), Arc::new(limit));
+        Some(Arc::new(Expression::new(kind, part.span.clone())))
+    };
+    match (limits.low.is_finite(), limits.high.is_finite()) {
+        (true, _) => with(Operator::Max, limits.low),
+        (_, true) => with(Operator::Min, limits.high),
+        _ => None,
+    }
+}
+
+/// Returns whether `part` is a maximum (or a minimum) of several numbers that include `number`.
+fn has_number(part: &Expression, operator: Operator, number: &Expression) -> bool {
+    numbers_of(part, operator).is_some_and(|numbers| numbers.contains(&number))
+}
+
+/// Returns the numbers of a maximum (or a minimum): `max(max(x, y), z)` gives x, y and z. Returns `None` for another formula.
+fn numbers_of(part: &Expression, operator: Operator) -> Option<Vec<&Expression>> {
+    let leaves = leaves_of(part, operator);
+    (2..=MOST_NUMBERS).contains(&leaves.len()).then_some(leaves)
+}
+
+/// Returns the formulas that a chain of one operator joins: `a + (b + c)` gives a, b and c. Another formula gives itself.
+fn leaves_of(part: &Expression, operator: Operator) -> Vec<&Expression> {
+    match &part.kind {
+        Kind::Binary(own, a, b) if *own == operator => {
+            let mut leaves = leaves_of(a, operator);
+            if leaves.len() <= MOST_NUMBERS {
+                leaves.extend(leaves_of(b, operator));
+            }
+            leaves
+        }
+        _ => vec![part],
+    }
+}
+
+/// Returns a lower limit of a sum whose terms are not below 0. Each term must be a function of the difference between another number
+/// and the same maximum. Each number of the maximum must have a term, so that one of the differences is 0. Returns `None` for
+/// another sum.
+fn least_sum(sum: &Expression, operands: &[(&str, Enclosure)]) -> Option<f64> {
+    if sum.size() > MOST_PARTS {
+        return None;
+    }
+    let terms = leaves_of(sum, Operator::Add);
+    if terms.len() > MOST_NUMBERS {
+        return None;
+    }
+    let first = difference_in(terms[0])?;
+    let Kind::Binary(Operator::Sub, _, largest) = &first.kind else { return None };
+    let mut numbers = numbers_of(largest, Operator::Max)?;
+    let mut least = f64::INFINITY;
+    for term in &terms {
+        let difference = difference_in(term)?;
+        let Kind::Binary(Operator::Sub, number, own_largest) = &difference.kind else {
+            return None;
+        };
+        if own_largest != largest {
+            return None;
+        }
+        numbers.retain(|it| **it != **number);
+        // No operand of a user has such a name.
+        let mark = Expression::operand("difference");
+        let of_difference = term.substitute(difference, &mark, &term.span);
+        let value_for = |difference: Enclosure| {
+            let mut values = operands.to_vec();
+            values.retain(|(name, _)| *name != "difference");
+            values.push(("difference", difference));
+            of_difference.enclose(&values).ok()
+        };
+        if value_for(Enclosure::between(LEAST_DIFFERENCE, 0.0))?.low < 0.0 {
+            return None;
+        }
+        least = least.min(value_for(Enclosure::exactly(0.0))?.low);
+    }
+    (numbers.is_empty() && least.is_finite()).then_some(least)
+}
+
+/// Returns the first part of a term that is the difference of a number and a maximum with this number.
+fn difference_in(term: &Expression) -> Option<&Expression> {
+    if let Kind::Binary(Operator::Sub, number, largest) = &term.kind
+        && has_number(largest, Operator::Max, number)
+    {
+        return Some(term);
+    }
+    term.parts().into_iter().find_map(|part| difference_in(part))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const OPERANDS: [(&str, Enclosure); 3] = [
+        ("a", Enclosure::between(-4.0, 4.0)),
+        ("b", Enclosure::between(-4.0, 4.0)),
+        ("c", Enclosure::between(-4.0, 4.0)),
+    ];
+
+    fn limits_of(formula: &str) -> Enclosure {
+        limits(&glint_formula::parse(formula).expect("a formula"), &OPERANDS)
+    }
+
+    #[test]
+    fn a_difference_from_a_maximum_is_not_above_0() {
+        assert_eq!(limits_of("b - max(a, b, c)").high, 0.0);
+        assert_eq!(limits_of("max(a, max(b, c)) - c").low, 0.0);
+        assert_eq!(limits_of("b - min(a, b)").low, 0.0);
+        assert_eq!(limits_of("min(a, b) - a").high, 0.0);
+        assert_eq!(limits_of("c - max(a, b)").high, f64::INFINITY);
+    }
+
+    /// Returns whether a lower limit is `exact`, or just below it.
+    fn is_near(limit: f64, exact: f64) -> bool {
+        (exact - 1e-12..=exact).contains(&limit)
+    }
+
+    #[test]
+    fn a_sum_over_all_numbers_of_a_maximum_has_the_term_of_the_largest() {
+        let all = "exp(a - max(a, b, c)) + (exp(b - max(a, b, c)) + exp(c - max(a, b, c)))";
+        assert!(is_near(limits_of(all).low, 1.0));
+        let scaled = "3 * exp((a - max(a, b)) * (c + 5)) + 2 * exp((b - max(a, b)) * (c + 5))";
+        assert!(is_near(limits_of(scaled).low, 2.0));
+        // A number without a term, and terms that can be below 0, state nothing.
+        let nothing = f64::NEG_INFINITY;
+        assert_eq!(limits_of("exp(a - max(a, b, c)) + exp(b - max(a, b, c))").low, nothing);
+        assert_eq!(limits_of("(1 + (a - max(a, b))) + exp(b - max(a, b))").low, nothing);
+        assert_eq!(limits_of("exp(a - max(a, b)) + exp(b - max(b, c))").low, nothing);
+    }
+}
