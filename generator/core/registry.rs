@@ -81,7 +81,7 @@ const FUNCTION: Device = Device {
 
 const EXPRESSION: Device = Device {
     name: "expression",
-    summary: "formulas of up to eight operands, by integer operations with a proved error",
+    summary: "formulas of numbers and lists, by integer operations with a proved error",
     schema: keys::expression::schema,
     parts: planned::expression,
     proved: true,

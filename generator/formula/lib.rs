@@ -10,6 +10,7 @@ mod condition;
 mod enclosure;
 mod evaluate;
 mod exact;
+mod highlights;
 mod list;
 mod literal;
 mod parse;

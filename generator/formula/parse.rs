@@ -4,6 +4,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::condition::JoinedCondition;
+use super::highlights::{HIGHLIGHTS, HIGHLIGHTS_WITH_POWER};
 use super::list::{self, NumberList, NumberOrList};
 use super::{Comparison, Expression, Fault, Function, Kind, Literal, Operator, TextSpan};
 
@@ -702,14 +703,25 @@ impl<'t> Parser<'t> {
 
 /// Returns the least number of arguments of a function of numbers. Returns `None` if there is no such function.
 fn arguments_of(name: &str) -> Option<usize> {
-    let is_of_one = named(&FUNCTIONS, name).is_some() || named(&DEFINED, name).is_some();
-    let is_of_two =
-        named(&FUNCTIONS_OF_TWO, name).is_some() || named(&DEFINED_OF_TWO, name).is_some();
-    match (is_of_one, is_of_two) {
-        (true, _) => Some(1),
-        (_, true) => Some(2),
-        _ => named(&DEFINED_OF_THREE, name).map(|_| 3),
+    if named(&FUNCTIONS, name).is_some() {
+        return Some(1);
     }
+    if named(&FUNCTIONS_OF_TWO, name).is_some() {
+        return Some(2);
+    }
+    definition_of(name).map(|(count, _)| count)
+}
+
+/// Returns the number of arguments of a function that is a combination of others, and its formula. Returns `None` for another function.
+fn definition_of(name: &str) -> Option<(usize, &'static str)> {
+    let tables: [(usize, &[(&str, &'static str)]); 5] = [
+        (1, &DEFINED),
+        (2, &DEFINED_OF_TWO),
+        (2, &HIGHLIGHTS),
+        (3, &DEFINED_OF_THREE),
+        (3, &HIGHLIGHTS_WITH_POWER),
+    ];
+    tables.into_iter().find_map(|(count, table)| Some((count, named(table, name)?)))
 }
 
 /// Returns a call of a function with as many numbers as it takes. `span` is the location of the call. Fails as [`written_out`] does.
@@ -721,10 +733,7 @@ fn function_of_numbers(
     if name == "hypot" && arguments.len() > 2 {
         return length_of_many(arguments, span);
     }
-    let body = named(&DEFINED, name)
-        .or_else(|| named(&DEFINED_OF_TWO, name))
-        .or_else(|| named(&DEFINED_OF_THREE, name));
-    if let Some(body) = body {
+    if let Some((_, body)) = definition_of(name) {
         return written_out(name, body, arguments, span);
     }
     let mut arguments = arguments.iter().cloned().map(Arc::new);
@@ -755,6 +764,8 @@ fn unknown_function(name: &str) -> String {
     all.extend(FUNCTIONS_OF_TWO.map(|(own, _)| own));
     all.extend(DEFINED_OF_TWO.map(|(own, _)| own));
     all.extend(DEFINED_OF_THREE.map(|(own, _)| own));
+    all.extend(HIGHLIGHTS.map(|(own, _)| own));
+    all.extend(HIGHLIGHTS_WITH_POWER.map(|(own, _)| own));
     all.push("if");
     all.extend(list::names_of_list_functions());
     format!("there is no function `{name}`; there are {}", all.join(", "))

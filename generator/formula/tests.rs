@@ -1,6 +1,11 @@
 //! Tests that formulas are parsed, evaluated and printed.
 
-use super::{CArithmetic, Enclosure, RBig, parse, parse_condition};
+use std::sync::Arc;
+
+use super::{
+    CArithmetic, Enclosure, Expression, Fault, NumberList, RBig, parse, parse_condition,
+    parse_with_lists,
+};
 
 fn value(text: &str, x: f64) -> Enclosure {
     let formula = parse(text).unwrap_or_else(|fault| panic!("{}", fault.under(text)));
@@ -72,6 +77,80 @@ fn arguments_keep_their_names() {
 }
 
 /// At the negative x axis the direction jumps from π to −π, and the origin has no direction.
+/// Returns the parsed text as formulas without lists, for the list v of four numbers and the vectors n and l with axes.
+fn written_out(text: &str) -> Result<Vec<String>, Fault> {
+    let lists = |name: &str| {
+        let (names, axes): (Vec<&str>, Option<&str>) = match name {
+            "v" => (vec!["v0", "v1", "v2", "v3"], None),
+            "n" => (vec!["nx", "ny", "nz"], Some("xyz")),
+            "l" => (vec!["lx", "ly", "lz"], Some("xyz")),
+            _ => return None,
+        };
+        let elements = names.into_iter().map(|name| Arc::new(Expression::operand(name))).collect();
+        Some(NumberList { elements, axes: axes.map(str::to_owned), span: (0..0).into() })
+    };
+    let formula = parse_with_lists(text, &lists)?;
+    Ok(formula.elements().iter().map(|element| element.python()).collect())
+}
+
+#[test]
+fn lists_become_formulas_of_their_numbers() {
+    let cases = [
+        ("2 * n", vec!["2 * nx", "2 * ny", "2 * nz"]),
+        ("-n ^ 2", vec!["-nx ** 2", "-ny ** 2", "-nz ** 2"]),
+        ("dot(n, l)", vec!["nx * lx + ny * ly + nz * lz"]),
+        ("dot(n, n)", vec!["nx ** 2 + ny ** 2 + nz ** 2"]),
+        ("cross(n, l)", vec!["ny * lz - nz * ly", "nz * lx - nx * lz", "nx * ly - ny * lx"]),
+        ("sum(v)", vec!["v0 + v1 + (v2 + v3)"]),
+        ("mean(n)", vec!["(nx + ny + nz) / 3"]),
+        ("length(n.xz)", vec!["sqrt(nx ** 2 + nz ** 2)"]),
+        ("hypot(n.xz)", vec!["sqrt(nx ** 2 + nz ** 2)"]),
+        ("distance(n.xy, l.xy)", vec!["sqrt((nx - lx) ** 2 + (ny - ly) ** 2)"]),
+        ("v[2] + n.y", vec!["v2 + ny"]),
+        ("(n - l)[1]", vec!["ny - ly"]),
+        ("[n.x, 1] + 0.5", vec!["nx + 0.5", "1 + 0.5"]),
+        ("max(n.xy)", vec!["max(nx, ny)"]),
+        ("max(n.xy, 0)", vec!["max(nx, 0)", "max(ny, 0)"]),
+        ("exp(n.xy)", vec!["exp(nx)", "exp(ny)"]),
+        (
+            "softmax(n.xy)",
+            vec![
+                "exp(nx - max(nx, ny)) / (exp(nx - max(nx, ny)) + exp(ny - max(nx, ny)))",
+                "exp(ny - max(nx, ny)) / (exp(nx - max(nx, ny)) + exp(ny - max(nx, ny)))",
+            ],
+        ),
+    ];
+    for (text, expected) in cases {
+        let found = written_out(text).unwrap_or_else(|fault| panic!("{}", fault.under(text)));
+        let expected: Vec<String> = expected
+            .into_iter()
+            .map(|formula| parse(formula).expect("a formula").python())
+            .collect();
+        assert_eq!(found, expected, "{text}");
+    }
+}
+
+#[test]
+fn mistakes_with_lists_are_shown_under_their_places() {
+    let cases = [
+        ("n + v", "this list has 4 numbers, and the one before it has 3"),
+        ("n > 0 ? 1 : 2", "a single number is needed here"),
+        ("dot(n, 2)", "`dot` needs a list"),
+        ("cross(v, v)", "three numbers"),
+        ("v[4]", "an integer from 0 to 3"),
+        ("v.x", "has no axes"),
+        ("n.w", "not one of the axes"),
+        ("sum(v[0])", "`sum` needs a list"),
+        ("[n, 1]", "a single number is needed here"),
+        ("[1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17]", "at most 16"),
+    ];
+    for (text, message) in cases {
+        let fault = written_out(text).unwrap_err();
+        assert!(fault.message.contains(message), "{}", fault.under(text));
+    }
+    assert!(parse("[1, 2]").unwrap_err().message.contains("a single number"));
+}
+
 #[test]
 fn directions_near_their_jump_and_at_the_origin() {
     let formula = parse("atan2(y, x)").unwrap();

@@ -47,7 +47,7 @@ struct ExpressionPreset {
     name: &'static str,
     /// What a user needs the expression for, as the end of the sentence "An expression for …".
     purpose: &'static str,
-    operands: &'static [(&'static str, OperandFormat)],
+    operands: &'static [OperandPreset],
     parts: &'static [(&'static str, &'static str)],
     results: &'static [ResultPreset],
 }
@@ -55,11 +55,35 @@ struct ExpressionPreset {
 /// Whether the operand has a sign, its width in bits, and its number of fraction bits.
 type OperandFormat = (bool, i64, i64);
 
-/// A result with an error below one unit.
+/// An operand: a number, or a list with a size or with axes.
+struct OperandPreset {
+    name: &'static str,
+    format: OperandFormat,
+    size: Option<i64>,
+    /// A letter for each number of a list with axes; empty for the others.
+    axes: &'static str,
+}
+
+const fn number(name: &'static str, format: OperandFormat) -> OperandPreset {
+    OperandPreset { name, format, size: None, axes: "" }
+}
+
+const fn list(name: &'static str, size: i64, format: OperandFormat) -> OperandPreset {
+    OperandPreset { name, format, size: Some(size), axes: "" }
+}
+
+const fn vector(name: &'static str, axes: &'static str, format: OperandFormat) -> OperandPreset {
+    OperandPreset { name, format, size: None, axes }
+}
+
+/// A result with an error below one unit, if [`ResultPreset::within`] states no other.
 struct ResultPreset {
     name: &'static str,
     formula: &'static str,
     fraction: i64,
+    error: f64,
+    /// A letter for each number of a list with axes of its own; empty for the others.
+    axes: &'static str,
     /// The condition under which the error is promised. An empty condition promises it for all operands.
     promise: &'static str,
     /// The width of a signed result that saturates; `None` if the width follows from the values.
@@ -68,11 +92,21 @@ struct ResultPreset {
 
 impl ResultPreset {
     const fn new(name: &'static str, formula: &'static str, fraction: i64) -> Self {
-        Self { name, formula, fraction, promise: "", saturated_bits: None }
+        Self { name, formula, fraction, error: 1.0, axes: "", promise: "", saturated_bits: None }
     }
 
     const fn promised(mut self, condition: &'static str) -> Self {
         self.promise = condition;
+        self
+    }
+
+    const fn within(mut self, error: f64) -> Self {
+        self.error = error;
+        self
+    }
+
+    const fn on(mut self, axes: &'static str) -> Self {
+        self.axes = axes;
         self
     }
 
@@ -91,21 +125,27 @@ const PART_OF_ONE: OperandFormat = (false, 16, 16);
 /// The format of signals in motor control: numbers from −8 to below 8.
 const SIGNAL: OperandFormat = (true, 16, 12);
 
+/// The format of numbers in a neural network: from −8 to below 8.
+const ACTIVATION: OperandFormat = (true, 12, 8);
+
+/// The format of the coordinates of a normal, which may be shorter than 1.
+const NORMAL: OperandFormat = (true, 14, 13);
+
 /// The format of a colour of eight bits, from 0 to 255.
 const COLOUR: OperandFormat = (false, 8, 0);
 
-const EXPRESSIONS: [ExpressionPreset; 20] = [
+const EXPRESSIONS: [ExpressionPreset; 29] = [
     ExpressionPreset {
         name: "divide",
         purpose: "a fraction of a whole, x / y for x below y",
-        operands: &[("x", PART_OF_ONE), ("y", PART_OF_ONE)],
+        operands: &[number("x", PART_OF_ONE), number("y", PART_OF_ONE)],
         parts: &[],
         results: &[ResultPreset::new("q", "x / y", 15).promised("x < y")],
     },
     ExpressionPreset {
         name: "quotient",
         purpose: "the integer quotient and the remainder, both exact",
-        operands: &[("a", (false, 16, 0)), ("b", (false, 8, 0))],
+        operands: &[number("a", (false, 16, 0)), number("b", (false, 8, 0))],
         parts: &[],
         results: &[
             ResultPreset::new("quotient", "floor(a / b)", 0).promised("b > 0"),
@@ -115,7 +155,7 @@ const EXPRESSIONS: [ExpressionPreset; 20] = [
     ExpressionPreset {
         name: "perspective",
         purpose: "perspective-correct interpolation: 1 / w, and an attribute that was divided by w",
-        operands: &[("w", (false, 20, 12)), ("u_over_w", (true, 16, 12))],
+        operands: &[number("w", (false, 20, 12)), number("u_over_w", (true, 16, 12))],
         parts: &[],
         results: &[
             ResultPreset::new("depth", "1 / w", 15).promised("w >= 1"),
@@ -125,21 +165,21 @@ const EXPRESSIONS: [ExpressionPreset; 20] = [
     ExpressionPreset {
         name: "hypot",
         purpose: "the length of a vector of two coordinates",
-        operands: &[("x", COORDINATE), ("y", COORDINATE)],
+        operands: &[number("x", COORDINATE), number("y", COORDINATE)],
         parts: &[],
         results: &[ResultPreset::new("r", "hypot(x, y)", 15)],
     },
     ExpressionPreset {
         name: "atan2",
         purpose: "the direction of a vector, in half turns",
-        operands: &[("x", COORDINATE), ("y", COORDINATE)],
+        operands: &[number("x", COORDINATE), number("y", COORDINATE)],
         parts: &[],
         results: &[ResultPreset::new("angle", "atan2(y, x) / pi", 15).promised("x^2 + y^2 > 0")],
     },
     ExpressionPreset {
         name: "polar",
         purpose: "the length and the direction of a vector, as of an I/Q sample",
-        operands: &[("x", COORDINATE), ("y", COORDINATE)],
+        operands: &[number("x", COORDINATE), number("y", COORDINATE)],
         parts: &[("s", "x^2 + y^2")],
         results: &[
             ResultPreset::new("r", "sqrt(s)", 15),
@@ -149,7 +189,7 @@ const EXPRESSIONS: [ExpressionPreset; 20] = [
     ExpressionPreset {
         name: "normalise2",
         purpose: "the unit vector in the direction of a vector of two coordinates",
-        operands: &[("x", COORDINATE), ("y", COORDINATE)],
+        operands: &[number("x", COORDINATE), number("y", COORDINATE)],
         parts: &[("s", "x^2 + y^2")],
         results: &[
             ResultPreset::new("u", "x / sqrt(s)", 14).promised("s >= 1/256"),
@@ -159,7 +199,11 @@ const EXPRESSIONS: [ExpressionPreset; 20] = [
     ExpressionPreset {
         name: "normalise3",
         purpose: "the unit vector of a normal that was interpolated",
-        operands: &[("x", (true, 14, 13)), ("y", (true, 14, 13)), ("z", (true, 14, 13))],
+        operands: &[
+            number("x", (true, 14, 13)),
+            number("y", (true, 14, 13)),
+            number("z", (true, 14, 13)),
+        ],
         parts: &[("s", "x^2 + y^2 + z^2")],
         results: &[
             ResultPreset::new("u", "x / sqrt(s)", 12).promised("s >= 1/16"),
@@ -170,7 +214,7 @@ const EXPRESSIONS: [ExpressionPreset; 20] = [
     ExpressionPreset {
         name: "sincos",
         purpose: "the sine and the cosine of the same angle, in turns",
-        operands: &[("turn", PART_OF_ONE)],
+        operands: &[number("turn", PART_OF_ONE)],
         parts: &[],
         results: &[
             ResultPreset::new("sine", "sin(2 * pi * turn)", 15),
@@ -180,7 +224,7 @@ const EXPRESSIONS: [ExpressionPreset; 20] = [
     ExpressionPreset {
         name: "rotate",
         purpose: "a rotation in the plane by an angle in turns",
-        operands: &[("x", COORDINATE), ("y", COORDINATE), ("turn", PART_OF_ONE)],
+        operands: &[number("x", COORDINATE), number("y", COORDINATE), number("turn", PART_OF_ONE)],
         parts: &[("s", "sin(2 * pi * turn)"), ("c", "cos(2 * pi * turn)")],
         results: &[
             ResultPreset::new("u", "x * c - y * s", 15),
@@ -190,7 +234,7 @@ const EXPRESSIONS: [ExpressionPreset; 20] = [
     ExpressionPreset {
         name: "clarke",
         purpose: "the Clarke transform of three phase currents whose sum is 0",
-        operands: &[("a", COORDINATE), ("b", COORDINATE)],
+        operands: &[number("a", COORDINATE), number("b", COORDINATE)],
         parts: &[],
         results: &[
             ResultPreset::new("alpha", "a", 15),
@@ -200,7 +244,11 @@ const EXPRESSIONS: [ExpressionPreset; 20] = [
     ExpressionPreset {
         name: "park",
         purpose: "the Park transform of field-oriented motor control",
-        operands: &[("alpha", COORDINATE), ("beta", COORDINATE), ("turn", PART_OF_ONE)],
+        operands: &[
+            number("alpha", COORDINATE),
+            number("beta", COORDINATE),
+            number("turn", PART_OF_ONE),
+        ],
         parts: &[("s", "sin(2 * pi * turn)"), ("c", "cos(2 * pi * turn)")],
         results: &[
             ResultPreset::new("d", "alpha * c + beta * s", 15),
@@ -210,7 +258,12 @@ const EXPRESSIONS: [ExpressionPreset; 20] = [
     ExpressionPreset {
         name: "pi",
         purpose: "one step of a PI controller with saturation",
-        operands: &[("err", SIGNAL), ("sum", SIGNAL), ("kp", (false, 8, 6)), ("ki", (false, 8, 8))],
+        operands: &[
+            number("err", SIGNAL),
+            number("sum", SIGNAL),
+            number("kp", (false, 8, 6)),
+            number("ki", (false, 8, 8)),
+        ],
         parts: &[],
         results: &[
             ResultPreset::new("u", "kp * err + sum", 12).saturated(16),
@@ -220,14 +273,14 @@ const EXPRESSIONS: [ExpressionPreset; 20] = [
     ExpressionPreset {
         name: "pow",
         purpose: "a power with a variable exponent",
-        operands: &[("x", PART_OF_ONE), ("y", PART_OF_ONE)],
+        operands: &[number("x", PART_OF_ONE), number("y", PART_OF_ONE)],
         parts: &[],
         results: &[ResultPreset::new("r", "x ^ y", 15).promised("x > 0")],
     },
     ExpressionPreset {
         name: "srgb",
         purpose: "a colour from linear light to sRGB",
-        operands: &[("c", (false, 12, 12))],
+        operands: &[number("c", (false, 12, 12))],
         parts: &[],
         results: &[ResultPreset::new(
             "v",
@@ -238,7 +291,11 @@ const EXPRESSIONS: [ExpressionPreset; 20] = [
     ExpressionPreset {
         name: "fog",
         purpose: "linear fog between a near and a far distance",
-        operands: &[("z", (false, 16, 8)), ("near", (false, 16, 8)), ("far", (false, 16, 8))],
+        operands: &[
+            number("z", (false, 16, 8)),
+            number("near", (false, 16, 8)),
+            number("far", (false, 16, 8)),
+        ],
         parts: &[],
         results: &[ResultPreset::new("f", "clamp((far - z) / (far - near), 0, 1)", 8)
             .promised("far - near >= 1")],
@@ -246,14 +303,19 @@ const EXPRESSIONS: [ExpressionPreset; 20] = [
     ExpressionPreset {
         name: "multiply-add",
         purpose: "the sum of two products, as in a complex product",
-        operands: &[("a", COORDINATE), ("b", COORDINATE), ("c", COORDINATE), ("d", COORDINATE)],
+        operands: &[
+            number("a", COORDINATE),
+            number("b", COORDINATE),
+            number("c", COORDINATE),
+            number("d", COORDINATE),
+        ],
         parts: &[],
         results: &[ResultPreset::new("r", "a * b + c * d", 15)],
     },
     ExpressionPreset {
         name: "lerp",
         purpose: "the linear interpolation between two values",
-        operands: &[("a", COORDINATE), ("b", COORDINATE), ("t", PART_OF_ONE)],
+        operands: &[number("a", COORDINATE), number("b", COORDINATE), number("t", PART_OF_ONE)],
         parts: &[],
         results: &[ResultPreset::new("r", "a + t * (b - a)", 15)],
     },
@@ -261,12 +323,12 @@ const EXPRESSIONS: [ExpressionPreset; 20] = [
         name: "bilinear",
         purpose: "the bilinear interpolation of four texels of eight bits",
         operands: &[
-            ("a", COLOUR),
-            ("b", COLOUR),
-            ("c", COLOUR),
-            ("d", COLOUR),
-            ("u", (false, 8, 8)),
-            ("v", (false, 8, 8)),
+            number("a", COLOUR),
+            number("b", COLOUR),
+            number("c", COLOUR),
+            number("d", COLOUR),
+            number("u", (false, 8, 8)),
+            number("v", (false, 8, 8)),
         ],
         parts: &[("upper", "a + u * (b - a)"), ("lower", "c + u * (d - c)")],
         results: &[ResultPreset::new("r", "upper + v * (lower - upper)", 0)],
@@ -274,9 +336,77 @@ const EXPRESSIONS: [ExpressionPreset; 20] = [
     ExpressionPreset {
         name: "attenuation",
         purpose: "the attenuation of a light with the distance",
-        operands: &[("d", (false, 16, 12)), ("k", PART_OF_ONE)],
+        operands: &[number("d", (false, 16, 12)), number("k", PART_OF_ONE)],
         parts: &[],
         results: &[ResultPreset::new("a", "1 / (1 + d + k * d^2)", 16)],
+    },
+    ExpressionPreset {
+        name: "softmax4",
+        purpose: "the softmax of four numbers, as in attention",
+        operands: &[list("v", 4, SIGNAL)],
+        parts: &[],
+        results: &[ResultPreset::new("p", "softmax(v)", 15).within(2.0)],
+    },
+    ExpressionPreset {
+        name: "softmax8",
+        purpose: "the softmax of eight numbers",
+        operands: &[list("v", 8, SIGNAL)],
+        parts: &[],
+        results: &[ResultPreset::new("p", "softmax(v)", 15).within(2.0)],
+    },
+    ExpressionPreset {
+        name: "layernorm8",
+        purpose: "the layer normalisation of eight numbers",
+        operands: &[list("v", 8, ACTIVATION)],
+        parts: &[("centred", "v - mean(v)")],
+        results: &[ResultPreset::new("r", "centred / sqrt(variance(v) + 1/16)", 10)],
+    },
+    ExpressionPreset {
+        name: "rmsnorm8",
+        purpose: "eight numbers divided by their root mean square",
+        operands: &[list("v", 8, ACTIVATION)],
+        parts: &[],
+        results: &[ResultPreset::new("r", "v / sqrt(mean(v^2) + 1/16)", 10)],
+    },
+    ExpressionPreset {
+        name: "transform",
+        purpose: "a matrix of three rows and four columns times a point",
+        operands: &[
+            vector("p", "xyz", SIGNAL),
+            list("a", 4, SIGNAL),
+            list("b", 4, SIGNAL),
+            list("c", 4, SIGNAL),
+        ],
+        parts: &[("q", "[p.x, p.y, p.z, 1]")],
+        results: &[ResultPreset::new("r", "[dot(a, q), dot(b, q), dot(c, q)]", 12).on("xyz")],
+    },
+    ExpressionPreset {
+        name: "diffuse",
+        purpose: "the diffuse light on a surface whose normal has any length",
+        operands: &[vector("n", "xyz", NORMAL), vector("l", "xyz", NORMAL)],
+        parts: &[("s", "dot(n, n)")],
+        results: &[ResultPreset::new("c", "max(0, dot(n, l)) / sqrt(s)", 12).promised("s >= 1/16")],
+    },
+    ExpressionPreset {
+        name: "blinn-phong",
+        purpose: "the highlight c^n of Blinn and Phong with a variable exponent",
+        operands: &[number("c", PART_OF_ONE), number("n", (false, 8, 0))],
+        parts: &[],
+        results: &[ResultPreset::new("h", "c^n", 12)],
+    },
+    ExpressionPreset {
+        name: "fresnel",
+        purpose: "the reflectance of a surface by Schlick's approximation",
+        operands: &[number("c", PART_OF_ONE), number("f", (false, 8, 8))],
+        parts: &[],
+        results: &[ResultPreset::new("r", "f + (1 - f) * (1 - c)^5", 12)],
+    },
+    ExpressionPreset {
+        name: "ggx",
+        purpose: "the GGX distribution of the normals of small facets",
+        operands: &[number("c", PART_OF_ONE), number("a", (false, 8, 8))],
+        parts: &[("b", "c^2 * (a^2 - 1) + 1")],
+        results: &[ResultPreset::new("d", "a^2 / (pi * b^2)", 8).promised("a >= 1/4")],
     },
 ];
 
@@ -284,32 +414,32 @@ const EXPRESSIONS: [ExpressionPreset; 20] = [
 const FUNCTIONS_OF_UNIT: [UnitFunctionPreset; 8] = [
     UnitFunctionPreset {
         name: "rcp",
-        operands: &[("x", (false, 16, 8))],
+        operands: &[number("x", (false, 16, 8))],
         results: &[ResultPreset::new("r", "1 / x", 8).promised("x > 0")],
     },
     UnitFunctionPreset {
         name: "rsqrt",
-        operands: &[("x", (false, 16, 8))],
+        operands: &[number("x", (false, 16, 8))],
         results: &[ResultPreset::new("r", "1 / sqrt(x)", 12).promised("x > 0")],
     },
     UnitFunctionPreset {
         name: "sqrt",
-        operands: &[("x", (false, 16, 8))],
+        operands: &[number("x", (false, 16, 8))],
         results: &[ResultPreset::new("r", "sqrt(x)", 12)],
     },
     UnitFunctionPreset {
         name: "exp2",
-        operands: &[("x", (true, 16, 12))],
+        operands: &[number("x", (true, 16, 12))],
         results: &[ResultPreset::new("r", "2^x", 8)],
     },
     UnitFunctionPreset {
         name: "log2",
-        operands: &[("x", (false, 16, 8))],
+        operands: &[number("x", (false, 16, 8))],
         results: &[ResultPreset::new("r", "log2(x)", 12).promised("x > 0")],
     },
     UnitFunctionPreset {
         name: "sincos",
-        operands: &[("turn", PART_OF_ONE)],
+        operands: &[number("turn", PART_OF_ONE)],
         results: &[
             ResultPreset::new("sine", "sin(2 * pi * turn)", 15),
             ResultPreset::new("cosine", "cos(2 * pi * turn)", 15),
@@ -317,19 +447,19 @@ const FUNCTIONS_OF_UNIT: [UnitFunctionPreset; 8] = [
     },
     UnitFunctionPreset {
         name: "atan2",
-        operands: &[("x", COORDINATE), ("y", COORDINATE)],
+        operands: &[number("x", COORDINATE), number("y", COORDINATE)],
         results: &[ResultPreset::new("angle", "atan2(y, x) / pi", 15).promised("x^2 + y^2 > 0")],
     },
     UnitFunctionPreset {
         name: "divide",
-        operands: &[("x", PART_OF_ONE), ("y", PART_OF_ONE)],
+        operands: &[number("x", PART_OF_ONE), number("y", PART_OF_ONE)],
         results: &[ResultPreset::new("q", "x / y", 15).promised("x < y")],
     },
 ];
 
 struct UnitFunctionPreset {
     name: &'static str,
-    operands: &'static [(&'static str, OperandFormat)],
+    operands: &'static [OperandPreset],
     results: &'static [ResultPreset],
 }
 
@@ -403,11 +533,18 @@ fn of_unit() -> Vec<(String, Value)> {
     vec![("functions".to_owned(), Value::Table(TableEntries(functions)))]
 }
 
-fn operand_entries(formats: &[(&str, OperandFormat)]) -> TableEntries {
+fn operand_entries(presets: &[OperandPreset]) -> TableEntries {
     let mut operands = Vec::new();
-    for (name, (signed, bits, fraction)) in formats {
-        let mut fields =
-            vec![("bits", Value::Integer(*bits)), ("fraction", Value::Integer(*fraction))];
+    for OperandPreset { name, format: (signed, bits, fraction), size, axes } in presets {
+        let mut fields = Vec::new();
+        if let Some(size) = size {
+            fields.push(("size", Value::Integer(*size)));
+        }
+        if !axes.is_empty() {
+            fields.push(("axes", Value::Text((*axes).to_owned())));
+        }
+        fields.push(("bits", Value::Integer(*bits)));
+        fields.push(("fraction", Value::Integer(*fraction)));
         if *signed {
             fields.push(("signed", Value::Flag(true)));
         }
@@ -420,11 +557,12 @@ fn result_entries(presets: &[ResultPreset]) -> TableEntries {
     let text = |text: &str| Value::Text(text.to_owned());
     let mut results = Vec::new();
     for result in presets {
-        let mut fields = vec![
-            ("formula", text(result.formula)),
-            ("fraction", Value::Integer(result.fraction)),
-            ("error", Value::Number(1.0)),
-        ];
+        let mut fields = vec![("formula", text(result.formula))];
+        if !result.axes.is_empty() {
+            fields.push(("axes", text(result.axes)));
+        }
+        fields.push(("fraction", Value::Integer(result.fraction)));
+        fields.push(("error", Value::Number(result.error)));
         if let Some(bits) = result.saturated_bits {
             fields.push(("bits", Value::Integer(bits)));
             fields.push(("signed", Value::Flag(true)));

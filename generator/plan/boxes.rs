@@ -186,39 +186,40 @@ impl<'p> ResultProof<'p> {
     /// error that is not allowed, or if the result is promised for no operands.
     ///
     /// A single combination ends the search early, because no division shows a smaller error for it. The search begins with the
-    /// examples and the boxes in `search_before`. If the error is allowed, the boxes that show it replace them, because they mostly show
+    /// examples and the boxes in `search`. If the error is allowed, the boxes that show it replace them, because they mostly show
     /// it for a similar plan, too. Otherwise, a single combination becomes an example if the expression has many operands.
-    pub(super) fn excess(
-        &self,
-        divisions: usize,
-        search_before: &mut ErrorSearch,
-    ) -> Option<BoxError> {
+    pub(super) fn excess(&self, divisions: usize, search: &mut ErrorSearch) -> Option<BoxError> {
         let stated = &self.statement.results[self.result];
         let exceeds = |error: &BoxError| !stated.allows(error.units);
-        if let Some(example) = self.errors_in(&search_before.examples).pop().filter(exceeds) {
+        if let Some(example) = self.errors_in(&search.examples).pop().filter(exceeds) {
             return Some(example);
         }
-        let mut open = self.errors_in(&search_before.boxes);
+        let mut open = self.errors_in(&search.boxes);
         let divisions = affordable(self.statement, divisions);
         let least = divisions / LEAST_SHARE_OF_DIVISIONS;
         let divisions = divisions.saturating_sub(open.len()).max(least);
         let mut single = None;
+        let has_few_operands = has_few_operands(self.statement);
         self.divide(&mut open, divisions, &mut |worst| {
+            // With many operands, few divisions lower an error that has a limit.
+            if !has_few_operands && worst.units.is_finite() {
+                return true;
+            }
             if exceeds(worst) {
                 single = self.error_in(middle_of(&worst.limits)).filter(exceeds);
             }
             !exceeds(worst) || single.is_some()
         });
         if let Some(single) = single {
-            if !has_few_operands(self.statement) {
-                search_before.examples.push(single.limits.clone());
+            if !has_few_operands {
+                search.examples.push(single.limits.clone());
             }
             return Some(single);
         }
         if open.peek().is_some_and(exceeds) {
             return open.pop();
         }
-        search_before.boxes = open.into_iter().map(|error| error.limits).collect();
+        search.boxes = open.into_iter().map(|error| error.limits).collect();
         None
     }
 

@@ -28,7 +28,25 @@ const TINY: &str =
 operands.c = { bits = 3, fraction = 40 }\noperands.d = { bits = 3, fraction = 40 }";
 
 /// Operands, and results that other results read or that need no operation.
-const CASES: [(&str, &str); 36] = [
+const CASES: [(&str, &str); 39] = [
+    (
+        // Each exponential function has integer parts of its own, and the sum is at least 1.
+        "operands.v = { size = 3, bits = 4, fraction = 1, signed = true }",
+        "results.p = { formula = \"softmax(v)\", fraction = 5, error = 2 }
+results.m = { formula = \"max(v) - min(v)\", fraction = 2, error = 0.5 }",
+    ),
+    (
+        "operands.a = { axes = \"xyz\", bits = 3, fraction = 2, signed = true }
+operands.b = { axes = \"xyz\", bits = 2, fraction = 1, signed = true }",
+        "results.c = { formula = \"cross(a, b)\", fraction = 3, error = 0.5 }
+results.f = { formula = \"if(dot(a, b) > 0, a, b - 2 * a).yx\", fraction = 2, error = 0.5 }",
+    ),
+    (
+        "operands.n = { axes = \"xyz\", bits = 4, fraction = 3, signed = true }\nlet.s = \"dot(n, n)\"
+let.w = \"n / sqrt(s)\"",
+        "results.u = { formula = \"normalize(n)\", fraction = 5, where = \"s > 1/16\" }
+results.d = { formula = \"max(0, w.x + w[2])\", fraction = 5, where = \"s > 1/16\" }",
+    ),
     (
         // The divisor has both signs.
         SIGNED,

@@ -34,8 +34,9 @@ const EVERYWHERE: [&str; 11] = [
     "show",
 ];
 
-/// Where devices may be known by name.
-const NAMING: [&str; 4] = ["keys/", "catalogue/", "golden/", "core/registry.rs"];
+/// Where devices may be known by name. Formulas can call the formulas of the highlights by these names, too.
+const NAMING: [&str; 5] =
+    ["keys/", "catalogue/", "golden/", "core/registry.rs", "formula/highlights.rs"];
 
 #[test]
 fn rooms_of_a_crate_import_only_what_stands_below_them() {

@@ -3,9 +3,14 @@
 //! If the divisor has few bits, and its largest absolute value is less than four times its smallest, a table has the values of
 //! 1/b. Any other divisor is normalised: b = m · 2^−k with m from 1/2 to below 1. A table has the values of 1/m, and the
 //! dividend is shifted by the same k bits, so that a / b = (a · 2^k) · (1/m).
+//!
+//! If several dividends have the same divisor, and its values lie within a few octaves, the reciprocal 1/b is computed once, and each
+//! dividend has only a product: a softmax of eight numbers shifts one reciprocal in place of eight dividends.
+
+use std::sync::Arc;
 
 use glint_base::fixed::{Format, Rounding, exp2};
-use glint_formula::{Enclosure, Expression};
+use glint_formula::{Enclosure, Expression, Kind, Operator};
 
 use super::root::{FEW_OCTAVES, Octave, holding};
 use super::shape::number;
@@ -13,6 +18,12 @@ use super::{Lowering, WIDEST_FACTOR, WIDEST_OPERAND};
 use crate::facts::promises_less;
 use crate::node::NodeId;
 use crate::refusal::PlanRefusal;
+
+/// The least number of dividends for which the reciprocal of their divisor is computed once.
+const SEVERAL_DIVIDENDS: usize = 3;
+
+/// The reciprocal of a divisor is computed once only if the largest divisor is less than this many times the smallest.
+const FEW_OCTAVES_OF_RECIPROCAL: f64 = 20.0;
 
 impl Lowering<'_> {
     /// Returns the node of the quotient a / b. `part` must be this quotient as a formula. Fails if a part has too many bits, no
@@ -23,8 +34,39 @@ impl Lowering<'_> {
         b: &Expression,
         part: &Expression,
     ) -> Result<NodeId, PlanRefusal> {
+        if self.has_common_reciprocal(a, b)? {
+            let one = Arc::new(number("1"));
+            let kind = Kind::Binary(Operator::Div, one, Arc::new(b.clone()));
+            let reciprocal = self.part(&Expression::new(kind, part.span.clone()))?;
+            let dividend = self.factor(a)?;
+            return self.plan.multiply("ratio", dividend, reciprocal);
+        }
         let values = self.range(part)?;
         self.quotient_within(a, b, values)
+    }
+
+    /// Returns whether the reciprocal of `b` serves several dividends that vary, and lies within a few octaves. Fails if `b` has no
+    /// finite values.
+    fn has_common_reciprocal(&self, a: &Expression, b: &Expression) -> Result<bool, PlanRefusal> {
+        if !a.varies() || self.fixed_guard.is_some() {
+            return Ok(false);
+        }
+        let mut dividends: Vec<&Expression> = Vec::new();
+        for result in &self.statement.results {
+            result.formula.walk(&mut |part| {
+                if let Kind::Binary(Operator::Div, dividend, divisor) = &part.kind
+                    && **divisor == *b
+                    && !dividends.contains(&&**dividend)
+                {
+                    dividends.push(dividend);
+                }
+            });
+        }
+        if dividends.len() < SEVERAL_DIVIDENDS {
+            return Ok(false);
+        }
+        let sizes = sizes_of(self.range(b)?);
+        Ok(sizes.high < sizes.low * FEW_OCTAVES_OF_RECIPROCAL)
     }
 
     /// Returns the node of the quotient a / b, whose values lie within `values`. Fails as [`Self::quotient`] does.
