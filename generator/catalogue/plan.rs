@@ -29,7 +29,7 @@ pub(super) fn describe_plan(
     outputs: &[PlanOutput],
     is_pipelined: bool,
 ) {
-    let schedule = plan.schedule();
+    let schedule = plan.schedule(is_pipelined);
     let mut datapath = PlanDatapath::new(d, operands, plan, &schedule, is_pipelined);
     datapath.build();
     let steps = datapath.microprogram();

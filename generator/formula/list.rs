@@ -124,8 +124,9 @@ impl NumberOrList {
             Self::Number(formula) => Ok(formula),
             Self::List(list) => {
                 let count = list.elements.len();
+                let numbers = if count == 1 { "number" } else { "numbers" };
                 list.fault(format!(
-                    "this is a list of {count} numbers, and a single number is needed here"
+                    "this is a list of {count} {numbers}, and a single number is needed here"
                 ))
             }
         }

@@ -9,21 +9,22 @@ use super::device::{self, Formula};
 use super::plan::plan_device;
 use super::{ComputedPart, Contract, Model, Term};
 use glint_base::fixed::{Format, exp2};
+use glint_config::Config;
 use glint_formula::{Comparison, Enclosure, RBig};
 use glint_plan::{NodeId, Operation, ProvedPlan, StatedOverflow, StatedWidth};
 
-fn device(planned: &ProvedPlan) -> device::Device {
+fn device(config: &Config, planned: &ProvedPlan) -> device::Device {
     let results = planned.statement.results.iter();
     let outputs: Vec<String> = results.map(|result| format!("{}_out", result.name)).collect();
-    plan_device(&planned.statement.operands, &planned.plan, &outputs)
+    plan_device(&planned.statement.operands, &planned.plan, &outputs, config)
 }
 
-pub fn model(planned: &ProvedPlan) -> Box<dyn Model> {
-    device(planned).model()
+pub fn model(config: &Config, planned: &ProvedPlan) -> Box<dyn Model> {
+    device(config, planned).model()
 }
 
-pub fn contract(planned: &Arc<ProvedPlan>) -> Box<dyn Contract> {
-    device(planned).contract(ProvedFormulas { planned: planned.clone() })
+pub fn contract(config: &Config, planned: &Arc<ProvedPlan>) -> Box<dyn Contract> {
+    device(config, planned).contract(ProvedFormulas { planned: planned.clone() })
 }
 
 /// Returns the two numbers nearest to a format that differ from `value` by a multiple of the format's range, first the one in

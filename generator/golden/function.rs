@@ -10,6 +10,7 @@ use super::plan::plan_device;
 use super::{Contract, Model, Term};
 use glint_approximate::{Curve, Piecewise, TargetFunction};
 use glint_base::fixed::exp2;
+use glint_config::Config;
 use glint_formula::{Enclosure, parse};
 use glint_keys::function::{FunctionPlan, operand};
 
@@ -17,17 +18,17 @@ use glint_keys::function::{FunctionPlan, operand};
 /// pieces are exact.
 const PIECES: u32 = 4096;
 
-fn device(planned: &FunctionPlan) -> device::Device {
-    plan_device(&[operand(&planned.polynomials)], &planned.plan, &["result_out".to_owned()])
+fn device(config: &Config, planned: &FunctionPlan) -> device::Device {
+    plan_device(&[operand(&planned.polynomials)], &planned.plan, &["result_out".to_owned()], config)
 }
 
-pub fn model(planned: &FunctionPlan) -> Box<dyn Model> {
-    device(planned).model()
+pub fn model(config: &Config, planned: &FunctionPlan) -> Box<dyn Model> {
+    device(config, planned).model()
 }
 
-pub fn contract(planned: &FunctionPlan) -> Box<dyn Contract> {
+pub fn contract(config: &Config, planned: &FunctionPlan) -> Box<dyn Contract> {
     let function = planned.function.clone();
-    device(planned).contract(Stated { function, polynomials: planned.polynomials.clone() })
+    device(config, planned).contract(Stated { function, polynomials: planned.polynomials.clone() })
 }
 
 /// Returns NaN if the formula cannot be parsed or has no value.

@@ -9,6 +9,7 @@ use super::device;
 use super::frame::{Frame, FrameStep, Slot, State, idle, step_by};
 use super::polynomial::Polynomial;
 use glint_approximate::Outside;
+use glint_config::{Config, Shared};
 use glint_plan::{ExpressionPlan, NodeId, Operation, PlanStep, StatedOperand};
 
 struct PlanModel {
@@ -72,14 +73,16 @@ impl ClockCone {
     }
 }
 
-/// Makes the device of a plan. Result number k of the plan goes to the port `outputs[k]`. Panics if the polynomials of a
+/// Makes the device of a plan, with the architecture that `config` states. Result number k of the plan goes to the port `outputs[k]`. Panics if the polynomials of a
 /// function are not known yet.
 pub(super) fn plan_device(
     operands: &[StatedOperand],
     plan: &ExpressionPlan,
     outputs: &[String],
+    config: &Config,
 ) -> device::Device {
-    let schedule = plan.schedule();
+    let is_pipelined = Shared::of(config).architecture == "pipelined";
+    let schedule = plan.schedule(is_pipelined);
     let mut frame = Frame::default();
     let mut slots = Vec::new();
     for StatedOperand { name, format, domain, outside, .. } in operands {

@@ -119,7 +119,7 @@ fn cosine(
 fn highlight_model(keys: &Keys, part: &HighlightPart) -> Box<dyn Model> {
     let config = match part {
         HighlightPart::OfExponent(config) => config,
-        HighlightPart::OfFormula(_, planned) => return function::model(planned),
+        HighlightPart::OfFormula(config, planned) => return function::model(config, planned),
     };
     match keys.highlight {
         HighlightDevice::CosinePower => cosine_power::model(config),
@@ -135,7 +135,7 @@ fn highlight_model(keys: &Keys, part: &HighlightPart) -> Box<dyn Model> {
 fn highlight_contract(keys: &Keys, part: &HighlightPart) -> Box<dyn Contract> {
     let config = match part {
         HighlightPart::OfExponent(config) => config,
-        HighlightPart::OfFormula(_, planned) => return function::contract(planned),
+        HighlightPart::OfFormula(config, planned) => return function::contract(config, planned),
     };
     match keys.highlight {
         HighlightDevice::CosinePower => cosine_power::contract(config),

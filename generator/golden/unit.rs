@@ -9,21 +9,22 @@ use super::device::{self, Formula};
 use super::plan::plan_device;
 use super::{ComputedPart, Contract, Model, Term};
 use glint_base::fixed::exp2;
+use glint_config::Config;
 use glint_formula::Enclosure;
 use glint_plan::{ExpressionStatement, NodeId, Operation, UnitPlan};
 
-fn device(planned: &UnitPlan) -> device::Device {
+fn device(config: &Config, planned: &UnitPlan) -> device::Device {
     let outputs: Vec<String> =
         planned.results.iter().map(|(name, _)| format!("{name}_out")).collect();
-    plan_device(&planned.operands, &planned.plan, &outputs)
+    plan_device(&planned.operands, &planned.plan, &outputs, config)
 }
 
-pub fn model(planned: &UnitPlan) -> Box<dyn Model> {
-    device(planned).model()
+pub fn model(config: &Config, planned: &UnitPlan) -> Box<dyn Model> {
+    device(config, planned).model()
 }
 
-pub fn contract(planned: &Arc<UnitPlan>) -> Box<dyn Contract> {
-    device(planned).contract(FunctionFormulas { planned: planned.clone() })
+pub fn contract(config: &Config, planned: &Arc<UnitPlan>) -> Box<dyn Contract> {
+    device(config, planned).contract(FunctionFormulas { planned: planned.clone() })
 }
 
 /// The formulas of the functions, with their plans and proved bounds.

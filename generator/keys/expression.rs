@@ -54,7 +54,7 @@ fn operand_fields() -> Vec<Key> {
         Key::text(
             "axes",
             "xyz",
-            TextPattern::Name,
+            TextPattern::Formula,
             "A letter for each number of a list, for the names of the ports.",
         ),
         Key::integer("fraction", 12, -40..=40, "Fraction bits."),
@@ -94,7 +94,7 @@ fn result_fields() -> Vec<Key> {
         Key::text(
             "axes",
             "xyz",
-            TextPattern::Name,
+            TextPattern::Formula,
             "A letter for each number of a list, for the names of the ports.",
         ),
         Key::integer("fraction", 12, 0..=40, "Fraction bits."),
@@ -169,9 +169,18 @@ fn check(config: &Config, problems: &mut Problems) {
     }
 }
 
-fn misread(key: String, fault: Fault) -> ConfigError {
-    let remedy = "write a formula of numbers, pi, e, operands, + - * / ^, parentheses and functions, for \
-                  example `sqrt(x^2 + y^2)`";
+/// Turns a mistake in a formula into an error. `has_lists` says whether the formula can name lists.
+fn misread(key: String, fault: Fault, has_lists: bool) -> ConfigError {
+    let remedy = match has_lists {
+        true => {
+            "write a formula of numbers and lists of the same size, for example `2 * n + [n.x, n.y, 1]`, `v[0]` or \
+             `dot(n, n)`"
+        }
+        false => {
+            "write a formula of numbers, pi, e, operands, + - * / ^, parentheses and functions, for \
+             example `sqrt(x^2 + y^2)`"
+        }
+    };
     ConfigError::new(key, fault.message, remedy).at(fault.span.bytes)
 }
 
@@ -322,13 +331,13 @@ pub(super) fn statement(keys: &Keys) -> Result<ExpressionStatement, ConfigError>
         let names_it =
             |result: &StatedResult| result.formula.operands().contains(&operand.name.as_str());
         if !results.iter().any(names_it) {
-            let key = format!("operands.{}", operand_entry(keys, &operand.name).name);
+            let entry = &operand_entry(keys, &operand.name).name;
             let message = format!("no result depends on `{}`", operand.name);
-            return Err(ConfigError::new(
-                key,
-                message,
-                "remove the operand, or use it in a formula",
-            ));
+            let remedy = match *entry == operand.name {
+                true => "remove the operand, or use it in a formula",
+                false => "give the list fewer numbers, or use this number in a formula",
+            };
+            return Err(ConfigError::new(format!("operands.{entry}"), message, remedy));
         }
     }
     let mut statement = ExpressionStatement { operands, results };
@@ -414,7 +423,11 @@ fn check_names(keys: &Keys, operands: &[String], results: &[&str]) -> Result<(),
     let entries: Vec<(NamedTable, &str)> =
         names.iter().map(|(table, name, _)| (*table, *name)).collect();
     port_names::check(&entries).map_err(|NameFault { entry, message, remedy }| {
-        let (table, _, record) = names[entry];
+        let (table, name, record) = names[entry];
+        let remedy = match name == record {
+            true => remedy,
+            false => format!("give the list `{record}` another name or other axes"),
+        };
         ConfigError::new(format!("{}.{record}", table.key()), message, remedy)
     })
 }
@@ -634,7 +647,7 @@ fn formula(
 ) -> Result<NumberOrList, ConfigError> {
     let text = text.unwrap_or_default();
     let formula = parse_with_lists(text, &|name| known.list(name))
-        .map_err(|fault| misread(key.to_owned(), fault))?;
+        .map_err(|fault| misread(key.to_owned(), fault, !known.lists.is_empty()))?;
     Ok(match formula {
         NumberOrList::Number(number) => {
             NumberOrList::Number(Arc::new(resolved(&number, key, keys, known)?))
@@ -708,7 +721,10 @@ fn promise(
 ) -> Result<Comparison, ConfigError> {
     let comparison =
         parse_condition_with_lists(text, &|name| known.list(name)).map_err(|fault| {
-            let remedy = "give a condition, for example `x < y` or `s > 0 and x != 0`";
+            let remedy = match known.lists.is_empty() {
+                true => "give a condition, for example `x < y` or `s > 0 and x != 0`",
+                false => "compare numbers, for example `n.x > 0`, `min(v) > 0` or `dot(n, n) > 0`",
+            };
             ConfigError::new(key, fault.message, remedy).at(fault.span.bytes)
         })?;
     let Comparison { left, right, or_equal } = comparison;

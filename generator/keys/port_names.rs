@@ -130,7 +130,7 @@ fn obstacle(table: NamedTable, name: &str, others: &[(NamedTable, &str)]) -> Opt
     }
     for (other_table, other) in others {
         if other == &name {
-            return Some(format!("[{}] has an entry `{name}` already", other_table.key()));
+            return Some(format!("[{}] has the name `{name}` already", other_table.key()));
         }
         let differs_in_case = other.to_ascii_lowercase() == in_lower_case;
         if differs_in_case && table != NamedTable::Parts && *other_table != NamedTable::Parts {

@@ -254,7 +254,7 @@ impl ExcessiveResult {
         let is_nearest = statement.results[self.result].error <= HALF_A_UNIT;
         let remedy = match self.worst.units.is_finite() {
             true if is_nearest => {
-                "allow a larger error, such as 0.6: the nearest value, with error = 0.5, is possible only for a / b with b != 0, sqrt(s) and hypot, of sums and products of operands"
+                "allow a larger error, such as 0.6: the nearest value, with error = 0.5, is possible only for sqrt(s), hypot, and a / b with a b that varies and is not 0, of sums and products of operands"
             }
             true => "allow a larger error, or exclude these operands with `where`",
             // No error that can be stated is large enough.

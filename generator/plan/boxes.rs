@@ -110,7 +110,12 @@ pub(super) fn has_few_operands(statement: &ExpressionStatement) -> bool {
 /// Returns the number of divisions of the domain that take an acceptable time: `wished` with up to 3 operands, a 16th of it with 4, and
 /// half as many with each further operand.
 pub(super) fn affordable(statement: &ExpressionStatement, wished: usize) -> usize {
-    match statement.operands.len().saturating_sub(FEW_OPERANDS) {
+    affordable_with(statement.operands.len().saturating_sub(FEW_OPERANDS), wished)
+}
+
+/// Returns the number of divisions for an expression with `more` operands than [`FEW_OPERANDS`].
+fn affordable_with(more: usize, wished: usize) -> usize {
+    match more {
         0 => wished,
         more => (wished >> (3 + more).min(16)).max(LEAST_DIVISIONS),
     }
@@ -157,12 +162,23 @@ impl<'p> ResultProof<'p> {
         Self { statement, plan, result, needed, joins }
     }
 
+    /// Returns whether an error is computed fast: with few operands, and without several integer parts.
+    fn is_fast(&self) -> bool {
+        has_few_operands(self.statement) && self.joins.iter().all(Option::is_none)
+    }
+
+    /// Returns the number of divisions that take an acceptable time. Several integer parts count as an operand more.
+    fn affordable(&self, wished: usize) -> usize {
+        let more = self.statement.operands.len().saturating_sub(FEW_OPERANDS);
+        affordable_with(if self.is_fast() { 0 } else { more.max(1) }, wished)
+    }
+
     /// Returns the box with the largest error. Boxes are divided until this error is at most `enough` units, or `divisions`
     /// times, or until this box is a single combination. No operands have a larger error than this box states. Returns `None`
     /// if the result is promised for no operands.
     pub(super) fn worst(&self, enough: f64, divisions: usize) -> Option<BoxError> {
         let mut open = self.errors_in(&[self.statement.domain()]);
-        let divisions = affordable(self.statement, divisions);
+        let divisions = self.affordable(divisions);
         self.divide(&mut open, divisions, &mut |worst| worst.units <= enough);
         open.pop()
     }
@@ -173,7 +189,7 @@ impl<'p> ResultProof<'p> {
     pub(super) fn whole_units(&self, unit: f64, divisions: usize) -> Option<f64> {
         let whole = |error: &BoxError| (error.units / unit).ceil();
         let mut open = self.errors_in(&[self.statement.domain()]);
-        let divisions = affordable(self.statement, divisions);
+        let divisions = self.affordable(divisions);
         self.divide(&mut open, divisions, &mut |worst| {
             let single = self.error_in(middle_of(&worst.limits));
             single.is_some_and(|single| whole(&single) == whole(worst))
@@ -195,11 +211,11 @@ impl<'p> ResultProof<'p> {
             return Some(example);
         }
         let mut open = self.errors_in(&search.boxes);
-        let divisions = affordable(self.statement, divisions);
+        let divisions = self.affordable(divisions);
         let least = divisions / LEAST_SHARE_OF_DIVISIONS;
         let divisions = divisions.saturating_sub(open.len()).max(least);
         let mut single = None;
-        let has_few_operands = has_few_operands(self.statement);
+        let has_few_operands = self.is_fast();
         self.divide(&mut open, divisions, &mut |worst| {
             // With many operands, few divisions lower an error that has a limit.
             if !has_few_operands && worst.units.is_finite() {

@@ -40,6 +40,7 @@ mod analyse;
 mod boxes;
 mod cost;
 mod curve;
+mod depth;
 mod describe;
 mod evaluate;
 mod exhaust;

@@ -1,9 +1,11 @@
 //! Turns a plan into a microprogram for one multiplier, with registers for the values that later microinstructions read.
 //!
 //! Each product, each step of Horner's rule and each normalised word has its own microinstruction, and a register for its
-//! value. So has a result that other operations read. All other operations are combinational logic between these registers,
-//! and the last microinstruction loads the registers of the other results.
+//! value. So has a result that other operations read, and in a sequential core a value whose logic would otherwise take too long
+//! ([`super::depth`]). All other operations are combinational logic between these registers, and the last microinstruction loads the
+//! registers of the other results.
 
+use super::depth::{longest_to, time_of};
 use super::node::{NodeId, Operation};
 use super::plan::ExpressionPlan;
 
@@ -41,11 +43,12 @@ pub struct PlanSchedule {
 
 impl ExpressionPlan {
     /// Returns the microprogram of the plan, with the nodes that have registers. It computes no node that no result reads
-    /// ([`ExpressionPlan::read_nodes`]).
+    /// ([`ExpressionPlan::read_nodes`]). A sequential core has further registers where logic would take too long. A pipeline has none
+    /// of these, because its own schedule places the registers.
     ///
     /// # Panics
     /// Panics if the plan has a function whose polynomials are not known yet.
-    pub fn schedule(&self) -> PlanSchedule {
+    pub fn schedule(&self, is_pipelined: bool) -> PlanSchedule {
         let mut schedule = PlanSchedule { held: vec![false; self.nodes.len()], steps: Vec::new() };
         let is_read = self.read_nodes();
         for at in 0..self.nodes.len() {
@@ -58,6 +61,9 @@ impl ExpressionPlan {
             };
             if !is_computed {
                 continue;
+            }
+            if !is_pipelined {
+                self.store_late_inputs(node, &mut schedule);
             }
             match operation {
                 Operation::Multiply(..) => {
@@ -111,6 +117,76 @@ impl ExpressionPlan {
         schedule
     }
 
+    /// Adds registers for the inputs of `node` if the logic in front of it would take too long. Each is loaded as soon as its value is
+    /// there, before any microinstruction that reads it.
+    fn store_late_inputs(&self, node: NodeId, schedule: &mut PlanSchedule) {
+        let operation = &self.node(node).operation;
+        if matches!(operation, Operation::Places(_)) {
+            // It is computed together with the normalised word.
+            return;
+        }
+        let arrivals = self.arrivals(node, schedule);
+        let inputs = operation.hardware_inputs();
+        let latest = inputs.iter().map(|input| arrivals[input.0].time).fold(0.0, f64::max);
+        if latest + time_of(self, node) <= longest_to(operation) {
+            return;
+        }
+        for input in inputs {
+            if !schedule.held[input.0] && arrivals[input.0].time > 0.0 {
+                self.store(input, node, schedule);
+            }
+        }
+    }
+
+    /// Adds a register for the value of `late`, a node before `end`.
+    fn store(&self, late: NodeId, end: NodeId, schedule: &mut PlanSchedule) {
+        let place = self.arrivals(end, schedule)[late.0].step;
+        let reads_late = |node: &NodeId| self.reads_unheld(*node, late, schedule);
+        let joins = match schedule.steps.get(place) {
+            Some(PlanStep::Hold(others)) => !others.iter().any(reads_late),
+            _ => false,
+        };
+        match (joins, schedule.steps.get_mut(place)) {
+            (true, Some(PlanStep::Hold(others))) => others.push(late),
+            _ => schedule.steps.insert(place, PlanStep::Hold(vec![late])),
+        }
+        schedule.held[late.0] = true;
+    }
+
+    /// Returns whether the logic in front of `node`'s register reads `late`.
+    fn reads_unheld(&self, node: NodeId, late: NodeId, schedule: &PlanSchedule) -> bool {
+        let inputs = self.node(node).operation.hardware_inputs();
+        inputs.into_iter().any(|input| {
+            input == late || !schedule.held[input.0] && self.reads_unheld(input, late, schedule)
+        })
+    }
+
+    /// Returns the arrivals of all nodes before `end`.
+    fn arrivals(&self, end: NodeId, schedule: &PlanSchedule) -> Vec<Arrival> {
+        let mut loaded = vec![0; self.nodes.len()];
+        for (at, step) in schedule.steps.iter().enumerate() {
+            match step {
+                PlanStep::Product { held, .. } => loaded[held.0] = at + 1,
+                PlanStep::Hold(nodes) => nodes.iter().for_each(|node| loaded[node.0] = at + 1),
+                PlanStep::Sum { polynomial, .. } => loaded[polynomial.0] = at + 1,
+                PlanStep::Address(_) => {}
+            }
+        }
+        let mut arrivals: Vec<Arrival> = Vec::with_capacity(end.0);
+        for at in 0..end.0 {
+            let mut arrival = Arrival { time: 0.0, step: loaded[at] };
+            if !schedule.held[at] {
+                for input in self.nodes[at].operation.hardware_inputs() {
+                    arrival.time = arrivals[input.0].time.max(arrival.time);
+                    arrival.step = arrivals[input.0].step.max(arrival.step);
+                }
+                arrival.time += time_of(self, NodeId(at));
+            }
+            arrivals.push(arrival);
+        }
+        arrivals
+    }
+
     /// Returns the node whose register stores the value of `node`: `node` itself, or a later node that only scales or shortens it.
     ///
     /// The search begins at `node`, and goes on to the reader of the present node while there is only one. The search passes
@@ -138,4 +214,13 @@ impl ExpressionPlan {
             }
         }
     }
+}
+
+/// When the value of a node arrives.
+#[derive(Clone, Copy)]
+struct Arrival {
+    /// The time of the logic between the registers before the node and its value, in nanoseconds; 0 for a node with a register.
+    time: f64,
+    /// The number of microinstructions after which the registers before the node have their values.
+    step: usize,
 }

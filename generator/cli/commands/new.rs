@@ -68,7 +68,10 @@ const SCHEMA: &str = "#:schema glint.schema.json\n# Editors check keys with this
 /// Fails if no device or function has the name, or if an option has a value that a configuration cannot have.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let device = &arguments.device;
-    let preset = presets::find(device);
+    // A device of the user's own may have the name of a preset, such as `fresnel`.
+    let is_hidden =
+        |preset: &presets::Preset| preset.device != device && registry.device(device).is_some();
+    let preset = presets::find(device).filter(|preset| !is_hidden(preset));
     let device_of_preset = preset.as_ref().and_then(|preset| registry.device(preset.device));
     let Some(found) = registry.device(device).or(device_of_preset) else {
         let names = registry.devices().iter().map(|device| device.name);

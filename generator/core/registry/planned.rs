@@ -22,12 +22,12 @@ impl DeviceParts for FunctionParts {
         devices::function::describe(designer, config, &self.0);
     }
 
-    fn model(&self, _: &Config) -> Box<dyn Model> {
-        golden::function::model(&self.0)
+    fn model(&self, config: &Config) -> Box<dyn Model> {
+        golden::function::model(config, &self.0)
     }
 
-    fn contract(&self, _: &Config) -> Box<dyn Contract> {
-        golden::function::contract(&self.0)
+    fn contract(&self, config: &Config) -> Box<dyn Contract> {
+        golden::function::contract(config, &self.0)
     }
 }
 
@@ -43,12 +43,12 @@ impl DeviceParts for ExpressionParts {
         devices::expression::describe(designer, config, &self.0);
     }
 
-    fn model(&self, _: &Config) -> Box<dyn Model> {
-        golden::expression::model(&self.0)
+    fn model(&self, config: &Config) -> Box<dyn Model> {
+        golden::expression::model(config, &self.0)
     }
 
-    fn contract(&self, _: &Config) -> Box<dyn Contract> {
-        golden::expression::contract(&self.0)
+    fn contract(&self, config: &Config) -> Box<dyn Contract> {
+        golden::expression::contract(config, &self.0)
     }
 }
 
@@ -64,12 +64,12 @@ impl DeviceParts for UnitParts {
         devices::unit::describe(designer, config, &self.0);
     }
 
-    fn model(&self, _: &Config) -> Box<dyn Model> {
-        golden::unit::model(&self.0)
+    fn model(&self, config: &Config) -> Box<dyn Model> {
+        golden::unit::model(config, &self.0)
     }
 
-    fn contract(&self, _: &Config) -> Box<dyn Contract> {
-        golden::unit::contract(&self.0)
+    fn contract(&self, config: &Config) -> Box<dyn Contract> {
+        golden::unit::contract(config, &self.0)
     }
 }
 

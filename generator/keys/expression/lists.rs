@@ -61,20 +61,17 @@ pub(super) fn axes_of(record: &TableEntry, key: &str) -> Result<Option<String>, 
     let Some(axes) = record.text("axes") else { return Ok(None) };
     let is_repeated =
         |(at, axis): (usize, char)| axes.chars().take(at).any(|before| before == axis);
-    let are_letters = axes.chars().all(|axis| axis.is_ascii_lowercase());
-    if !are_letters || axes.chars().enumerate().any(is_repeated) {
-        let message = format!("`{axes}` are no axes");
-        return Err(ConfigError::new(
-            key,
-            message,
-            "give different small letters, such as \"xyz\"",
-        ));
-    }
-    if !(2..=LONGEST_LIST).contains(&axes.len()) {
-        let message = format!("a list has 2 to {LONGEST_LIST} axes");
-        return Err(ConfigError::new(key, message, "give a letter for each number of the list"));
-    }
-    Ok(Some(axes.to_owned()))
+    let refusal = if let Some(other) = axes.chars().find(|axis| !axis.is_ascii_lowercase()) {
+        format!("an axis is a small letter from a to z, and `{other}` is none")
+    } else if let Some((_, axis)) = axes.chars().enumerate().find(|axis| is_repeated(*axis)) {
+        format!("the axis `{axis}` is given twice")
+    } else if !(2..=LONGEST_LIST).contains(&axes.len()) {
+        format!("a list has 2 to {LONGEST_LIST} axes")
+    } else {
+        return Ok(Some(axes.to_owned()));
+    };
+    let remedy = "give a different small letter for each number of the list, such as \"xyz\"";
+    Err(ConfigError::new(key, refusal, remedy))
 }
 
 /// Returns the entry of the table `results` that states the result with the name `port`.

@@ -40,7 +40,7 @@ impl RootParts {
     fn device(&self) -> device::Device {
         let polynomials = &self.inverse.polynomials;
         let (first, last) = polynomials.domain;
-        let model = golden::function::model(&self.inverse);
+        let model = golden::function::model(&part(), &self.inverse);
         let mut frame = Frame::default();
         let x = frame.operand("x", polynomials.operand);
         let inverse = frame.part("rsqrt", &*model, [("x", move |s: &State| s[x])]).out("result_out");
@@ -75,7 +75,7 @@ impl DeviceParts for RootParts {
     }
 
     fn contract(&self, _: &Config) -> Box<dyn Contract> {
-        let part = golden::function::contract(&self.inverse);
+        let part = golden::function::contract(&part(), &self.inverse);
         let error = part.bounds().governing().units * exp2(-part.outputs()[0].format.frac);
         self.device().contract(Root { error })
     }
