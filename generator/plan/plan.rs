@@ -20,6 +20,8 @@ pub struct ExpressionPlan {
     /// For each result the node whose error is proved. This is the node in `results`, except for a result that wraps: for such
     /// a result it is the node before the high bits are dropped.
     pub proved: Vec<NodeId>,
+    /// Whether several functions share the operations, so that an opcode selects their inputs.
+    pub is_shared: bool,
 }
 
 impl ExpressionPlan {

@@ -44,7 +44,8 @@ pub struct PlanSchedule {
 impl ExpressionPlan {
     /// Returns the microprogram of the plan, with the nodes that have registers. It computes no node that no result reads
     /// ([`ExpressionPlan::read_nodes`]). A sequential core has further registers where logic would take too long. A pipeline has none
-    /// of these, because its own schedule places the registers.
+    /// of these, because its own schedule places the registers. Neither has a plan of several functions: the selection of factors and
+    /// tables takes longer than other logic, and each function would take more clocks.
     ///
     /// # Panics
     /// Panics if the plan has a function whose polynomials are not known yet.
@@ -62,7 +63,7 @@ impl ExpressionPlan {
             if !is_computed {
                 continue;
             }
-            if !is_pipelined {
+            if !is_pipelined && !self.is_shared {
                 self.store_late_inputs(node, &mut schedule);
             }
             match operation {
@@ -173,8 +174,8 @@ impl ExpressionPlan {
             }
         }
         let mut arrivals: Vec<Arrival> = Vec::with_capacity(end.0);
-        for at in 0..end.0 {
-            let mut arrival = Arrival { time: 0.0, step: loaded[at] };
+        for (at, step) in loaded.into_iter().enumerate().take(end.0) {
+            let mut arrival = Arrival { time: 0.0, step };
             if !schedule.held[at] {
                 for input in self.nodes[at].operation.hardware_inputs() {
                     arrival.time = arrivals[input.0].time.max(arrival.time);

@@ -39,7 +39,7 @@ pub(super) fn merged(
     ports: &[StatedOperand],
     results: &[(&'static str, Format)],
 ) -> Result<ExpressionPlan, PlanRefusal> {
-    let mut plan = ExpressionPlan::default();
+    let mut plan = ExpressionPlan { is_shared: true, ..ExpressionPlan::default() };
     let mut nodes = Vec::new();
     for (number, port) in ports.iter().enumerate() {
         nodes.push(plan.operand(number, &port.name, port.format, port.domain)?);
