@@ -436,7 +436,16 @@ def a_wide_form_fits(page):
 def a_slider_and_the_picture_are_seen_together(page):
     page.locator("#toml").fill('device = "rough"\n')
     settled(page)
-    page.locator("[id='key-cosine.fraction']").evaluate("it => it.scrollIntoView({ block: 'end' })")
+    # Under load, the pictures of the last device leave the page late, and the form moves.
+    page.wait_for_function(
+        """() => {
+            const slider = document.getElementById("key-cosine.fraction");
+            slider.scrollIntoView({ block: "end" });
+            const { top } = slider.getBoundingClientRect();
+            return 0 <= top && top < innerHeight;
+        }""",
+        timeout=LIMIT,
+    )
     boxes = [page.locator(it).bounding_box() for it in ("[id='key-cosine.fraction']", "#results")]
     assert all(0 <= box["y"] < 900 for box in boxes), boxes
     assert boxes[0]["y"] >= boxes[1]["y"] + boxes[1]["height"], boxes
