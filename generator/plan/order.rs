@@ -14,14 +14,17 @@ const MOST_NUMBERS: usize = 32;
 /// The most parts of a sum that is examined.
 const MOST_PARTS: u32 = 4000;
 
-/// The smallest difference from a maximum for which a term of a sum is examined. A term with an exponential function is
-/// 0 beyond it.
-const LEAST_DIFFERENCE: f64 = -1e6;
+/// The name of the operand that replaces a difference in a term. A user's operand has no blank in its name.
+const DIFFERENCE: &str = "the difference";
 
 /// Returns limits of the values of `part` that hold for all operands. `operands` has limits of the operands. The limits are infinite
 /// if nothing is known.
 pub(super) fn limits(part: &Expression, operands: &[(&str, Enclosure)]) -> Enclosure {
     let mut limits = Enclosure::between(f64::NEG_INFINITY, f64::INFINITY);
+    if part.has(&|kind| matches!(kind, Kind::If(..))) {
+        // Rounding can make two nodes of the same choice take different cases.
+        return limits;
+    }
     match &part.kind {
         Kind::Binary(Operator::Sub, a, b) => {
             if has_number(b, Operator::Max, a) || has_number(a, Operator::Min, b) {
@@ -118,16 +121,15 @@ fn least_sum(sum: &Expression, operands: &[(&str, Enclosure)]) -> Option<f64> {
             return None;
         }
         numbers.retain(|it| **it != **number);
-        // No operand of a user has such a name.
-        let mark = Expression::operand("difference");
-        let of_difference = term.substitute(difference, &mark, &term.span);
+        let of_difference =
+            term.substitute(difference, &Expression::operand(DIFFERENCE), &term.span);
         let value_for = |difference: Enclosure| {
             let mut values = operands.to_vec();
-            values.retain(|(name, _)| *name != "difference");
-            values.push(("difference", difference));
+            values.push((DIFFERENCE, difference));
             of_difference.enclose(&values).ok()
         };
-        if value_for(Enclosure::between(LEAST_DIFFERENCE, 0.0))?.low < 0.0 {
+        let smallest = difference.enclose(operands).ok()?.low.min(0.0);
+        if value_for(Enclosure::between(smallest, 0.0))?.low < 0.0 {
             return None;
         }
         least = least.min(value_for(Enclosure::exactly(0.0))?.low);
@@ -149,7 +151,8 @@ fn difference_in(term: &Expression) -> Option<&Expression> {
 mod tests {
     use super::*;
 
-    const OPERANDS: [(&str, Enclosure); 3] = [
+    const OPERANDS: [(&str, Enclosure); 4] = [
+        ("difference", Enclosure::between(-4.0, 4.0)),
         ("a", Enclosure::between(-4.0, 4.0)),
         ("b", Enclosure::between(-4.0, 4.0)),
         ("c", Enclosure::between(-4.0, 4.0)),
@@ -184,5 +187,9 @@ mod tests {
         assert_eq!(limits_of("exp(a - max(a, b, c)) + exp(b - max(a, b, c))").low, nothing);
         assert_eq!(limits_of("(1 + (a - max(a, b))) + exp(b - max(a, b))").low, nothing);
         assert_eq!(limits_of("exp(a - max(a, b)) + exp(b - max(b, c))").low, nothing);
+        let own = "difference * exp(a - max(a, b)) + difference * exp(b - max(a, b))";
+        assert_eq!(limits_of(own).low, nothing);
+        // The terms are below 0 for a difference below −7, which these operands have.
+        assert_eq!(limits_of("(7 + (a - max(a, b))) + (7 + (b - max(a, b)))").low, nothing);
     }
 }

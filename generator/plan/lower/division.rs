@@ -141,7 +141,7 @@ impl Lowering<'_> {
         }
         let with_kind = |kind: Kind| Expression::new(kind, divisor.span.clone());
         let size = with_kind(Kind::Unary(Function::Abs, Arc::new(divisor.clone())));
-        if self.range_here(&size).is_ok_and(|values| values.low <= 0.0) {
+        if !self.range_here(&size).is_ok_and(|values| values.low > 0.0) {
             return None;
         }
         let dividend = Arc::new(dividend);
