@@ -99,7 +99,7 @@ impl NumberList {
     }
 }
 
-/// What a text states: a number or a list of numbers.
+/// The meaning of a text: a number or a list of numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NumberOrList {
     /// The formula of a number.

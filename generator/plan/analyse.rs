@@ -191,7 +191,7 @@ impl ErrorAnalysis<'_> {
         self.run_from(known, self.plan.nodes.len(), operands, visit);
     }
 
-    /// Analyses the nodes after those of `known`, up to the node number `end`, which is not analysed.
+    /// Analyses the nodes that `known` lacks and whose numbers are below `end`.
     fn run_from(
         &self,
         mut known: Known,

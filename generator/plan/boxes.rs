@@ -83,7 +83,7 @@ const FEW_OPERANDS: usize = 3;
 /// The least number of divisions of a domain with many operands.
 const LEAST_DIVISIONS: usize = 8;
 
-/// What the search for an excessive error of a result learns from the plans before.
+/// The memory of a search for an excessive error of a result, which makes the search for a similar plan faster.
 #[derive(Clone)]
 pub(super) struct ErrorSearch {
     /// Boxes that together contain all operands for which the result is promised.
@@ -92,7 +92,7 @@ pub(super) struct ErrorSearch {
     examples: Vec<OperandBox>,
 }
 
-/// What is known about the errors of each result.
+/// A search for each result.
 pub(super) type ErrorSearches = Vec<ErrorSearch>;
 
 /// Returns searches that consist of the whole domain.

@@ -1,4 +1,4 @@
-//! What a maximum or a minimum says about parts of formulas that compare numbers with it.
+//! Limits that follow from a maximum or a minimum for parts of formulas that compare numbers with it.
 //!
 //! A number minus a maximum that includes it is never above 0: `v0 - max(v0, v1)` ≤ 0. At least one of these
 //! differences is 0, so that a sum of functions of all of them has a lower limit: `exp(v0 - m) + exp(v1 - m)` ≥ 1, with m the

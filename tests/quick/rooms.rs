@@ -34,7 +34,7 @@ const EVERYWHERE: [&str; 11] = [
     "show",
 ];
 
-/// Where devices may be known by name. Formulas can call the formulas of the highlights by these names, too.
+/// Where devices may be known by name. Formulas can call highlights by these names.
 const NAMING: [&str; 5] =
     ["keys/", "catalogue/", "golden/", "core/registry.rs", "formula/highlights.rs"];
 

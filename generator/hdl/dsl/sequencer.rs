@@ -152,7 +152,7 @@ fn valid_line(d: &Designer) -> NetId {
 }
 
 /// Limits the control word to 64 bits: moves fields into ROMs of their own with the same address, the last field first. The fields of
-/// parts move before those of the description itself. Of these, only the enables of registers can move.
+/// parts move first. Among the fields of the description itself, only the enables of registers can move.
 fn moved_beside(d: &Designer, microinstructions: &mut [Microinstruction], address: NetId) {
     let width_of = |field: &Field| d.net(field.net).format.width();
     let mut fields = d.with(|inner| inner.design.control.fields.clone());
