@@ -225,3 +225,105 @@ struct Arrival {
     /// The number of microinstructions after which the registers before the node have their values.
     step: usize,
 }
+
+#[cfg(test)]
+mod tests {
+    use glint_approximate::Outside;
+    use glint_base::fixed::Format;
+    use glint_formula::parse;
+
+    use super::*;
+    use crate::find::find;
+    use crate::statement::{ExpressionStatement, StatedOperand, StatedResult};
+
+    /// Returns the plan of a formula of a, b, c and d, which have 16 bits and are from −1 to below 1.
+    fn plan_of(formula: &str) -> ExpressionPlan {
+        let formula = parse(formula).expect("a formula");
+        let mut operands = Vec::new();
+        for name in formula.operands() {
+            let format = Format::signed(0, 15);
+            let (low, high) = format.range();
+            operands.push(StatedOperand {
+                name: name.to_owned(),
+                format,
+                domain: (low as i64, high as i64),
+                outside: Outside::Anything,
+                doc: String::new(),
+            });
+        }
+        let result = StatedResult {
+            name: "r".to_owned(),
+            formula,
+            fraction: 10,
+            error: 1.0,
+            promise: None,
+            width: None,
+        };
+        find(&ExpressionStatement { operands, results: vec![result] }).expect("a plan").plan
+    }
+
+    /// Returns the nodes with registers that the logic in front of `node` reads.
+    fn registers_before(
+        plan: &ExpressionPlan,
+        schedule: &PlanSchedule,
+        node: NodeId,
+    ) -> Vec<NodeId> {
+        let mut registers = Vec::new();
+        for input in plan.node(node).operation.hardware_inputs() {
+            match schedule.held[input.0] {
+                true => registers.push(input),
+                false => registers.extend(registers_before(plan, schedule, input)),
+            }
+        }
+        registers
+    }
+
+    #[test]
+    fn each_register_is_loaded_before_it_is_read() {
+        for formula in [
+            "max(max(a, b), max(c, d)) + abs(a - b) * c",
+            "sqrt(a^2 + b^2)",
+            "sin(pi * a) * b - cos(pi * a) * c",
+            "min(max(a * b + c, -1), 1) * d + abs(abs(a) - abs(d))",
+        ] {
+            let plan = plan_of(formula);
+            let schedule = plan.schedule(false);
+            let mut is_loaded = vec![false; plan.nodes.len()];
+            for step in &schedule.steps {
+                let loaded = match step {
+                    PlanStep::Product { held, .. } => vec![*held],
+                    PlanStep::Hold(nodes) => nodes.clone(),
+                    PlanStep::Sum { polynomial, coefficient: 0 } => vec![*polynomial],
+                    PlanStep::Sum { .. } | PlanStep::Address(_) => Vec::new(),
+                };
+                for node in &loaded {
+                    for register in registers_before(&plan, &schedule, *node) {
+                        let name = &plan.node(register).name;
+                        assert!(is_loaded[register.0], "{formula}: {name} is read too early");
+                    }
+                }
+                for node in loaded {
+                    is_loaded[node.0] = true;
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_sequential_core_stores_each_level_of_a_wide_maximum() {
+        let plan = plan_of("max(max(a, b), max(c, d))");
+        let counts = |is_pipelined: bool| -> Vec<usize> {
+            let steps = plan.schedule(is_pipelined).steps;
+            steps
+                .iter()
+                .map(|step| match step {
+                    PlanStep::Hold(nodes) => nodes.len(),
+                    other => panic!("a maximum needs no {other:?}"),
+                })
+                .collect()
+        };
+        assert_eq!(counts(true), [1]);
+        // Both maxima of two operands are stored in the same clock.
+        assert_eq!(counts(false), [2, 1]);
+    }
+}
