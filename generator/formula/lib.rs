@@ -10,6 +10,7 @@ mod condition;
 mod enclosure;
 mod evaluate;
 mod exact;
+mod functions;
 mod highlights;
 mod list;
 mod literal;
@@ -28,11 +29,10 @@ use std::sync::Arc;
 
 pub use dashu_ratio::RBig;
 pub use enclosure::Enclosure;
+pub use functions::FUNCTIONS;
 pub use list::{LONGEST_LIST, NumberList, NumberOrList};
 pub use literal::Literal;
-pub use parse::{
-    FUNCTIONS, NamedLists, parse, parse_condition, parse_condition_with_lists, parse_with_lists,
-};
+pub use parse::{NamedLists, parse, parse_condition, parse_condition_with_lists, parse_with_lists};
 pub use print::CArithmetic;
 
 /// A formula, or a part of one, as a tree. Two formulas are equal if their kinds are equal, even at different locations.

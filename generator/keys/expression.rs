@@ -19,7 +19,7 @@ use glint_plan::{
     StatedResult, StatedWidth, find, least_size,
 };
 
-use lists::{MOST_NUMBERS, OperandPorts, axes_of, element_names, operand_entry};
+use lists::{MOST_NUMBERS, OperandPorts, operand_entry, result_names};
 
 use super::function::End;
 use super::port_names::{self, NameFault, NamedTable};
@@ -588,33 +588,6 @@ fn results_of(
         results.push(StatedResult { name, formula, fraction, error, promise, width });
     }
     Ok(results)
-}
-
-/// Returns the names of the results of an entry. Without axes of its own, a list has the axes of the lists in its formula. Fails if the
-/// entry has axes and is no list of as many numbers.
-fn result_names(record: &TableEntry, formula: &NumberOrList) -> Result<Vec<String>, ConfigError> {
-    let name = &record.name;
-    let key = format!("results.{name}.axes");
-    let own = axes_of(record, &key)?;
-    let list = match formula {
-        NumberOrList::List(list) => list,
-        NumberOrList::Number(_) if own.is_some() => {
-            let message = format!("`{name}` has axes, and its formula gives a single number");
-            return Err(ConfigError::new(key, message, "remove `axes`"));
-        }
-        NumberOrList::Number(_) => return Ok(vec![name.clone()]),
-    };
-    let count = list.elements.len();
-    if let Some(axes) = own.as_ref().filter(|axes| axes.len() != count) {
-        let message =
-            format!("`{name}` has {} axes, and its formula gives {count} numbers", axes.len());
-        return Err(ConfigError::new(key, message, "give as many axes as numbers"));
-    }
-    let axes = own.or_else(|| list.axes.clone()).filter(|axes| {
-        // `n.xx` repeats an axis, so that its letters are no names.
-        axes.chars().enumerate().all(|(at, axis)| axes.find(axis) == Some(at))
-    });
-    Ok(element_names(name, count, axes.as_deref()))
 }
 
 /// Returns the format of a result, with a sign if the field `signed` of the entry says so.

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use glint_base::config_error::ConfigError;
 use glint_config::TableEntry;
-use glint_formula::{Expression, LONGEST_LIST, NumberList};
+use glint_formula::{Expression, LONGEST_LIST, NumberList, NumberOrList};
 
 use super::Keys;
 
@@ -15,19 +15,19 @@ use super::Keys;
 pub(super) const MOST_NUMBERS: usize = 32;
 
 /// Returns the names of the ports of a list: one for each axis, or numbers from 0 on.
-pub(super) fn element_names(name: &str, count: usize, axes: Option<&str>) -> Vec<String> {
+fn element_names(name: &str, count: usize, axes: Option<&str>) -> Vec<String> {
     match axes {
         Some(axes) => axes.chars().map(|axis| format!("{name}{axis}")).collect(),
         None => (0..count).map(|number| format!("{name}_{number}")).collect(),
     }
 }
 
-/// Returns the names of the ports that an operand has: its own name, or one for each number of a list. `axes` has the axes of a
-/// list with axes.
+/// The ports of an operand.
 pub(super) struct OperandPorts {
+    /// The operand's own name, or a name for each number of a list.
     pub(super) names: Vec<String>,
-    pub(super) axes: Option<String>,
-    pub(super) is_list: bool,
+    axes: Option<String>,
+    is_list: bool,
 }
 
 impl OperandPorts {
@@ -57,7 +57,7 @@ impl OperandPorts {
 }
 
 /// Returns the axes that an entry states. Fails unless they are 2 to 16 different letters.
-pub(super) fn axes_of(record: &TableEntry, key: &str) -> Result<Option<String>, ConfigError> {
+fn axes_of(record: &TableEntry, key: &str) -> Result<Option<String>, ConfigError> {
     let Some(axes) = record.text("axes") else { return Ok(None) };
     let is_repeated =
         |(at, axis): (usize, char)| axes.chars().take(at).any(|before| before == axis);
@@ -72,6 +72,36 @@ pub(super) fn axes_of(record: &TableEntry, key: &str) -> Result<Option<String>, 
     };
     let remedy = "give a different small letter for each number of the list, such as \"xyz\"";
     Err(ConfigError::new(key, refusal, remedy))
+}
+
+/// Returns the names of the results of an entry. Without axes of its own, a list has the axes of the lists in its formula. Fails if the
+/// entry has axes and is no list of as many numbers.
+pub(super) fn result_names(
+    record: &TableEntry,
+    formula: &NumberOrList,
+) -> Result<Vec<String>, ConfigError> {
+    let name = &record.name;
+    let key = format!("results.{name}.axes");
+    let own = axes_of(record, &key)?;
+    let list = match formula {
+        NumberOrList::List(list) => list,
+        NumberOrList::Number(_) if own.is_some() => {
+            let message = format!("`{name}` has axes, and its formula gives a single number");
+            return Err(ConfigError::new(key, message, "remove `axes`"));
+        }
+        NumberOrList::Number(_) => return Ok(vec![name.clone()]),
+    };
+    let count = list.elements.len();
+    if let Some(axes) = own.as_ref().filter(|axes| axes.len() != count) {
+        let message =
+            format!("`{name}` has {} axes, and its formula gives {count} numbers", axes.len());
+        return Err(ConfigError::new(key, message, "give as many axes as numbers"));
+    }
+    let axes = own.or_else(|| list.axes.clone()).filter(|axes| {
+        // `n.xx` repeats an axis, so that its letters are no names.
+        axes.chars().enumerate().all(|(at, axis)| axes.find(axis) == Some(at))
+    });
+    Ok(element_names(name, count, axes.as_deref()))
 }
 
 /// Returns the entry of the table `results` that states the result with the name `port`.
