@@ -374,6 +374,21 @@ fn least_sizes_by_hand() {
     assert_eq!(sizes[2], 0.0);
 }
 
+/// The coordinates of a unit vector have one table of the reciprocal length, also with a condition.
+#[test]
+fn quotients_with_the_same_divisor_share_its_reciprocal() {
+    let operands = ["x", "y", "z"].map(|name| operand(name, Format::signed(0, 9))).to_vec();
+    let mut results = Vec::new();
+    for formula in
+        ["x / sqrt(x^2 + y^2 + z^2)", "y / sqrt(x^2 + y^2 + z^2)", "z / sqrt(x^2 + y^2 + z^2)"]
+    {
+        let promise = Some(comparison("x^2 + y^2 + z^2 > 1/16"));
+        results.push(StatedResult { promise, ..result("r", formula, 8) });
+    }
+    let found = find(&ExpressionStatement { operands, results }).expect("a plan");
+    assert_eq!(found.plan.approximations().len(), 1);
+}
+
 /// A function with a range reduction: the formula, the raw domain, the numbers of fraction bits of the operand and of the
 /// result, and the identity.
 type ReducedFunction = (&'static str, (i64, i64), i32, u32, Identity);

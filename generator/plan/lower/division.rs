@@ -246,7 +246,7 @@ impl Lowering<'_> {
 
     /// Adds the results that read one of the parts for all operands, and that have the same condition as a result of the present
     /// uses, to these uses, so that all of them share the nodes. In a case of a choice, the uses stay.
-    fn add_readers_of(&mut self, parts: &[&Expression]) {
+    pub(super) fn add_readers_of(&mut self, parts: &[&Expression]) {
         if !self.uses.conditions.is_empty() {
             return;
         }

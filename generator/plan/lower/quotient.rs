@@ -4,8 +4,8 @@
 //! 1/b. Any other divisor is normalised: b = m · 2^−k with m from 1/2 to below 1. A table has the values of 1/m, and the
 //! dividend is shifted by the same k bits, so that a / b = (a · 2^k) · (1/m).
 //!
-//! If several dividends have the same divisor, and its values lie within a few octaves, the reciprocal 1/b is computed once, and each
-//! dividend has only a product: a softmax of eight numbers shifts one reciprocal in place of eight dividends.
+//! If several dividends have the same divisor, and the reciprocal 1/b needs few bits, it is computed once, and each dividend has only a
+//! product: a softmax of eight numbers shifts one reciprocal in place of eight dividends.
 
 use std::sync::Arc;
 
@@ -22,8 +22,8 @@ use crate::refusal::PlanRefusal;
 /// The least number of dividends for which the reciprocal of their divisor is computed once.
 const SEVERAL_DIVIDENDS: usize = 3;
 
-/// The reciprocal of a divisor is computed once only if the largest divisor is less than this many times the smallest.
-const FEW_OCTAVES_OF_RECIPROCAL: f64 = 20.0;
+/// The widest reciprocal that is computed once for several dividends, in bits, with the guard bits that a product needs at least.
+const WIDEST_RECIPROCAL: f64 = 20.0;
 
 impl Lowering<'_> {
     /// Returns the node of the quotient a / b. `part` must be this quotient as a formula. Fails if a part has too many bits, no
@@ -34,39 +34,50 @@ impl Lowering<'_> {
         b: &Expression,
         part: &Expression,
     ) -> Result<NodeId, PlanRefusal> {
-        if self.has_common_reciprocal(a, b)? {
+        if let Some(quotients) = self.quotients_by(a, b)? {
             let one = Arc::new(number("1"));
             let kind = Kind::Binary(Operator::Div, one, Arc::new(b.clone()));
-            let reciprocal = self.part(&Expression::new(kind, part.span.clone()))?;
+            let reciprocal = Expression::new(kind, part.span.clone());
+            // All results with such a quotient share the reciprocal.
+            let outer = self.uses.clone();
+            self.add_readers_of(&quotients.iter().collect::<Vec<_>>());
+            let reciprocal = self.part(&reciprocal);
+            self.uses = outer;
             let dividend = self.factor(a)?;
-            return self.plan.multiply("ratio", dividend, reciprocal);
+            return self.plan.multiply("ratio", dividend, reciprocal?);
         }
         let values = self.range(part)?;
         self.quotient_within(a, b, values)
     }
 
-    /// Returns whether the reciprocal of `b` serves several dividends that vary, and lies within a few octaves. Fails if `b` has no
-    /// finite values.
-    fn has_common_reciprocal(&self, a: &Expression, b: &Expression) -> Result<bool, PlanRefusal> {
+    /// Returns all quotients with the divisor `b`, if the reciprocal of `b` is to be computed once: there are several, and the reciprocal
+    /// needs few bits for the dividend `a`. Otherwise returns `None`. Fails if a or b has no finite values.
+    fn quotients_by(
+        &self,
+        a: &Expression,
+        b: &Expression,
+    ) -> Result<Option<Vec<Expression>>, PlanRefusal> {
         if !a.varies() || self.fixed_guard.is_some() {
-            return Ok(false);
+            return Ok(None);
         }
-        let mut dividends: Vec<&Expression> = Vec::new();
+        let mut quotients: Vec<Expression> = Vec::new();
         for result in &self.statement.results {
             result.formula.walk(&mut |part| {
-                if let Kind::Binary(Operator::Div, dividend, divisor) = &part.kind
+                if let Kind::Binary(Operator::Div, _, divisor) = &part.kind
                     && **divisor == *b
-                    && !dividends.contains(&&**dividend)
+                    && !quotients.contains(part)
                 {
-                    dividends.push(dividend);
+                    quotients.push(part.clone());
                 }
             });
         }
-        if dividends.len() < SEVERAL_DIVIDENDS {
-            return Ok(false);
+        if quotients.len() < SEVERAL_DIVIDENDS {
+            return Ok(None);
         }
-        let sizes = sizes_of(self.range(b)?);
-        Ok(sizes.high < sizes.low * FEW_OCTAVES_OF_RECIPROCAL)
+        let largest_dividend = sizes_of(self.range(a)?).high;
+        let smallest_divisor = sizes_of(self.range(b)?).low;
+        let bits = f64::from(self.finest) + 2.0 + (largest_dividend / smallest_divisor).log2();
+        Ok((bits <= WIDEST_RECIPROCAL).then_some(quotients))
     }
 
     /// Returns the node of the quotient a / b, whose values lie within `values`. Fails as [`Self::quotient`] does.
