@@ -3,10 +3,11 @@
 use std::fs;
 use std::path::Path;
 
-use glint::config::{self, Config};
+use glint::config::{self, Config, Value};
 use glint::core::Core;
 use glint::cosim::batch::{Engine, Golden, Points, RustHdl};
 use glint::cosim::{Outcome, trial};
+use glint::keys::presets;
 use glint::package::{Computation, FileKind, OutputFile, OutputFiles, driver};
 use glint::registry::{Device, OpenedConfig, Registry};
 use tempfile::TempDir;
@@ -110,6 +111,21 @@ pub fn configuration_between(path: &str, interface: &str) -> Core {
 pub fn parsed(path: &str, text: &str) -> Core {
     let (opened, _) = Registry::shipped().parse(path, text).sure();
     Core::build(opened).sure_of(path)
+}
+
+/// Returns the core of a preset, such as `sincos`, with this name and with the value `architecture`, such as `pipelined`.
+///
+/// # Panics
+/// There is no such preset, or it has no such core.
+pub fn preset(name: &str, architecture: &str) -> Core {
+    let preset = presets::find(name).unwrap_or_else(|| panic!("no preset `{name}`"));
+    let device = device(preset.device);
+    let mut config = Config::defaults(&(device.schema)(), name);
+    for (key, value) in preset.values {
+        config.set(&key, value);
+    }
+    config.set("architecture", Value::Text(architecture.to_owned()));
+    Core::new(device, config).sure_of(name)
 }
 
 /// Returns the core of a device, of the catalogue or changed, by its defaults and more keys, as TOML.

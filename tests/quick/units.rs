@@ -3,11 +3,9 @@
 //! The contract of a unit takes its results from the plan of each function alone, and the exact values from the formulas. Every
 //! combination of opcode and operands is simulated, and each result must be the one of the contract.
 
-use crate::common::cores::{Emitted, assert_agrees, assert_results_as_stated, device, parsed};
-use glint::config::{Config, Value};
-use glint::core::Core;
+use crate::common::cores::{Emitted, assert_agrees, assert_results_as_stated, parsed, preset};
+use glint::config::Value;
 use glint::hdl::netlist::{Driver, Net, Op};
-use glint::keys::presets;
 
 use crate::workspace::Workspace;
 
@@ -60,12 +58,7 @@ fn an_opcode_without_a_function_gives_0() {
 /// All eight functions have one multiplier, one normaliser and two tables.
 #[test]
 fn the_functions_of_the_preset_share_the_costly_parts() {
-    let preset = presets::find("unit").expect("a preset");
-    let mut config = Config::defaults(&(device("unit").schema)(), "unit");
-    for (key, value) in preset.values {
-        config.set(&key, value);
-    }
-    let core = Core::new(device("unit"), config).expect("a core");
+    let core = preset("unit", "sequential");
     let roms = core.design.roms.iter().filter(|rom| !core.design.is_control_memory(rom)).count();
     // The coefficients, and the page of each function.
     assert_eq!(roms, 4);

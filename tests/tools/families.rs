@@ -3,22 +3,27 @@
 //! `synth.rs` tests what `glint synth` measures for them.
 
 use glint::target::{FAMILIES, Family};
-use glint::tools::VerilogSimulator;
+use glint::tools::{VerilogSimulator, gates};
 use rayon::prelude::*;
 
+use crate::common::Sure;
 use crate::common::bench::Bench;
-use crate::common::cores::{Emitted, configuration};
-use crate::common::netlist::{self, POINTS, synthesise};
+use crate::common::cores::{Emitted, configuration, preset};
+use crate::common::netlist::{self, POINTS, synthesise, yosys_of};
+use crate::common::tools::LIMIT;
 
-/// The cores: two with a microprogram and without block memory, four pipelines with delay memories, registers and products of
-/// several widths. Netlists with block memories of Gowin and Nexus cannot be simulated: Yosys has no models of those.
-const CORES: [&str; 6] = [
+/// The cores: two with a microprogram, one with a block memory, four pipelines with delay memories, registers and products of
+/// several widths, and two expressions. Parts of the carry chains of `sincos` have constant inputs.
+const CORES: [&str; 9] = [
     "cosine_power",
     "blinn",
+    "quadratic",
     "cosine_power_pipelined",
     "blinn_pipelined",
     "schlick_pipelined",
     "rsqrt_pipelined",
+    "sincos",
+    "divide",
 ];
 
 fn families() -> impl Iterator<Item = &'static Family> {
@@ -27,9 +32,12 @@ fn families() -> impl Iterator<Item = &'static Family> {
 }
 
 fn emitted(core: &str) -> Emitted {
-    // `rsqrt_pipelined` is the core of `function_pipelined.toml`.
-    let file = core.replace("rsqrt", "function");
-    Emitted::new(&configuration(&format!("configs/{file}.toml")), POINTS, 1)
+    let configured = match core {
+        "sincos" | "divide" => preset(core, "pipelined"),
+        "rsqrt_pipelined" => configuration("configs/function_pipelined.toml"),
+        _ => configuration(&format!("configs/{core}.toml")),
+    };
+    Emitted::new(&configured, POINTS, 1)
 }
 
 #[test]
@@ -104,4 +112,82 @@ fn models_of_gowin_multiply() {
     let model = include_str!("../../generator/tools/gates/gowin.v").to_owned();
     let files = vec![("product_tb.v".to_owned(), bench), ("gowin.v".to_owned(), model)];
     Bench::build_quietly(VerilogSimulator::Icarus, &files, "product_tb").assert_passes();
+}
+
+/// The model of Gowin's carry cell adds and subtracts all inputs, also if they are constants.
+#[test]
+fn the_model_of_gowins_carry_cell_adds_and_subtracts() {
+    let mut cells = String::new();
+    let mut checks = String::new();
+    for inputs in 0..16 {
+        let [first, second, is_addition, carry] = [0, 1, 2, 3].map(|bit| inputs >> bit & 1);
+        let addend = if is_addition == 1 { second } else { 1 - second };
+        let sum = first + addend + carry;
+        cells += &format!(
+            "    wire sum{inputs}, carry{inputs};\n    ALU #(.ALU_MODE(2)) cell{inputs} (.I0(1'b{first}), \
+             .I1(1'b{second}), .I3(1'b{is_addition}), .CIN(1'b{carry}), .SUM(sum{inputs}), .COUT(carry{inputs}));\n"
+        );
+        checks += &format!(
+            "        if ({{carry{inputs}, sum{inputs}}} !== 2'd{sum}) $fatal(1, \"inputs {inputs}\");\n"
+        );
+    }
+    let bench = format!(
+        "module carry_tb;\n{cells}    initial begin #2;\n{checks}        $display(\"PASS\"); $finish;\n    \
+         end\nendmodule\n"
+    );
+    let family = FAMILIES.iter().find(|family| family.name() == "gowin").expect("Gowin");
+    let mut files = gates::models(&yosys_of(family), family).sure();
+    files.push(("carry_tb.v".to_owned(), bench));
+    Bench::build_quietly(VerilogSimulator::Icarus, &files, "carry_tb").assert_passes();
+}
+
+/// Numbers of words and widths of ROMs: words of 1, 2, 4, 9, 18 and 36 bits, as block memories have them, and words that take
+/// several blocks.
+const ROMS: [(u32, u32); 7] =
+    [(16_384, 1), (8192, 2), (4096, 4), (2048, 9), (1024, 18), (512, 36), (600, 40)];
+
+/// Every word of a ROM is read from the block memories of the families whose models are Glint's. `quadratic` tests the
+/// others above.
+#[test]
+fn models_of_block_memories_have_every_word() {
+    let mut pairs = Vec::new();
+    for family in families().filter(|family| ["gowin", "nexus"].contains(&family.name())) {
+        for rom in ROMS {
+            pairs.push((family, rom));
+        }
+    }
+    pairs.par_iter().for_each(|(family, rom)| assert_every_word(family, *rom));
+}
+
+/// Synthesises a ROM, and compares each word that its netlist reads with the bits that were written.
+fn assert_every_word(family: &Family, (words, width): (u32, u32)) {
+    let address = words.next_power_of_two().trailing_zeros();
+    let mut memory = String::new();
+    for at in 1..=u64::from(words) {
+        // The upper bits of these products look random.
+        let word = at.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> (64 - width);
+        memory += &format!("{word:x}\n");
+    }
+    let rom = format!(
+        "module rom(input wire clk, input wire [{address}-1:0] address, output reg [{width}-1:0] word);\n\
+         reg [{width}-1:0] words [0:{words}-1];\ninitial $readmemh(\"words.mem\", words);\n\
+         always @(posedge clk) word <= words[address];\nendmodule\n"
+    );
+    let bench = format!(
+        "module rom_tb;\n    reg clk = 0;\n    reg [{address}-1:0] address = 0;\n    wire [{width}-1:0] word;\n    \
+         reg [{width}-1:0] words [0:{words}-1];\n    integer at;\n    rom dut (.clk(clk), .address(address), .word(word));\n    \
+         initial begin\n        $readmemh(\"words.mem\", words);\n        for (at = 0; at < {words}; at = at + 1) begin\n            \
+         address = at; #1 clk = 1; #1 clk = 0;\n            \
+         if (word !== words[at]) $fatal(1, \"word %0d is %h and not %h\", at, word, words[at]);\n        end\n        \
+         $display(\"PASS\"); $finish;\n    end\nendmodule\n"
+    );
+    let yosys = yosys_of(family);
+    let sources = [("rom.v".to_owned(), rom), ("words.mem".to_owned(), memory.clone())];
+    let netlist = gates::netlist(&yosys, &sources, "rom", family, LIMIT).sure();
+    let mut files = gates::models(&yosys, family).sure();
+    files.push(("netlist.v".to_owned(), netlist));
+    files.push(("words.mem".to_owned(), memory));
+    files.push(("rom_tb.v".to_owned(), bench));
+    println!("{words} words of {width} bits for {}", family.title);
+    Bench::build_quietly(VerilogSimulator::Icarus, &files, "rom_tb").assert_passes();
 }

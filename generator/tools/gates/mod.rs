@@ -16,11 +16,13 @@ use glint_base::target::Family;
 /// Models of the ECP5 cells for which Yosys has none.
 const ECP5: &str = include_str!("ecp5.v");
 
-/// Models of the Gowin cells for which Yosys has none.
+/// Models of the Gowin cells for which Yosys has none, and of its carry cell, whose model of Yosys fails with constant inputs.
 const GOWIN: &str = include_str!("gowin.v");
 
-/// Tells whether Yosys or this crate has models of the cells to which a design of the family can be mapped. Block memories of
-/// Gowin and Nexus have no models even so.
+/// Models of the Nexus cells for which Yosys has none.
+const NEXUS: &str = include_str!("nexus.v");
+
+/// Tells whether Yosys or this crate has models of the cells to which a design of the family can be mapped.
 pub fn is_simulated(family: &Family) -> bool {
     family.name() != "xilinx7"
 }
@@ -86,13 +88,14 @@ pub fn models(yosys: &Tool, family: &Family) -> Result<Vec<(String, String)>> {
         "ecp5" => {
             files.push(("ecp5.v".to_owned(), ECP5.to_owned()));
             // The flip-flops and pads of other tools are in files that it includes.
-            format!("`define NO_INCLUDES\n{}", without(&shipped, "DP16KD")?)
+            format!("`define NO_INCLUDES\n{}", without(&shipped, &["DP16KD"])?)
         }
         "gowin" | "gowin-gw1n" => {
             files.push(("gowin.v".to_owned(), GOWIN.to_owned()));
-            shipped
+            without(&shipped, &["ALU", "SP", "SPX9"])?
         }
         "nexus" => {
+            files.push(("nexus.v".to_owned(), NEXUS.to_owned()));
             files.push(("parse_init.vh".to_owned(), own_file(yosys, "nexus/parse_init.vh")?));
             shipped
         }
@@ -130,12 +133,19 @@ fn own_file(yosys: &Tool, name: &str) -> Result<String> {
     bail!("cannot read `{}`, the models of cells that belong to `{yosys}`", first.display())
 }
 
-/// Removes a module that Yosys declares as a black box, so that another file can define it.
-fn without(verilog: &str, module: &str) -> Result<String> {
-    let start = format!("(* blackbox *)\nmodule {module}(");
-    let parts = verilog.split_once(&start);
-    let parts = parts.and_then(|(before, rest)| Some((before, rest.split_once("endmodule\n")?.1)));
-    let (before, after) =
-        parts.with_context(|| format!("the models of Yosys have no black box {module}"))?;
-    Ok(format!("{before}{after}"))
+/// Removes modules from the models of Yosys, so that another file can define them.
+fn without(verilog: &str, modules: &[&str]) -> Result<String> {
+    let mut remaining = verilog.to_owned();
+    for module in modules {
+        let mut starts = [format!("module {module} ("), format!("module {module}(")].into_iter();
+        let parts = starts.find_map(|start| remaining.split_once(&start));
+        let parts =
+            parts.and_then(|(before, rest)| Some((before, rest.split_once("endmodule\n")?.1)));
+        let (before, after) =
+            parts.with_context(|| format!("the models of Yosys have no module {module}"))?;
+        // The attribute of a black box belongs to the module that is removed.
+        let before = before.trim_end().trim_end_matches("(* blackbox *)");
+        remaining = format!("{before}\n{after}");
+    }
+    Ok(remaining)
 }
