@@ -51,7 +51,7 @@ module ${ name }$_registers (
     ${ line }$
 <%- endfor %>
 
-    ${ name }$ core (
+    ${ core }$ core (
 <%- for line in connections %>
         ${ line }$
 <%- endfor %>

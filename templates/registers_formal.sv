@@ -11,7 +11,7 @@
 
 `default_nettype none
 
-module ${ name }$ (
+module ${ core }$ (
 <%- for line in stub_ports %>
     ${ line }$
 <%- endfor %>

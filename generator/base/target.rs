@@ -1,6 +1,7 @@
 //! Data of the FPGA families that Glint supports: delays, multipliers, Yosys commands, chips, and the weights with which Glint
-//! estimates the area of a core. Each family has its own file, except that the two families of Gowin share `gowin.rs`. The file
-//! `generic.rs` has invented delays, for a pipeline whose FPGA is not chosen yet (`pipeline.target = "generic"`).
+//! estimates the area of a core. Each family has its own file, but both families of Gowin are in `gowin.rs`, and both of iCE40 in
+//! `ice40.rs`. The file `generic.rs` has invented delays, for a pipeline whose FPGA is not chosen yet (`pipeline.target =
+//! "generic"`).
 //!
 //! A delay is in nanoseconds and includes the wire to the next cell. The head of a family's file says which of its delays were
 //! measured, and how. The script `benches/pipeline/delays.py` measures delays.
@@ -19,7 +20,7 @@ mod xilinx7;
 pub use ecp5::ECP5;
 pub use gatemate::GATEMATE;
 pub use gowin::{GOWIN, GOWIN_GW1N};
-pub use ice40::ICE40;
+pub use ice40::{ICE40, ICE40_HX};
 pub use nexus::NEXUS;
 pub use xilinx7::XILINX7;
 
@@ -170,8 +171,14 @@ pub struct Estimate {
 /// cell of ECP5 as two look-up tables.
 pub type Kinds = &'static [(&'static str, u64)];
 
-/// The number of look-up tables for a product, from the widths of its operands in bits.
-pub type LutsOfProduct = fn(u64, u64) -> u64;
+/// The products of a family without DSP blocks.
+#[derive(Clone, Copy, Debug)]
+pub struct FabricProduct {
+    /// The cell that multiplies. `None` if Yosys makes sums of look-up tables, which are counted as all others.
+    pub cell: Option<&'static str>,
+    /// Returns the number of look-up tables of a product, from the widths of its operands in bits.
+    pub luts: fn(u64, u64) -> u64,
+}
 
 /// An FPGA family: delays, Yosys commands, cell names and chips.
 #[derive(Debug)]
@@ -182,16 +189,17 @@ pub struct Family {
     pub timing: Timing,
     /// The Yosys command that reads the models of the cells which a core may instantiate, or an empty text.
     pub library: &'static str,
-    /// The Yosys commands before `command`, or an empty text. The name of the top module replaces `{top}`.
+    /// The Yosys commands before each of `commands`, or an empty text. The name of the top module replaces `{top}`.
     pub prepare: &'static str,
-    /// The Yosys command that synthesises for the family, without the name of the top module.
-    pub command: &'static str,
+    /// The Yosys commands that synthesise for the family, without the name of the top module. If there are several, the one with
+    /// the fewest look-up tables gives the area of a core; the first one gives netlists.
+    pub commands: &'static [&'static str],
     /// The oldest version of Yosys that synthesises for the family as Glint expects: (0, 23) is Yosys 0.23.
     pub least_yosys: (u32, u32),
     /// Look-up tables. A carry cell that replaces two look-up tables counts as two.
     pub luts: Kinds,
-    /// For a family without DSP blocks, the cell that multiplies in look-up tables, and their number.
-    pub fabric_product: Option<(&'static str, LutsOfProduct)>,
+    /// `None` for a family with DSP blocks.
+    pub fabric_product: Option<FabricProduct>,
     /// DSP blocks; empty for a family without them.
     pub dsps: Kinds,
     /// Block RAMs: of 4 kbit in iCE40, of 20 kbit in GateMate, of 18 kbit in the others.
@@ -202,15 +210,29 @@ pub struct Family {
     pub estimate: Estimate,
 }
 
+/// Makes logic of each ROM whose word no register holds. Such a ROM is a table in look-up tables, which the schedule of a pipeline
+/// places after the register of its address. The pass `memory_dff`, which each synthesis command runs, would move the table in
+/// front of this register, into a stage that has no time for it, and would add a register for each bit of the word.
+///
+/// Words that a table does not have become undefined constants. The selection `clocked` contains the memories from which a wire leads to the input of a flip-flop.
+const TABLES: &str = "proc; flatten; opt_expr; opt_clean; opt; memory_collect; \
+    select -set flip_flops t:$dff t:$dffe t:$sdff t:$sdffe t:$sdffce; \
+    select -set clocked @flip_flops %ci1:+[D] w:* %i %ci1 t:$mem_v2 %i; \
+    memory_map -rom-only t:$mem_v2 @clocked %d; opt_expr -undriven; opt_clean; ";
+
 impl Family {
     /// Returns the commands of Yosys that map the module `top` and its instances to cells of the family. For ECP5 they end with
     /// `synth_ecp5 -top rough` if `top` is `rough`.
     pub fn script(&self, top: &str) -> String {
+        self.script_with(self.commands[0], top)
+    }
+
+    /// Returns the commands as [`Self::script`] does, with one of [`Self::commands`].
+    pub fn script_with(&self, command: &str, top: &str) -> String {
         format!(
-            "{}hierarchy -check -top {top}; {}{} -top {top}",
+            "{}hierarchy -check -top {top}; {TABLES}{}{command} -top {top}",
             self.library,
-            self.prepare.replace("{top}", top),
-            self.command
+            self.prepare.replace("{top}", top)
         )
     }
 
@@ -221,15 +243,17 @@ impl Family {
 }
 
 /// The families for which Glint can synthesise cores.
-pub const FAMILIES: [Family; 7] = [ICE40, ECP5, XILINX7, GOWIN, GOWIN_GW1N, NEXUS, GATEMATE];
+pub const FAMILIES: [Family; 8] =
+    [ICE40, ICE40_HX, ECP5, XILINX7, GOWIN, GOWIN_GW1N, NEXUS, GATEMATE];
 
 /// The families for which datasheets, `compare` and `verify` synthesise every core.
 pub const COMPARED: [Family; 3] = [ICE40, ECP5, XILINX7];
 
 /// The targets for which Glint can schedule pipelines.
-pub const TIMINGS: [Timing; 8] = [
+pub const TIMINGS: [Timing; 9] = [
     ECP5.timing,
     ICE40.timing,
+    ICE40_HX.timing,
     XILINX7.timing,
     GOWIN.timing,
     GOWIN_GW1N.timing,

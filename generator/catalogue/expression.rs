@@ -5,7 +5,7 @@
 
 use glint_base::text;
 use glint_config::{Config, Shared};
-use glint_keys::expression::{Keys, result_entry};
+use glint_keys::expression::{Keys, result_doc, result_entry};
 use glint_plan::ProvedPlan;
 use glint_rtl::dsl::Designer;
 use glint_rtl::netlist::About;
@@ -19,7 +19,7 @@ pub fn describe(d: &Designer, config: &Config, planned: &ProvedPlan) {
     let is_pipelined = Shared::of(config).architecture == "pipelined";
     let mut outputs = Vec::new();
     for result in &planned.statement.results {
-        let doc = result_entry(&keys, &result.name).text("doc").unwrap_or_default().to_owned();
+        let doc = result_doc(&keys, &result.name);
         outputs.push(PlanOutput { name: format!("{}_out", result.name), doc });
     }
     describe_plan(d, &planned.statement.operands, &planned.plan, &outputs, is_pipelined);

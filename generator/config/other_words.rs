@@ -55,11 +55,12 @@ const LAST_PARTS: [(&[&str], &str); 8] = [
 ];
 
 /// Words for the choices of a key, after the last part of the key's name.
-const CHOICES: [(&str, &[&str], &str); 19] = [
+const CHOICES: [(&str, &[&str], &str); 20] = [
     ("architecture", &["serial", "iterative", "multicycle", "microprogrammed"], "sequential"),
     ("architecture", &["unrolled"], "pipelined"),
     ("target", &["lfe5u", "lfe5um", "lfe5u25f", "lfe5u45f", "lfe5u85f"], "ecp5"),
-    ("target", &["up5k", "hx1k", "hx8k", "lp1k", "lp8k", "ice40up5k", "ice40hx8k"], "ice40"),
+    ("target", &["up5k", "ice40up5k", "ultraplus"], "ice40"),
+    ("target", &["hx1k", "hx4k", "hx8k", "lp1k", "lp8k", "ice40hx8k"], "ice40-hx"),
     (
         "target",
         &[

@@ -97,8 +97,8 @@ keys! {
             "Adds tkeep to both streams. It is all ones on m_axis, and the core ignores it on s_axis.")
             .only_when("interface.stream", "true"),
         registers: String = Key::choice("interface.registers", "none", &["none", "axi-lite", "wishbone"],
-            "Writes a wrapper with bus registers: <name>_axil.v for AXI4-Lite, or <name>_wb.v for Wishbone.")
-            .only_when("architecture", "sequential"),
+            "Writes a wrapper with bus registers: <name>_axil.v for AXI4-Lite, or <name>_wb.v for Wishbone. A \
+             pipeline computes one point at a time then, by <name>_single.v."),
         software: bool = Key::flag("package.software", false,
             "Writes software/<name>/, a bit-exact model of the core in C."),
         recomputation: bool = Key::flag("package.recomputation", false,

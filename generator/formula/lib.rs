@@ -187,6 +187,11 @@ impl Expression {
         Self::new(Kind::Operand(name.to_owned()), 0..0)
     }
 
+    /// Returns the formula with the location `span` of the text that it was written at.
+    pub fn at(self, span: impl Into<TextSpan>) -> Self {
+        Self { span: span.into(), ..self }
+    }
+
     /// Makes a formula that was parsed from the location `span` of a text, and computes the value of a constant one.
     pub fn new(kind: Kind, span: impl Into<TextSpan>) -> Self {
         let varies = matches!(kind, Kind::Operand(_));

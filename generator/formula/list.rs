@@ -93,7 +93,7 @@ impl NumberList {
             }
         }
         Ok(match &elements[..] {
-            [element] => NumberOrList::Number(element.clone()),
+            [element] => Expression::clone(element).at(span).into(),
             _ => NumberOrList::List(Self::new(elements, Some(letters.to_owned()), span)),
         })
     }

@@ -50,8 +50,14 @@ pub fn parse_with_lists(text: &str, lists: NamedLists<'_>) -> Result<NumberOrLis
         None => Ok(formula),
         Some(rest) => {
             let begins = |c: char| c.is_ascii_alphanumeric() || matches!(c, '(' | '_');
-            let factor = text[rest.clone()].starts_with(begins);
-            let remedy = if factor { ": write the sign of a product, as in `2*x`" } else { "" };
+            let rest_of_text = &text[rest.clone()];
+            let remedy = if rest_of_text.starts_with(begins) {
+                ": write the sign of a product, as in `2*x`"
+            } else if rest_of_text.starts_with(['.', '[']) {
+                ": it is a number of a list, and only an operand with `axes` or `size` is a list"
+            } else {
+                ""
+            };
             Err(Fault::new(rest.clone(), format!("this does not belong here{remedy}")))
         }
     }
@@ -505,9 +511,13 @@ impl<'t> Parser<'t> {
         let mut part = self.atom()?;
         while let NumberOrList::List(list) = &part {
             if self.taken(&["["]) {
+                if self.peek() == "]" {
+                    return self
+                        .fault("the place of a number is missing before this: the first is `[0]`");
+                }
                 let index = self.choice()?.number()?;
                 self.expect("]")?;
-                part = list.element(&index)?.into();
+                part = list.element(&index)?.at(self.span(from)).into();
             } else if self.taken(&["."]) {
                 let letters = self.peek().to_owned();
                 self.at = (self.at + 1).min(self.tokens.len());

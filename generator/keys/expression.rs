@@ -15,8 +15,8 @@ use glint_formula::{
     parse_condition_with_lists, parse_with_lists,
 };
 use glint_plan::{
-    ExpressionStatement, Operation, PlanRefusal, ProvedPlan, StatedOperand, StatedOverflow,
-    StatedResult, StatedWidth, find, least_size,
+    ExpressionStatement, Operation, PartToLimit, PlanRefusal, ProvedPlan, StatedOperand,
+    StatedOverflow, StatedResult, StatedWidth, find, least_size,
 };
 
 use lists::{MOST_NUMBERS, OperandPorts, operand_entry, result_names};
@@ -24,7 +24,7 @@ use lists::{MOST_NUMBERS, OperandPorts, operand_entry, result_names};
 use super::function::End;
 use super::port_names::{self, NameFault, NamedTable};
 
-pub use lists::result_entry;
+pub use lists::{result_doc, result_entry};
 
 mod lists;
 
@@ -90,6 +90,12 @@ fn result_fields() -> Vec<Key> {
             "sqrt(s)",
             TextPattern::Formula,
             "The formula. A list gives a result for each of its numbers.",
+        ),
+        Key::integer(
+            "size",
+            3,
+            2..=16,
+            "The number of numbers of a list, which the formula must give.",
         ),
         Key::text(
             "axes",
@@ -209,8 +215,9 @@ fn check_operands_have_readers(keys: &Keys, found: &ProvedPlan) -> Result<(), Co
         if let Operation::Operand(number) = node.operation
             && !is_read(at)
         {
-            let name = &found.statement.operands[number].name;
-            let entry = &operand_entry(keys, name).name;
+            let port = &found.statement.operands[number].name;
+            let entry = &operand_entry(keys, port).name;
+            let name = lists::as_written(keys, port);
             let message = format!(
                 "no result changes with `{name}`, because each choice or remainder that reads it is the same for all values \
                  in the domains"
@@ -237,8 +244,37 @@ pub(super) fn refused(
         }
         (None, None) => "results".to_owned(),
     };
+    let message = lists::as_written(keys, &refusal.message);
+    let remedy = match refusal
+        .limited
+        .and_then(|limited| condition(keys, statement, refusal.result, *limited))
+    {
+        Some(condition) => format!(
+            "limit the operands with `where`, for example where = \"{condition}\", or with `from` and `to`"
+        ),
+        None => lists::as_written(keys, &refusal.remedy),
+    };
     let place = refusal.place.map(|place| place.bytes);
-    ConfigError::new(key, refusal.message, refusal.remedy).at(place)
+    ConfigError::new(key, message, remedy).at(place)
+}
+
+/// The longest part of a formula that a remedy repeats, in bytes.
+const LONGEST_LIMITED_PART: usize = 60;
+
+/// Returns a condition for `where` that limits a part of a formula, with the part as the configuration writes it: `x - y > 0`. Returns
+/// `None` if the part is long.
+fn condition(
+    keys: &Keys,
+    statement: &ExpressionStatement,
+    result: Option<usize>,
+    PartToLimit { place, sign }: PartToLimit,
+) -> Option<String> {
+    let entry = match place.text.checked_sub(1) {
+        Some(part) => keys.parts.0.get(part)?,
+        None => result_entry(keys, &statement.results[result?].name),
+    };
+    let part = entry.text("formula")?.get(place.bytes)?;
+    (part.len() <= LONGEST_LIMITED_PART).then(|| format!("{part} {sign} 0"))
 }
 
 /// The named parts of the formulas, in the order of the table `let`. The formula of part number i lies in text number i + 1
@@ -294,8 +330,9 @@ pub(super) fn statement(keys: &Keys) -> Result<ExpressionStatement, ConfigError>
     for record in &keys.operands.0 {
         let ports = OperandPorts::of(record)?;
         let operand = operand(record)?;
-        for name in &ports.names {
-            operands.push(StatedOperand { name: name.clone(), ..operand.clone() });
+        let docs = ports.docs(&record.name, &operand.doc);
+        for (name, doc) in ports.names.iter().zip(docs) {
+            operands.push(StatedOperand { name: name.clone(), doc, ..operand.clone() });
             known.operands.push(name.clone());
         }
         if let Some(list) = ports.list() {
@@ -332,7 +369,8 @@ pub(super) fn statement(keys: &Keys) -> Result<ExpressionStatement, ConfigError>
             |result: &StatedResult| result.formula.operands().contains(&operand.name.as_str());
         if !results.iter().any(names_it) {
             let entry = &operand_entry(keys, &operand.name).name;
-            let message = format!("no result depends on `{}`", operand.name);
+            let name = lists::as_written(keys, &operand.name);
+            let message = format!("no result depends on `{name}`");
             let remedy = match *entry == operand.name {
                 true => "remove the operand, or use it in a formula",
                 false => "give the list fewer numbers, or use this number in a formula",
@@ -411,8 +449,15 @@ fn error_of_relative(
 /// names of the ports.
 fn check_names(keys: &Keys, operands: &[String], results: &[&str]) -> Result<(), ConfigError> {
     let mut names: Vec<(NamedTable, &str, &str)> = Vec::new();
-    for name in operands {
-        names.push((NamedTable::Operands, name, &operand_entry(keys, name).name));
+    let mut operands = operands.iter();
+    for record in &keys.operands.0 {
+        let count = OperandPorts::of(record)?.names.len();
+        names.extend(
+            operands
+                .by_ref()
+                .take(count)
+                .map(|port| (NamedTable::Operands, port.as_str(), record.name.as_str())),
+        );
     }
     for TableEntry { name, .. } in &keys.parts.0 {
         names.push((NamedTable::Parts, name, name));
@@ -424,9 +469,16 @@ fn check_names(keys: &Keys, operands: &[String], results: &[&str]) -> Result<(),
         names.iter().map(|(table, name, _)| (*table, *name)).collect();
     port_names::check(&entries).map_err(|NameFault { entry, message, remedy }| {
         let (table, name, record) = names[entry];
-        let remedy = match name == record {
-            true => remedy,
-            false => format!("give the list `{record}` another name or other axes"),
+        if name != record {
+            let message = format!("{message}, and the list `{record}` has a port of this name");
+            let remedy = format!("give the list `{record}` another name or other axes");
+            return ConfigError::new(format!("{}.{record}", table.key()), message, remedy);
+        }
+        // The name of a port of a list before it looks free in the configuration.
+        let is_port = |(_, port, list): &&(NamedTable, &str, &str)| *port == name && port != list;
+        let message = match names[..entry].iter().find(is_port) {
+            Some((_, _, list)) => format!("the list `{list}` has a port `{name}` already"),
+            None => message,
         };
         ConfigError::new(format!("{}.{record}", table.key()), message, remedy)
     })

@@ -61,7 +61,7 @@ pub use find::{ProofKind, ProvedPlan, find};
 pub use node::{Approximation, NodeId, Operation, PlanNode};
 pub use plan::ExpressionPlan;
 pub use range::least_size;
-pub use refusal::PlanRefusal;
+pub use refusal::{PartToLimit, PlanRefusal};
 pub use schedule::{PlanSchedule, PlanStep};
 pub use statement::{
     ExpressionStatement, StatedOperand, StatedOverflow, StatedResult, StatedWidth,

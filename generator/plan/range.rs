@@ -10,7 +10,7 @@ use glint_formula::{Comparison, Enclosure, Expression, Function, Kind, Operator}
 
 use super::boxes::{BoxScore, OperandBox, affordable, best_halves};
 use super::facts::GuardedFormula;
-use super::refusal::PlanRefusal;
+use super::refusal::{PartToLimit, PlanRefusal};
 use super::statement::{ExpressionStatement, StatedResult};
 use super::uses::PartUses;
 
@@ -24,32 +24,13 @@ const DIVISIONS_OF_AN_END: usize = 300;
 pub(super) const LIMIT_THE_OPERANDS: &str =
     "limit the operands with `where`, or with `from` and `to`";
 
-/// The largest number of parts of a condition that a remedy shows.
-const MOST_PARTS_OF_A_CONDITION: u32 = 12;
-
-/// Returns the remedy for a part of a formula that has no finite value for operands in a box, with a condition that would
-/// exclude the operands, if one is known. For example, `1 / (x - y)` gives the condition `x - y > 0`.
-fn limiting_remedy(
-    statement: &ExpressionStatement,
-    part: &Expression,
-    limits: &OperandBox,
-) -> String {
-    let operands = statement.enclosed_operands(limits);
-    match condition_for(part, &operands) {
-        Some(condition) => format!(
-            "limit the operands with `where`, for example where = \"{condition}\", or with `from` and `to`"
-        ),
-        None => LIMIT_THE_OPERANDS.to_owned(),
-    }
-}
-
-/// Returns a condition under which the innermost part without a value has one: a divisor or the operand of a logarithm is above 0,
-/// or the operand of a root is not below 0. Returns `None` if no such part is found, if the part is a constant, or if
-/// the condition would be long.
-fn condition_for(part: &Expression, operands: &[(&str, Enclosure)]) -> Option<String> {
+/// Returns the part that a condition could limit, so that a part without a value for these operands has one: in the innermost such
+/// part, the divisor or the operand of a logarithm must be above 0, or the operand of a root not below 0. For example, `1 / (x - y)`
+/// gives `x - y`. Returns `None` if no such part is found, or if it is a constant.
+fn limited_part(part: &Expression, operands: &[(&str, Enclosure)]) -> Option<PartToLimit> {
     for inner in part.parts() {
         if inner.enclose(operands).map_or(true, |value| !value.is_finite()) {
-            return condition_for(inner, operands);
+            return limited_part(inner, operands);
         }
     }
     let (limited, sign) = match &part.kind {
@@ -59,8 +40,7 @@ fn condition_for(part: &Expression, operands: &[(&str, Enclosure)]) -> Option<St
         Kind::Unary(Function::Sqrt, operand) => (operand, ">="),
         _ => return None,
     };
-    (limited.varies() && limited.size() <= MOST_PARTS_OF_A_CONDITION)
-        .then(|| format!("{} {sign} 0", limited.python()))
+    limited.varies().then(|| PartToLimit { place: limited.span.clone(), sign })
 }
 
 /// The reason why no interval for the values of a part was found.
@@ -79,8 +59,10 @@ impl NoRange {
             Self::NotFinite(limits) => {
                 let place = statement.place(&limits);
                 let message = format!("this is not finite, or has no value, for {place}");
-                let remedy = limiting_remedy(statement, part, &limits);
-                PlanRefusal::new(message, remedy).at(&part.span)
+                let limited = limited_part(part, &statement.enclosed_operands(&limits));
+                let limited = limited.map(Box::new);
+                PlanRefusal { limited, ..PlanRefusal::new(message, LIMIT_THE_OPERANDS) }
+                    .at(&part.span)
             }
             Self::NothingPromised => PlanRefusal::new(
                 "no operands in the domains satisfy `where`",

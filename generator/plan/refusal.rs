@@ -15,13 +15,24 @@ pub struct PlanRefusal {
     pub message: String,
     /// The remedy, as a message.
     pub remedy: String,
+    /// The part that `where` could limit, so that the formula has a value.
+    pub limited: Option<Box<PartToLimit>>,
+}
+
+/// A part of a formula that must be above 0, or not below 0, so that the formula has a value.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PartToLimit {
+    /// The location of the part, as in [`PlanRefusal::place`].
+    pub place: TextSpan,
+    /// `>` or `>=`.
+    pub sign: &'static str,
 }
 
 impl PlanRefusal {
     /// Makes a refusal that concerns the whole expression, from the reason and the remedy.
     pub fn new(message: impl Into<String>, remedy: impl Into<String>) -> Self {
         let (message, remedy) = (message.into(), remedy.into());
-        Self { result: None, place: None, message, remedy }
+        Self { result: None, place: None, message, remedy, limited: None }
     }
 
     /// Makes the refusal of a part whose computation needs a number of `width` bits, which is more than a net can have.

@@ -19,6 +19,9 @@ pub use record::{DIRECTORY, Rate, SynthesisRecord, tools};
 pub enum Target {
     /// Lattice iCE40 UltraPlus 5K: area and frequency.
     Ice40,
+    /// Lattice iCE40 HX8K: area and frequency.
+    #[serde(rename = "ice40-hx")]
+    Ice40Hx,
     /// Lattice ECP5, speed grade 6: area and frequency.
     Ecp5,
     /// Xilinx 7 series: area.
@@ -36,8 +39,9 @@ pub enum Target {
     Osu018,
 }
 
-pub const TARGETS: [Target; 8] = [
+pub const TARGETS: [Target; 9] = [
     Target::Ice40,
+    Target::Ice40Hx,
     Target::Ecp5,
     Target::Xilinx7,
     Target::Gowin,
@@ -56,6 +60,7 @@ impl Target {
     pub fn name(self) -> &'static str {
         match self {
             Self::Ice40 => "ice40",
+            Self::Ice40Hx => "ice40-hx",
             Self::Ecp5 => "ecp5",
             Self::Xilinx7 => "xilinx7",
             Self::Gowin => "gowin",
@@ -73,7 +78,7 @@ impl Target {
 
     /// Returns whether open tools time the whole of every path, so that a core has a frequency.
     pub fn is_timed_fpga(self) -> bool {
-        matches!(self, Self::Ice40 | Self::Ecp5 | Self::Nexus | Self::Gatemate)
+        matches!(self, Self::Ice40 | Self::Ice40Hx | Self::Ecp5 | Self::Nexus | Self::Gatemate)
     }
 
     /// Returns `None` for a standard-cell library.

@@ -10,7 +10,15 @@ use super::sources::YosysSources;
 pub use glint_base::target::Usage;
 use glint_base::target::{Family, Kinds};
 
-/// Returns the numbers of cells of the flat netlist of the module `top`.
+/// The smallest of the netlists that the commands of a family make.
+pub struct SmallestNetlist {
+    /// The numbers of cells.
+    pub usage: Usage,
+    /// The command that made it, without the name of the top module.
+    pub command: &'static str,
+}
+
+/// Synthesises the module `top` with each of the family's commands, and returns the flat netlist with the fewest look-up tables.
 ///
 /// # Errors
 /// Fails if the files cannot be written, or if Yosys fails or takes longer than `limit`. Fails if its statistics do not list the
@@ -21,16 +29,24 @@ pub fn synthesise(
     top: &str,
     family: &Family,
     limit: Duration,
-) -> Result<Usage> {
-    let sources = YosysSources::new(yosys, files, limit)?;
-    sources.run(&format!("{}; {}", family.script(top), statistics_commands(family)))?;
-    usage(&sources, top, family)
-        .with_context(|| format!("`{}` for {}", family.command, family.title))
+) -> Result<SmallestNetlist> {
+    let mut smallest: Option<SmallestNetlist> = None;
+    for command in family.commands {
+        let sources = YosysSources::new(yosys, files, limit)?;
+        let script = family.script_with(command, top);
+        sources.run(&format!("{script}; {}", statistics_commands(family)))?;
+        let usage = usage(&sources, top, family)
+            .with_context(|| format!("`{command}` for {}", family.title))?;
+        if smallest.as_ref().is_none_or(|smallest| usage.luts < smallest.usage.luts) {
+            smallest = Some(SmallestNetlist { usage, command });
+        }
+    }
+    smallest.with_context(|| format!("Glint has no commands for {}", family.title))
 }
 
 /// Returns the commands of Yosys that write the files which [`usage`] reads. A script must have them after the synthesis.
 pub fn statistics_commands(family: &Family) -> &'static str {
-    match family.fabric_product {
+    match cell_of_products(family) {
         None => "tee -q -o statistics.json stat -json",
         // The statistics do not contain the widths of products.
         Some(_) => "tee -q -o statistics.json stat -json; write_json cells.json",
@@ -51,7 +67,7 @@ pub fn usage(sources: &YosysSources, top: &str, family: &Family) -> Result<Usage
         let number = |kind: &str| cells.get(kind).and_then(Value::as_u64).unwrap_or(0);
         kinds.iter().map(|(kind, weight)| number(kind) * weight).sum()
     };
-    let in_products = match family.fabric_product {
+    let in_products = match cell_of_products(family) {
         Some((kind, luts)) => luts_of_products(sources, top, kind, luts)?,
         None => 0,
     };
@@ -64,6 +80,15 @@ pub fn usage(sources: &YosysSources, top: &str, family: &Family) -> Result<Usage
     })
 }
 
+/// The number of look-up tables of a product, from the widths of its operands in bits.
+type LutsOfProduct = fn(u64, u64) -> u64;
+
+/// Returns the cell that multiplies in a netlist of the family, if it has one that takes look-up tables.
+fn cell_of_products(family: &Family) -> Option<(&'static str, LutsOfProduct)> {
+    let product = family.fabric_product?;
+    Some((product.cell?, product.luts))
+}
+
 /// Counts the look-up tables of all products in the netlist of `top`. The products are cells of this `kind`, and `luts` gives
 /// the look-up tables of one cell from its two operand widths. Fails if the netlist has no cells, or if a cell does not state
 /// its widths.
@@ -71,7 +96,7 @@ fn luts_of_products(
     sources: &YosysSources,
     top: &str,
     kind: &str,
-    luts: fn(u64, u64) -> u64,
+    luts: LutsOfProduct,
 ) -> Result<u64> {
     let netlist = sources.json("cells.json")?;
     let cells = netlist["modules"][top]["cells"].as_object();

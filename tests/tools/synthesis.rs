@@ -46,7 +46,7 @@ fn configurations_are_synthesised_whole() {
             let emitted = Emitted::new(unit, POINTS, 1);
             let netlist = synthesise(&emitted, family);
             let cells = Cells::new(&netlist.json, &emitted.name);
-            let what = format!("{path}, {}", family.command);
+            let what = format!("{path}, {}", family.title);
             memories_are_whole(&unit.design, &cells, family, &what);
             let products = products(&unit.design);
             let blocks = cells.count_all(family.dsps);
@@ -120,7 +120,8 @@ fn usage_is_that_of_the_netlist() {
     COMPARED.par_iter().for_each(|family| {
         let told =
             synthesis::synthesise(&tool("yosys"), &emitted.rtl(), &emitted.name, family, LIMIT)
-                .sure();
+                .sure()
+                .usage;
         let netlist = synthesise(&emitted, family).json;
         let cells = Cells::new(&netlist, &emitted.name);
         let wanted = Usage {
@@ -144,7 +145,7 @@ fn memories_are_where_the_key_wants_them() {
         let emitted = Emitted::new(&core, POINTS, 1);
         let used =
             synthesis::synthesise(&tool("yosys"), &emitted.rtl(), &emitted.name, &ECP5, LIMIT);
-        used.sure_of(style)
+        used.sure_of(style).usage
     };
     let [auto, distributed] = ["auto", "distributed"].map(|style| used("quadratic", style));
     assert!(auto.block_rams > 0 && distributed.block_rams == 0, "{auto:?}, {distributed:?}");
@@ -187,7 +188,7 @@ impl<'a> Cells<'a> {
 
 /// Returns the number of bits from which on a synchronous ROM is in block RAM; a smaller one may well be logic.
 fn warrants_block_ram(family: &Family) -> u64 {
-    if family.command.starts_with("synth_xilinx") {
+    if family.name() == "xilinx7" {
         // A look-up table is a ROM of 64 bits, and a block RAM has 18 432.
         8192
     } else {

@@ -258,10 +258,13 @@ fn synthesise(
         .map(|at| {
             let (one, family) = (at / COMPARED.len(), &COMPARED[at % COMPARED.len()]);
             let (label, core) = cores[one];
-            let usage =
-                synthesis::synthesise(yosys, &files[one], &core.config().name, family, limit);
+            let name = &core.config().name;
+            let netlist = synthesis::synthesise(yosys, &files[one], name, family, limit);
             done();
-            usage.map_err(|error| format!("{label}, {}: {error:#}", family.title))
+            match netlist {
+                Ok(netlist) => Ok(netlist.usage),
+                Err(error) => Err(format!("{label}, {}: {error:#}", family.title)),
+            }
         })
         .collect();
     Ok(runs.chunks(COMPARED.len()).map(<[_]>::to_vec).collect())

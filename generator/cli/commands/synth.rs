@@ -30,7 +30,7 @@ use show::SynthesisReport;
 
 /// Measure area and frequency by synthesis, placement and routing
 ///
-/// Yosys and nextpnr measure iCE40 (UP5K), ECP5, Nexus and GateMate with several seeds. Yosys measures Xilinx 7 and Gowin,
+/// Yosys and nextpnr measure iCE40 (UP5K and HX8K), ECP5, Nexus and GateMate with several seeds. Yosys measures Xilinx 7 and Gowin,
 /// but only the area, because no open tool has the delays of all their cells. Yosys and OpenSTA measure 0.18 µm standard
 /// cells, before layout; one gate is a NAND2X1. The command puts registers around the core, so the delays of pins do not
 /// count; the delay of a DSP block always counts. The points per second are the median frequency divided by the clocks per
@@ -52,8 +52,8 @@ pub struct Arguments {
     /// and standard cells whose tools are installed]
     #[arg(long = "target", value_name = "TARGET", value_parser = choice::target())]
     targets: Vec<Target>,
-    /// The number of runs of place and route; the result is their median
-    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    /// The number of runs of place and route; the result is their median. 0 measures only the area
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(0..=1000))]
     seeds: u32,
     /// The number of tools to run at the same time [default: the number of threads]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]

@@ -24,7 +24,7 @@ pub struct InstanceExample {
 ///
 /// # Errors
 /// Fails if the core cannot have a wrapper that the configuration asks for. For example, streams need operands and results,
-/// and a pipeline cannot have registers on a bus.
+/// and registers on a bus cannot hold a line of results.
 pub fn instances(design: &Design, inputs: &EmitInputs) -> Result<Vec<InstanceExample>> {
     let naming = Naming::new(design);
     let registers = match inputs.around.registers {

@@ -9,6 +9,7 @@ use anyhow::{Result, bail};
 use serde::Deserialize;
 
 use super::inputs::EmitInputs;
+use super::wrap::single::started;
 use glint_base::config_error::ConfigError;
 use glint_base::fixed::Format;
 use glint_rtl::netlist::{Design, Port, Role};
@@ -114,17 +115,12 @@ pub struct Map {
 }
 
 impl Map {
-    /// Fails if the core is a pipeline, computes several results after one `start`, or lacks the handshake, operands or
-    /// results. Fails if two registers would have the same name, for example because an operand is called `status`.
-    pub fn new(design: &Design, inputs: &EmitInputs) -> Result<Self> {
-        let name = design.name.as_str();
-        if design.pipeline.is_some() {
-            bail!(registers_error(
-                format!("`{name}` is a pipeline, and bus registers are too slow for a pipeline"),
-                "remove interface.registers, or set architecture = \"sequential\"; for a pipeline, set \
-                 interface.stream = true",
-            ));
-        }
+    /// Fails if the core computes several results after one `start`, or lacks the handshake, operands or results. Fails if two
+    /// registers would have the same name, for example because an operand is called `status`.
+    pub fn new(core: &Design, inputs: &EmitInputs) -> Result<Self> {
+        let name = core.name.as_str();
+        let started = started(core);
+        let design = started.as_ref();
         let length = inputs.accuracy.as_ref().and_then(|accuracy| accuracy.length.as_ref());
         if let Some(length) = length {
             bail!(registers_error(

@@ -48,6 +48,22 @@ impl OperandPorts {
         Ok(Self { names: element_names(name, count, axes.as_deref()), axes, is_list: true })
     }
 
+    /// Returns the names in formulas of the operand `name`, or of each number of a list: `n.x` or `v[0]`.
+    fn written_names(&self, name: &str) -> Vec<String> {
+        let number = |at: usize| match &self.axes {
+            Some(axes) => format!("{name}.{}", &axes[at..=at]),
+            None if self.is_list => format!("{name}[{at}]"),
+            None => name.to_owned(),
+        };
+        (0..self.names.len()).map(number).collect()
+    }
+
+    /// Returns the documentation of each number of the operand `name`, whose own documentation is `doc`.
+    pub(super) fn docs(&self, name: &str, doc: &str) -> Vec<String> {
+        let numbers = self.written_names(name);
+        numbers.iter().map(|number| doc_of_number(doc, number, self.is_list)).collect()
+    }
+
     /// Returns the list that the operand's name stands for in a formula; `None` for a number.
     pub(super) fn list(&self) -> Option<NumberList> {
         let elements = self.names.iter().map(|name| Arc::new(Expression::operand(name))).collect();
@@ -83,6 +99,16 @@ pub(super) fn result_names(
     let name = &record.name;
     let key = format!("results.{name}.axes");
     let own = axes_of(record, &key)?;
+    let count = formula.elements().len();
+    if let Some(size) = record.bits("size").filter(|size| *size as usize != count) {
+        let given = match formula {
+            NumberOrList::Number(_) => "a single number".to_owned(),
+            NumberOrList::List(_) => format!("{count} numbers"),
+        };
+        let message = format!("`{name}` has size {size}, and its formula gives {given}");
+        let key = format!("results.{name}.size");
+        return Err(ConfigError::new(key, message, "remove `size`, or change the formula"));
+    }
     let list = match formula {
         NumberOrList::List(list) => list,
         NumberOrList::Number(_) if own.is_some() => {
@@ -91,7 +117,6 @@ pub(super) fn result_names(
         }
         NumberOrList::Number(_) => return Ok(vec![name.clone()]),
     };
-    let count = list.elements.len();
     if let Some(axes) = own.as_ref().filter(|axes| axes.len() != count) {
         let message =
             format!("`{name}` has {} axes, and its formula gives {count} numbers", axes.len());
@@ -102,6 +127,53 @@ pub(super) fn result_names(
         axes.chars().enumerate().all(|(at, axis)| axes.find(axis) == Some(at))
     });
     Ok(element_names(name, count, axes.as_deref()))
+}
+
+/// Returns the documentation of a number of a list, such as `n.x: the normal`. `doc` is the documentation of the whole list, and
+/// `number` the name in formulas. If the entry is no list, its documentation stays.
+fn doc_of_number(doc: &str, number: &str, is_list: bool) -> String {
+    match (is_list, doc) {
+        (false, _) => doc.to_owned(),
+        (true, "") => number.to_owned(),
+        (true, _) => format!("{number}: {doc}"),
+    }
+}
+
+/// Returns the documentation of the result with the name `port`.
+///
+/// # Panics
+/// Panics if no entry has such a result.
+pub fn result_doc(keys: &Keys, port: &str) -> String {
+    let entry = result_entry(keys, port);
+    let doc = entry.text("doc").unwrap_or_default();
+    let name = &entry.name;
+    let element = port.strip_prefix(name.as_str()).unwrap_or_default();
+    let number = match element.strip_prefix('_') {
+        Some(place) => format!("{name}[{place}]"),
+        None => format!("{name}.{element}"),
+    };
+    doc_of_number(doc, &number, !element.is_empty())
+}
+
+/// Returns a message of the planner with the numbers of lists as formulas write them: `nx` becomes `n.x`, and `v_0` becomes `v[0]`.
+pub(super) fn as_written(keys: &Keys, message: &str) -> String {
+    let mut written: Vec<(String, String)> = Vec::new();
+    for record in &keys.operands.0 {
+        let Ok(ports) = OperandPorts::of(record) else { continue };
+        written.extend(ports.names.iter().cloned().zip(ports.written_names(&record.name)));
+    }
+    let is_of_name = |c: char| c.is_alphanumeric() || c == '_';
+    let mut text = String::new();
+    let mut rest = message;
+    while let Some(start) = rest.find(is_of_name) {
+        text += &rest[..start];
+        rest = &rest[start..];
+        let (word, after) = rest.split_at(rest.find(|c| !is_of_name(c)).unwrap_or(rest.len()));
+        let number = written.iter().find(|(port, _)| port == word);
+        text += number.map_or(word, |(_, number)| number);
+        rest = after;
+    }
+    text + rest
 }
 
 /// Returns the entry of the table `results` that states the result with the name `port`.

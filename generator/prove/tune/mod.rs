@@ -7,6 +7,7 @@
 //! DSP blocks. It also changes them to minimise DSP blocks, or if no other configuration fits the chip.
 
 pub mod architectures;
+mod bits;
 pub mod model;
 mod search;
 mod space;

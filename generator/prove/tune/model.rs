@@ -8,17 +8,20 @@ use std::collections::BTreeSet;
 
 use serde::{Deserialize, Serialize};
 
+use super::bits::BitSources;
 use crate::synth::Target;
 use glint_base::target::{ECP5, Family};
 use glint_rtl::netlist::{Design, Driver, NetId, Op, RegId};
 use glint_rtl::pipeline::delay_of;
 
-/// Counts of a netlist's logic, from which the number of look-up tables is estimated.
+/// Counts of a netlist's logic, from which the number of look-up tables is estimated. Bits that are constants, or copies of other bits
+/// ([`super::bits`]), do not count.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Features {
     /// The number of bits of sums, differences and comparisons.
     pub adder: f64,
-    /// The number of bits of muxes, for each input beyond the first. For example, a mux of 3 inputs of 8 bits counts 16.
+    /// The number of bits of muxes, for each input beyond the first. For example, a mux of 3 inputs of 8 bits counts 16. A constant
+    /// input counts half.
     pub mux: f64,
     /// The number of bits of gates. A reduction counts a third of its operand's bits, and an equality a third of the bits of
     /// both operands. Inverters do not count.
@@ -28,6 +31,8 @@ pub struct Features {
     /// The number of bits in the sums of partial products: half the width of the product for each multiplier beyond the first.
     /// For a family without DSP blocks, the number of look-up tables that its products take.
     pub product: f64,
+    /// The number of look-up tables of delay memories.
+    pub delay: f64,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -50,9 +55,9 @@ impl Cost {
     pub fn new(design: &Design, target: Target) -> Self {
         let family = family(target);
         let features = Features::new(design, target);
-        let Features { adder, mux, logic, rom, product } = features;
+        let Features { adder, mux, logic, rom, product, delay } = features;
         let parts = [adder, mux, logic, rom, product, 1.0];
-        let mut luts = 0.0;
+        let mut luts = delay;
         for (part, weight) in parts.iter().zip(family.estimate.weights) {
             luts += part * weight;
         }
@@ -111,6 +116,7 @@ impl Features {
     /// For standard cells, the counts are the ones for ECP5.
     pub fn new(design: &Design, target: Target) -> Self {
         let family = family(target);
+        let sources = BitSources::of(design);
         let mut sum = Self::default();
         let width = |net: NetId| f64::from(design.width(net));
         for (id, net) in design.iter() {
@@ -118,17 +124,17 @@ impl Features {
                 continue;
             };
             match op {
-                Op::Add { a, .. } | Op::Sub(a, _) | Op::Less(a, _) => sum.adder += width(*a),
-                Op::And(..) | Op::Or(..) | Op::Xor(..) => sum.logic += width(id),
-                Op::Any(a) | Op::All(a) => sum.logic += width(*a) / 3.0,
-                Op::Equal(a, _) => sum.logic += 2.0 * width(*a) / 3.0,
-                Op::Mux { inputs, .. } => sum.mux += width(id) * (inputs.len() - 1) as f64,
-                Op::Mul(a, b) if let Some((_, luts)) = family.fabric_product => {
-                    sum.product += luts(width(*a) as u64, width(*b) as u64) as f64;
+                Op::Add { a, b, .. } | Op::Sub(a, b) => {
+                    sum.adder += sources.added(id, *a, *b) as f64;
                 }
+                Op::Less(a, _) => sum.adder += width(*a),
+                Op::And(..) | Op::Or(..) | Op::Xor(..) => sum.logic += sources.computed(id) as f64,
+                Op::Any(a) | Op::All(a) => sum.logic += sources.varying(*a) as f64 / 3.0,
+                Op::Equal(a, _) => sum.logic += 2.0 * width(*a) / 3.0,
+                Op::Mux { inputs, .. } => sum.mux += sources.chosen(id, inputs),
                 Op::Mul(a, b) => {
-                    let blocks = blocks(family, design.width(*a), design.width(*b));
-                    sum.product += blocks.saturating_sub(1) as f64 * width(id) / 2.0;
+                    let factors = [*a, *b].map(|factor| sources.varying(factor) as u32);
+                    sum.product += luts_of_product(family, factors, width(id));
                 }
                 Op::Relabel(_) | Op::Extend(_) | Op::Slice { .. } | Op::Concat(_) | Op::Not(_) => {}
             }
@@ -139,8 +145,30 @@ impl Features {
                 sum.rom += (words * width) as f64 / 16.0;
             }
         }
+        if let Some(memory) = family.timing.delay_memory {
+            for line in design.delay_lines() {
+                let bits: u32 = line.values.iter().map(|value| design.width(value.data)).sum();
+                let memories =
+                    bits.div_ceil(memory.width) * (line.words() as u32).div_ceil(memory.words);
+                sum.delay += f64::from(memories * memory.tables);
+            }
+        }
         sum
     }
+}
+
+/// Returns the look-up tables of a product of factors with these numbers of varying bits: all, for a family without DSP blocks, and
+/// otherwise the bits in the sums of partial products. `width` is the width of the product.
+fn luts_of_product(family: &Family, factors: [u32; 2], width: f64) -> f64 {
+    let [a, b] = factors;
+    if let Some(product) = family.fabric_product {
+        let luts = product.luts;
+        return luts(u64::from(a), u64::from(b)) as f64;
+    }
+    let (wide, narrow) = family.timing.multiplier;
+    let one_way = slices(a, wide).len() * slices(b, narrow).len();
+    let other_way = slices(b, wide).len() * slices(a, narrow).len();
+    one_way.min(other_way).saturating_sub(1) as f64 * width / 2.0
 }
 
 /// Returns the number of DSP blocks of a product, with the operands in the order that takes fewer blocks.

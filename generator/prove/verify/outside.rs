@@ -312,7 +312,7 @@ pub const SYNTHESIS: Check = Check {
             .par_iter()
             .map(|family| {
                 let files = subject.sources(family.name())?;
-                let usage = synthesise(&tools[0], &files, name, family, limit)?;
+                let usage = synthesise(&tools[0], &files, name, family, limit)?.usage;
                 progress(1);
                 Ok(format!(
                     "{} LUTs, {} DSP blocks and {} block RAMs of {}",

@@ -84,7 +84,7 @@ pub fn models(yosys: &Tool, family: &Family) -> Result<Vec<(String, String)>> {
     let mut files = Vec::new();
     let shipped = match family.name() {
         // Icarus Verilog 11 does not know default values of ports, and a netlist from synthesis does not need them.
-        "ice40" => format!("`define NO_ICE40_DEFAULT_ASSIGNMENTS\n{shipped}"),
+        "ice40" | "ice40-hx" => format!("`define NO_ICE40_DEFAULT_ASSIGNMENTS\n{shipped}"),
         "ecp5" => {
             files.push(("ecp5.v".to_owned(), ECP5.to_owned()));
             // The flip-flops and pads of other tools are in files that it includes.
@@ -109,6 +109,7 @@ pub fn models(yosys: &Tool, family: &Family) -> Result<Vec<(String, String)>> {
 fn shipped(yosys: &Tool, family: &Family) -> Result<String> {
     let directory = match family.name() {
         "gowin-gw1n" => "gowin",
+        "ice40-hx" => "ice40",
         name => name,
     };
     own_file(yosys, &format!("{directory}/cells_sim.v"))

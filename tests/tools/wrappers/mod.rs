@@ -151,14 +151,18 @@ fn shipped_benches_pass_on_padded_streams() {
 const BUSES: [(&str, &str); 2] =
     [("registers = \"axi-lite\"\n", "axil"), ("registers = \"wishbone\"\n", "wb")];
 
-/// Returns every default configuration of a core that computes a point at a time by a microprogram, on each bus.
+/// Pipelines that registers start: one that takes a point every clock, and one that takes a point every few clocks.
+const STARTED_PIPELINES: [&str; 2] = ["cosine_power_pipelined", "lyon_up5k_pipelined"];
+
+/// Returns every default configuration of a core that computes a point at a time by a microprogram, and some pipelines, on each bus.
 fn on_buses() -> Vec<(String, Core, &'static str)> {
     let points = |core: &Core| core.design.pipeline.is_none() && core.contract.length().is_none();
-    let paths: Vec<String> = all_configurations()
+    let mut paths: Vec<String> = all_configurations()
         .into_iter()
         .filter(|(path, core)| points(core) && !path.contains("studies"))
         .map(|(path, _)| path)
         .collect();
+    paths.extend(STARTED_PIPELINES.map(|name| format!("configs/{name}.toml")));
     let of_bus = |(keys, bus): (&str, &'static str)| {
         let of_path = |path: &String| (path.clone(), configuration_between(path, keys), bus);
         paths.iter().map(of_path).collect::<Vec<_>>()
@@ -186,10 +190,11 @@ fn registers_are_clean_verilog() {
 fn registers_are_proved() {
     // Operands of more than 32 bits, and results that fill several registers, too.
     let proved = ["cosine_power", "lyon", "blinn", "rough"];
-    proved.par_iter().for_each(|name| {
+    proved.iter().chain(&STARTED_PIPELINES).par_bridge().for_each(|name| {
         for (keys, bus) in BUSES {
             let dir = proof(name, keys);
-            for wrapper in [bus, "registers"] {
+            let single = STARTED_PIPELINES.contains(name).then_some("single");
+            for wrapper in [bus, "registers"].into_iter().chain(single) {
                 prove(dir.path(), &format!("{name}_{wrapper}_formal.sv"), LIMIT)
                     .sure_of(format_args!("{name}_{wrapper}"));
             }
@@ -205,6 +210,30 @@ fn faults_break_the_proofs_of_registers() {
         let bus = BUSES.into_iter().find(|(_, bus)| *bus == fault.of).unwrap_or(BUSES[0]);
         breaks_the_proof(fault, "cosine_power", bus.0, &fault.of);
     });
+    faults("pipelines behind registers").par_iter().for_each(|fault| {
+        breaks_the_proof(fault, "cosine_power_pipelined", BUSES[0].0, &fault.of);
+    });
+}
+
+/// A pipeline that cannot stall, and one with a side channel: the proof and the bench pass.
+#[test]
+fn registers_start_pipelines_of_every_kind() {
+    for keys in
+        ["stall = \"none\"", "stall = \"none\"\ninterval = 3", "side = 8", "side = 8\ninterval = 2"]
+    {
+        let text = format!(
+            "device = \"expression\"\nname = \"lerp\"\narchitecture = \"pipelined\"\n\
+             operands.a = {{ bits = 30, fraction = 20, signed = true }}\noperands.b = {{ bits = 6, fraction = 5 }}\n\
+             results.r = {{ formula = \"a * b\", fraction = 20 }}\n{}[pipeline]\n{keys}\n",
+            "interface.registers = \"wishbone\"\n"
+        );
+        let emitted = Emitted::new(&parsed("lerp.toml", &text), 40, 1);
+        assert_bench_passes(VerilogSimulator::Icarus, &emitted.simulated(), "lerp_wb_tb");
+        let dir = emitted.all_beside();
+        for wrapper in ["single", "registers"] {
+            prove(dir.path(), &format!("lerp_{wrapper}_formal.sv"), LIMIT).sure_of(keys);
+        }
+    }
 }
 
 /// The masters of cocotbext-axi and cocotbext-wishbone.

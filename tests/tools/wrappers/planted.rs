@@ -26,7 +26,7 @@ fn planted_faults_are_noticed() {
     for (name, keys) in [
         ("cosine_power", format!("{STREAM}{wishbone}")),
         ("lyon", axi_lite.to_owned()),
-        ("cosine_power_pipelined", STREAM.to_owned()),
+        ("cosine_power_pipelined", format!("{STREAM}{wishbone}")),
         ("quad_cosine", STREAM.to_owned()),
     ] {
         let core = configuration_between(&format!("configs/{name}.toml"), &keys);
@@ -111,7 +111,7 @@ fn benches_pass_without_a_fault() {
         ("cosine_power", format!("{STREAM}{wishbone}")),
         ("rough", axi_lite.to_owned()),
         ("lyon", format!("stream = true\nuser_bits = 70\n{axi_lite}[operands]\nbuffered = true\n")),
-        ("quadratic_pipelined", STREAM.to_owned()),
+        ("quadratic_pipelined", format!("{STREAM}{axi_lite}")),
         ("quad_cosine", STREAM.to_owned()),
     ];
     let name_of = |(name, _): &(&str, String)| (*name).to_owned();

@@ -47,6 +47,9 @@ pub fn run(output: OutputOptions, arguments: &Arguments, loaded: &[Loaded]) -> R
             "--front and --out cannot be used together: a record describes one architecture"
         );
     }
+    if arguments.seeds == 0 {
+        wrong_usage!("--front needs at least one seed, because it compares rates");
+    }
     let target = target(arguments, one)?;
     let drawing = match &arguments.plot {
         Some(path) => Some(Destination::fresh(path, arguments.force)?),

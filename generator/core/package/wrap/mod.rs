@@ -5,6 +5,7 @@ pub(super) mod fields;
 mod pipeline;
 mod points;
 mod registers;
+pub(super) mod single;
 mod stream;
 mod words;
 
@@ -33,6 +34,9 @@ pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<()> {
     }
     if let Some((bus, map)) = &job.registers {
         registers::modules(job, bus, map, files)?;
+        if let Some(pipeline) = &job.design.pipeline {
+            single::modules(job, pipeline, files)?;
+        }
     }
     let Some(vectors) = job.inputs.vectors.as_ref().filter(|_| streams || job.registers.is_some())
     else {

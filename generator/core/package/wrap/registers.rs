@@ -7,6 +7,7 @@ use anyhow::Result;
 use glint_base::fill;
 
 use super::fields::sink;
+use super::single::started;
 use super::words::{Word, constants, select, within, words};
 use super::{add_proof, connected, core_wire, seen_inside, stub_free, stub_ports};
 use crate::package::bus::Bus;
@@ -40,9 +41,9 @@ struct ByteLane {
 pub fn modules(job: &EmitJob, bus: &Bus, map: &Map, files: &mut OutputFiles) -> Result<()> {
     let [module, module_proof] =
         (bus.module)(job.name(), job.regenerate(), map.address_bits() - 1)?;
-    let core = job.name().to_owned();
-    let registers = format!("{core}_registers");
-    let bus = format!("{core}_{}", bus.suffix);
+    let core = started(job.design).name.clone();
+    let registers = format!("{}_registers", job.name());
+    let bus = format!("{}_{}", job.name(), bus.suffix);
     files.add_verilog(FileKind::BusWrapper, vec![bus.clone()], module);
     files.add_verilog(FileKind::BusWrapper, vec![registers.clone()], block(job, map)?);
     // In the proof of the bus, a stub replaces the registers. In the proof of the registers, a stub replaces the core.
@@ -51,7 +52,8 @@ pub fn modules(job: &EmitJob, bus: &Bus, map: &Map, files: &mut OutputFiles) -> 
 }
 
 fn block(job: &EmitJob, map: &Map) -> Result<String> {
-    let design = job.design;
+    let started = started(job.design);
+    let design = started.as_ref();
     let word_bits = map.address_bits() - 2;
     let place = |place: u32| literal(place.into(), word_bits);
     let connections = connected(design, "clk", |role, name| match role {
@@ -75,6 +77,7 @@ fn block(job: &EmitJob, map: &Map) -> Result<String> {
     let among = |wire, at, places| within(wire, at, places, word_bits);
     fill!("registers.v" {
         name: &'a str = job.name(),
+        core: &'a str = &design.name,
         regenerate: &'a str = job.regenerate(),
         map: Vec<String> = described(map),
         address_high: u32 = map.address_bits() - 1,
@@ -210,6 +213,7 @@ fn source(map: &Map, register: &BusRegister, bits: &RegisterBits) -> String {
 }
 
 fn proof(job: &EmitJob, map: &Map) -> Result<String> {
+    let started = started(job.design);
     let word_bits = map.address_bits() - 2;
     let own = [
         ("start", 1),
@@ -235,6 +239,7 @@ fn proof(job: &EmitJob, map: &Map) -> Result<String> {
     let reads = map.registers.iter().map(|register| (register.place, read(map, register)));
     fill!("registers_formal.sv" {
         name: &'a str = job.name(),
+        core: &'a str = &started.name,
         address_high: u32 = map.address_bits() - 1,
         word_high: u32 = word_bits - 1,
         word_count: u32 = map.last() + 1,
@@ -245,8 +250,8 @@ fn proof(job: &EmitJob, map: &Map) -> Result<String> {
         operands: Vec<OperandWords> = operands(map),
         // The place of each register, and the word that a read of it gives.
         reads: Vec<(u32, Vec<String>)> = reads.collect(),
-        stub_ports: Vec<String> = stub_ports(job.design),
-        stub_free: Vec<String> = stub_free(job.design),
+        stub_ports: Vec<String> = stub_ports(&started),
+        stub_free: Vec<String> = stub_free(&started),
         inside: Vec<String> = inside.into_iter().map(seen_inside).collect(),
     })
 }

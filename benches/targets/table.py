@@ -1,0 +1,113 @@
+#!/usr/bin/env python3
+"""Five pipelines on each FPGA family, measured and estimated: the table of docs/targets.md.
+
+    target/tools/venv/bin/python benches/targets/table.py                       the table on the screen
+    target/tools/venv/bin/python benches/targets/table.py --write               the table in docs/targets.md
+    target/tools/venv/bin/python benches/targets/table.py --target gatemate     one family
+
+Each core is a pipeline that takes a point every clock, scheduled for the family and for the clock that docs/targets.md
+recommends. `glint synth` measures the look-up tables, and with three seeds the frequency between registers around the core;
+`glint estimate` estimates both. The configurations and the cache of the measurements are in `target/targets/`.
+Needs `cargo build --release` and the tools of `bash tools/install`.
+"""
+
+import argparse
+import json
+import os
+import pathlib
+import statistics
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+GLINT = ROOT / "target/release/glint"
+PAGE = ROOT / "docs/targets.md"
+START, END = "<!-- measured families -->\n", "<!-- end -->"
+CORES = ["divide", "hypot", "sincos", "atan2", "gauss"]
+# The clock in MHz that the page recommends for each family.
+CLOCKS = {"ecp5": 100, "ice40": 35, "ice40-hx": 50, "xilinx7": 100, "gowin": 80, "gowin-gw1n": 50, "nexus": 100, "gatemate": 45}
+
+
+def glint(*arguments):
+    """The output of the program, with the installed tools in its PATH; ends with its message where it fails."""
+    search = os.pathsep.join([str(ROOT / "target/tools/venv/bin"), os.environ["PATH"]])
+    run = subprocess.run([GLINT, *map(str, arguments)], capture_output=True, text=True, env={**os.environ, "PATH": search})
+    if run.returncode:
+        sys.exit(run.stdout + run.stderr)
+    return run.stdout
+
+
+def configuration(core, target, clock):
+    """The path of the configuration of a pipeline, which is written anew."""
+    directory = ROOT / "target/targets"
+    directory.mkdir(parents=True, exist_ok=True)
+    name = f"{core}_{target}".replace("-", "_")
+    path = directory / f"{name}.toml"
+    path.write_text(glint("new", core, "--name", name, "--pipelined", "--target", target, "--clock", clock))
+    return path
+
+
+def measured(path, target, seeds):
+    """Look-up tables and frequency (None if the family is not timed), each as the measured and the estimated number."""
+    found = json.loads(glint("synth", path, "--target", target, "--seeds", seeds, "--json", "--quiet"))
+    figures = found["synthesis"][0]["targets"][0]
+    estimates = json.loads(glint("estimate", path, "--json"))["estimates"][0]["targets"]
+    estimate = next(it["cost"] for it in estimates if it["target"] == target)
+    luts = (figures["area"]["luts"], estimate["luts"])
+    if "frequency" not in figures:
+        return luts, None
+    return luts, (figures["frequency"]["median"], estimate["mhz"])
+
+
+def cell(luts, mhz, clock):
+    """The text of a cell: `367 (350), 113 (118)`. A frequency below the clock that was asked for is in bold type."""
+    text = f"{luts[0]} ({luts[1]:.0f})"
+    if mhz is None:
+        return text
+    speed = f"{mhz[0]:.0f} ({mhz[1]:.0f})"
+    return f"{text}, {speed}" if mhz[0] >= clock else f"{text}, **{speed}**"
+
+
+def summary(what, pairs):
+    """How far the estimates are from the measurements."""
+    off = [abs(estimate / value - 1) for value, estimate in pairs]
+    return f"{what}: half of the estimates are within {statistics.median(off):.0%}, the worst is {max(off):.0%} off"
+
+
+def main():
+    arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    arguments.add_argument("--target", nargs="*", default=list(CLOCKS), choices=list(CLOCKS), help="families")
+    arguments.add_argument("--core", nargs="*", default=CORES, help="presets or devices that can be pipelines")
+    arguments.add_argument("--clock", type=float, help="another clock in MHz than the recommended one")
+    arguments.add_argument("--seeds", type=int, default=3, help="runs of place and route, of which the median counts")
+    arguments.add_argument("--write", action="store_true", help="write the table into docs/targets.md")
+    given = arguments.parse_args()
+    if given.write and (given.core != CORES or given.target != list(CLOCKS) or given.clock):
+        sys.exit("--write needs all families, all cores and the recommended clocks")
+    lines = ["| target | clock, MHz | " + " | ".join(given.core) + " |\n", "|---|--:|" + "---|" * len(given.core) + "\n"]
+    print("".join(lines), end="")
+    all_luts, all_mhz = [], []
+    for target in given.target:
+        clock = given.clock or CLOCKS[target]
+        cells = []
+        for core in given.core:
+            luts, mhz = measured(configuration(core, target, clock), target, given.seeds)
+            all_luts.append(luts)
+            if mhz is not None:
+                all_mhz.append(mhz)
+            cells.append(cell(luts, mhz, clock))
+        lines.append(f"| `{target}` | {clock} | " + " | ".join(cells) + " |\n")
+        print(lines[-1], end="", flush=True)
+    sums = [summary("look-up tables", all_luts)]
+    if all_mhz:
+        sums.append(summary("frequencies", all_mhz))
+    print("\n" + "\n".join(sums))
+    if given.write:
+        before, rest = PAGE.read_text().split(START)
+        after = rest.split(END, 1)[1]
+        sentences = [f"- {line[0].upper()}{line[1:]}.\n" for line in sums]
+        PAGE.write_text(before + START + "".join(lines) + "\n" + "".join(sentences) + END + after)
+
+
+if __name__ == "__main__":
+    main()
