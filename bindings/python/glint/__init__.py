@@ -15,6 +15,7 @@ which the Verilog equals bit by bit, states the proved bound of its error, and g
 import numbers
 import json
 import os
+import re
 import sys
 from decimal import Decimal
 from fractions import Fraction
@@ -115,7 +116,8 @@ class Core:
     def __call__(self, *columns, raw=False, **operands):
         """Computes many points by the golden model.
 
-        An operand is a number or an array; what is not given is an error. Arrays are broadcast. They hold values, which are rounded to
+        An operand is a number or an array; what is not given is an error. Arrays are broadcast. The last axis of the array of a list has
+        its numbers. They hold values, which are rounded to
         the format, or with `raw=True` raw integers, and so do the results: an array (of numbers alone, a number) of a core with one
         output, or a dictionary by output. Where an element of an operand is masked (`numpy.ma`), so are the results.
         Of a device that walks lines (`core.length`) a call is one line.
@@ -187,7 +189,7 @@ class Core:
         if len(columns) > len(names):
             raise TypeError(f"there are {len(columns)} operands; {self.name} has {', '.join(names)}")
         given = dict(zip(names, columns))
-        for name, column in operands.items():
+        for name, column in self._numbers(operands).items():
             if name not in self.operands:
                 raise TypeError(f"there is no operand {name!r}; the operands are {', '.join(names)}")
             if name in given:
@@ -214,6 +216,30 @@ class Core:
             return np.require(whole, kind, ["C_CONTIGUOUS", "ALIGNED"]).reshape(-1)
 
         return [column(arrays[name]) for name in names], shape, mask
+
+    def _numbers(self, operands):
+        """The operands with a column for each number of a list: `v`, whose last axis has the numbers, becomes `v_0`, `v_1` and so on."""
+        columns = {}
+        for name, column in operands.items():
+            ports = self._ports_of_list(name)
+            if not ports:
+                columns[name] = column
+                continue
+            array = np.asanyarray(column)
+            if array.ndim == 0 or array.shape[-1] != len(ports):
+                raise ValueError(f"operand {name!r}: the list has {len(ports)} numbers, and the array the shape {array.shape}")
+            for at, port in enumerate(ports):
+                if port in operands:
+                    raise TypeError(f"operand {port!r} is given twice")
+                columns[port] = array[..., at]
+        return columns
+
+    def _ports_of_list(self, name):
+        """The operands that are the numbers of the list `name`; none if it is no list."""
+        if name in self.operands:
+            return []
+        ports = [port for port in self.operands if re.fullmatch(f"{re.escape(name)}(_[0-9]+|[a-z])", port)]
+        return ports if len(ports) > 1 else []
 
     def _values(self, results):
         return [np.ldexp(raw.astype(np.float64), -port.fraction) for raw, port in zip(results, self.outputs.values())]

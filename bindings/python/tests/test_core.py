@@ -184,6 +184,19 @@ def test_shapes_follow_numpy():
     assert empty.shape == (0,)
 
 
+def test_the_last_axis_of_a_list_has_its_numbers():
+    formula = "v[0] + 2 * v[1] + 4 * v[2] + 8 * n.x + 16 * n.y"
+    lists = {"v": {"size": 3, "bits": 8, "fraction": 4}, "n": {"axes": "xy", "bits": 8, "fraction": 4}}
+    core = glint.expression(formula, operands=lists, fraction=4)
+    v, n = np.arange(12).reshape(4, 3), np.array([1, 0.5])
+    assert (core(v=v, n=n) == v @ [1, 2, 4] + 16).all()
+    assert core(v=[1, 2, 3], nx=1, ny=0.5) == 33
+    with pytest.raises(ValueError, match=r"the list has 3 numbers, and the array the shape \(4,\)"):
+        core(v=[1, 2, 3, 4], n=n)
+    with pytest.raises(TypeError, match="'v_1' is given twice"):
+        core(v=v, v_1=0, n=n)
+
+
 def test_a_core_tells_what_it_is():
     core = glint.Core(device="rough", architecture="pipelined")
     assert core.interval == 1 and core.latency == len(core.schedule())

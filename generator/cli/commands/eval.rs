@@ -26,6 +26,7 @@ use glint_golden::{self as golden, ANY_VALUE, Contract, Model, Operand};
 Examples:
   glint eval my_core.toml cos_gamma=0.99 exponent=20 red=255
   glint eval my_core.toml cos_gamma=#1038090     a raw integer, as the port takes it
+  glint eval softmax4.toml v=0.5,0,0,-1          the numbers of a list; `v[0]=0.5` gives one of them
   glint eval my_core.toml --batch points.csv     a row of results for each row of operands
   glint setup my_core.toml --batch lines.csv | glint eval my_core.toml --batch -
   glint eval my_core.toml --typical --json       a point with a visible highlight, for scripts")]

@@ -9,7 +9,7 @@ use anyhow::{Result, bail};
 use serde::Deserialize;
 
 use super::inputs::EmitInputs;
-use super::wrap::single::started;
+use super::wrap::single::{colliding_port, started};
 use glint_base::config_error::ConfigError;
 use glint_base::fixed::Format;
 use glint_rtl::netlist::{Design, Port, Role};
@@ -116,9 +116,19 @@ pub struct Map {
 
 impl Map {
     /// Fails if the core computes several results after one `start`, or lacks the handshake, operands or results. Fails if two
-    /// registers would have the same name, for example because an operand is called `status`.
+    /// registers would have the same name, for example because an operand is called `status`, or if a port of a pipeline has the
+    /// name of a signal of `<name>_single.v`.
     pub fn new(core: &Design, inputs: &EmitInputs) -> Result<Self> {
         let name = core.name.as_str();
+        if let Some(port) = colliding_port(core) {
+            bail!(registers_error(
+                format!(
+                    "`{port}` is a signal of `{name}_single.v`, and a port cannot have its name"
+                ),
+                "remove interface.registers, or rename the operand or the result with this name in the \
+                 description",
+            ));
+        }
         let started = started(core);
         let design = started.as_ref();
         let length = inputs.accuracy.as_ref().and_then(|accuracy| accuracy.length.as_ref());

@@ -15,7 +15,7 @@ use glint_rtl::netlist::{Design, Driver, NetId, Op, RegId};
 use glint_rtl::pipeline::delay_of;
 
 /// Counts of a netlist's logic, from which the number of look-up tables is estimated. Bits that are constants, or copies of other bits
-/// ([`super::bits`]), do not count.
+/// (`bits.rs`), do not count.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Features {
     /// The number of bits of sums, differences and comparisons.

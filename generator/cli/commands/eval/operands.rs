@@ -5,29 +5,66 @@ use crate::commands::none_of;
 use glint_core::cosim::trial;
 use glint_golden::{Contract, Operand};
 
-/// Parses settings of the form `name=value`. Returns the raw operands in the order of `operands`, with `None` for an operand
-/// without a setting.
+/// Parses settings of the form `name=value`, and `n=0.5,0,1` for the list `n` of an expression. Returns the raw operands in the order
+/// of `operands`, with `None` for an operand without a setting.
 ///
 /// # Errors
-/// Fails if a setting has no `=`, if an operand is unknown or set twice, or if a value is not valid for the operand's format.
+/// Fails if a setting has no `=`, if an operand is unknown or set twice, if a value is not valid for the operand's format, or if a
+/// list has another number of values.
 pub fn given(operands: &[Operand], settings: &[String]) -> Result<Vec<Option<i64>>, String> {
     let mut raw: Vec<Option<i64>> = vec![None; operands.len()];
     for setting in settings {
         let (name, text) = setting.split_once('=').ok_or_else(|| {
             format!("`{setting}` is not of the form operand=value, for example cos_gamma=0.99")
         })?;
-        let at = position(operands, name)?;
-        if raw[at].is_some() {
-            return Err(format!("operand `{name}` is given twice"));
+        let numbers = numbers_of_list(operands, name);
+        let (places, texts) = if numbers.is_empty() {
+            (vec![position(operands, name)?], vec![text])
+        } else {
+            (numbers, text.split(',').collect())
+        };
+        if places.len() != texts.len() {
+            let (count, given) = (places.len(), texts.len());
+            return Err(format!(
+                "the list `{name}` has {count} numbers, and {given} are given: `{text}`"
+            ));
         }
-        raw[at] = Some(named_value(&operands[at], text)?);
+        for (at, text) in places.into_iter().zip(texts) {
+            if raw[at].is_some() {
+                return Err(format!("operand `{}` is given twice", operands[at].name));
+            }
+            raw[at] = Some(named_value(&operands[at], text)?);
+        }
     }
     Ok(raw)
 }
 
+/// Returns the indices of the numbers of the list `name`: the operands `n_0`, `n_1` and so on, or `nx`, `ny` and so on. Returns none if
+/// an operand is called `name`, or if there is only one such operand.
+fn numbers_of_list(operands: &[Operand], name: &str) -> Vec<usize> {
+    let is_number = |operand: &Operand| match operand.name.strip_prefix(name) {
+        Some(end) => match end.strip_prefix('_') {
+            Some(place) => !place.is_empty() && place.bytes().all(|digit| digit.is_ascii_digit()),
+            None => end.len() == 1 && end.bytes().all(|axis| axis.is_ascii_lowercase()),
+        },
+        None => false,
+    };
+    if operands.iter().any(|operand| operand.name == name) {
+        return Vec::new();
+    }
+    let numbers: Vec<usize> = (0..operands.len()).filter(|&at| is_number(&operands[at])).collect();
+    if numbers.len() < 2 { Vec::new() } else { numbers }
+}
+
+/// Returns the name of an operand's port. `n.x` and `v[0]`, as formulas write the numbers of lists, are the ports `nx` and `v_0`.
+fn port_name(name: &str) -> String {
+    name.replace('.', "").replace('[', "_").replace(']', "")
+}
+
 /// Returns the index of an operand. The message about an unknown name has the most similar name.
 pub fn position(operands: &[Operand], name: &str) -> Result<usize, String> {
-    operands.iter().position(|operand| operand.name == name).ok_or_else(|| {
+    let port = port_name(name);
+    operands.iter().position(|operand| operand.name == port).ok_or_else(|| {
         let names: Vec<&str> = operands.iter().map(|operand| operand.name.as_str()).collect();
         format!("there is no operand `{name}`{}", none_of(name, "operands", &names))
     })

@@ -48,12 +48,13 @@ struct RecomputedFormula<'f> {
 
 impl<'f> RecomputedContract<'f> {
     fn new(name: &str, facts: &'f ContractFacts) -> Result<Self, ConfigError> {
-        if facts.wraps {
-            return Err(recomputation_error(
+        let check_wraps = || match facts.wraps {
+            true => Err(recomputation_error(
                 name,
                 "a result wraps around, and the program cannot compute such results",
-            ));
-        }
+            )),
+            false => Ok(()),
+        };
         if let Some(conditions) = &facts.conditions {
             let combinations =
                 interval::combinations(facts.domain.iter().map(|(_, limits)| *limits));
@@ -64,10 +65,12 @@ impl<'f> RecomputedContract<'f> {
                 );
                 return Err(recomputation_error(name, &why));
             }
+            check_wraps()?;
             return Ok(Self::Expression(conditions));
         }
         match (&facts.domain[..], &facts.outputs[..], &facts.f[..]) {
             ([(operand, domain)], [(result, None)], [formula]) => {
+                check_wraps()?;
                 let domain = *domain;
                 Ok(Self::Function(RecomputedFormula { operand, domain, result, formula }))
             }

@@ -48,6 +48,27 @@ pub fn started(design: &Design) -> Cow<'_, Design> {
     Cow::Owned(single)
 }
 
+/// The signals of `<name>_single.v` besides those of operands and results.
+const SIGNALS: [&str; 6] =
+    ["accepted", "arrives", "core_side_out", "offered", "pipeline", "unused"];
+
+/// Returns a port of a pipeline that has the name of a signal inside `<name>_single.v`: an operand `offered`, or an operand `held_x` beside
+/// an operand `x`. Returns `None` for a core with a microprogram.
+pub fn colliding_port(design: &Design) -> Option<&str> {
+    design.pipeline.as_ref()?;
+    let mut signals: Vec<String> = SIGNALS.iter().map(|&name| name.to_owned()).collect();
+    for port in &design.ports {
+        let name = &design.net(port.net).name;
+        match port.role {
+            Role::Point => signals.push(format!("held_{name}")),
+            Role::Result => signals.push(format!("new_{name}")),
+            _ => {}
+        }
+    }
+    let mut names = design.ports.iter().map(|port| design.net(port.net).name.as_str());
+    names.find(|name| signals.iter().any(|signal| signal == name))
+}
+
 /// Adds a net of one bit for a port.
 fn bit(design: &mut Design, name: String) -> NetId {
     let reset = design.nets.iter().find(|net| net.format == Format::BIT && net.name == "rst_n");
