@@ -31,7 +31,7 @@ module ${ name }$_single (
 <%- else %>
     wire accepted = 1'b1;
 <%- endif %>
-    wire arrives;
+    wire arrives;  // only the point that was offered can
 <%- for operand in operands %>
     reg  ${ operand.range }$held_${ operand.name }$;
 <%- endfor %>
@@ -58,7 +58,7 @@ module ${ name }$_single (
         end else begin
             offered <= busy ? offered & ~accepted : start;
             busy <= busy ? ~done : start;
-            done <= busy & ~done & arrives;
+            done <= arrives;
         end
     end
 
@@ -67,7 +67,7 @@ module ${ name }$_single (
         if (${ operand.name }$_write & ~busy) held_${ operand.name }$ <= ${ operand.name }$;
 <%- endfor %>
 <%- for result in results %>
-        if (busy & ~done & arrives) ${ result.name }$ <= new_${ result.name }$;
+        if (arrives) ${ result.name }$ <= new_${ result.name }$;
 <%- endfor %>
     end
 endmodule
