@@ -72,7 +72,7 @@ pub const GATEMATE: Family = Family {
     // tables is within 3 % of the number after synthesis. The worst is 12 % off.
     estimate: Estimate {
         weights: [1.76, 0.59, 0.66, 2.16, 1.09, 0.0],
-        scale: 1.27,
+        scale: 1.0,
         sign: 0,
         least_product: 9,
     },
