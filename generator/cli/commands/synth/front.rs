@@ -95,7 +95,7 @@ fn target(arguments: &Arguments, one: &Loaded) -> Result<Target> {
     let target = target.unwrap_or(Target::Ecp5);
     if !target.is_timed_fpga() {
         wrong_usage!(
-            "--target {target}: --front compares rates, but no frequency can be measured for {}; give ice40, \
+            "--target {target}: --front compares rates, but no frequency can be measured for {}; give ice40, ice40-hx, \
              ecp5, nexus or gatemate",
             target.title()
         );
