@@ -214,7 +214,8 @@ pub struct Family {
 /// places after the register of its address. The pass `memory_dff`, which each synthesis command runs, would move the table in
 /// front of this register, into a stage that has no time for it, and would add a register for each bit of the word.
 ///
-/// Words that a table does not have become undefined constants. The selection `clocked` contains the memories from which a wire leads to the input of a flip-flop.
+/// Words that a table does not have become undefined constants. The selection `clocked` contains the memories from which a wire
+/// leads to the input of a flip-flop.
 const TABLES: &str = "proc; flatten; opt_expr; opt_clean; opt; memory_collect; \
     select -set flip_flops t:$dff t:$dffe t:$sdff t:$sdffe t:$sdffce; \
     select -set clocked @flip_flops %ci1:+[D] w:* %i %ci1 t:$mem_v2 %i; \

@@ -261,19 +261,24 @@ pub(super) fn refused(
 /// The longest part of a formula that a remedy repeats, in bytes.
 const LONGEST_LIMITED_PART: usize = 60;
 
-/// Returns a condition for `where` that limits a part of a formula, with the part as the configuration writes it: `x - y > 0`. Returns
-/// `None` if the part is long.
+/// Returns a condition for `where` that limits a part of a formula, with the part as the configuration writes it, if it does: `x - y >
+/// 0`. Returns `None` if the part is long.
 fn condition(
     keys: &Keys,
     statement: &ExpressionStatement,
     result: Option<usize>,
-    PartToLimit { place, sign }: PartToLimit,
+    PartToLimit { place, formula, sign }: PartToLimit,
 ) -> Option<String> {
-    let entry = match place.text.checked_sub(1) {
-        Some(part) => keys.parts.0.get(part)?,
-        None => result_entry(keys, &statement.results[result?].name),
+    let part = match place {
+        None => lists::as_written(keys, &formula),
+        Some(place) => {
+            let entry = match place.text.checked_sub(1) {
+                Some(part) => keys.parts.0.get(part)?,
+                None => result_entry(keys, &statement.results[result?].name),
+            };
+            entry.text("formula")?.get(place.bytes)?.to_owned()
+        }
     };
-    let part = entry.text("formula")?.get(place.bytes)?;
     (part.len() <= LONGEST_LIMITED_PART).then(|| format!("{part} {sign} 0"))
 }
 

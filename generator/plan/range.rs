@@ -40,7 +40,10 @@ fn limited_part(part: &Expression, operands: &[(&str, Enclosure)]) -> Option<Par
         Kind::Unary(Function::Sqrt, operand) => (operand, ">="),
         _ => return None,
     };
-    limited.varies().then(|| PartToLimit { place: limited.span.clone(), sign })
+    // All parts of a function that is written out have the location of the call.
+    let is_written = limited.span != part.span && !limited.span.bytes.is_empty();
+    let place = is_written.then(|| limited.span.clone());
+    limited.varies().then(|| PartToLimit { place, formula: limited.python(), sign })
 }
 
 /// The reason why no interval for the values of a part was found.

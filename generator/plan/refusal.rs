@@ -22,8 +22,11 @@ pub struct PlanRefusal {
 /// A part of a formula that must be above 0, or not below 0, so that the formula has a value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PartToLimit {
-    /// The location of the part, as in [`PlanRefusal::place`].
-    pub place: TextSpan,
+    /// The location of the part, as in [`PlanRefusal::place`]. `None` if no text has the part, because a function that is written out
+    /// makes it: `normalize(n)` has the length of `n`.
+    pub place: Option<TextSpan>,
+    /// The part as a formula of the operands.
+    pub formula: String,
     /// `>` or `>=`.
     pub sign: &'static str,
 }
