@@ -32,7 +32,9 @@ pub use enclosure::Enclosure;
 pub use functions::FUNCTIONS;
 pub use list::{LONGEST_LIST, NumberList, NumberOrList};
 pub use literal::Literal;
-pub use parse::{NamedLists, parse, parse_condition, parse_condition_with_lists, parse_with_lists};
+pub use parse::{
+    EULER, NamedLists, parse, parse_condition, parse_condition_with_lists, parse_with_lists,
+};
 pub use print::CArithmetic;
 
 /// A formula, or a part of one, as a tree. Two formulas are equal if their kinds are equal, even at different locations.

@@ -12,7 +12,10 @@ use super::list::{self, NumberList, NumberOrList};
 use super::{Comparison, Expression, Fault, Function, Kind, Literal, Operator, TextSpan};
 
 /// The constants, each with the largest `f64` that is not above it.
-const CONSTANTS: [(&str, f64); 2] = [("pi", std::f64::consts::PI), ("e", std::f64::consts::E)];
+const CONSTANTS: [(&str, f64); 2] = [("pi", std::f64::consts::PI), (EULER, std::f64::consts::E)];
+
+/// The name of the base of the natural logarithm. An operand may have this name too, because `e` often is an error.
+pub const EULER: &str = "e";
 
 const SIGNS_OF_COMPARISONS: [&str; 6] = ["<", ">", "<=", ">=", "==", "!="];
 
@@ -39,7 +42,7 @@ pub fn parse(text: &str) -> Result<Expression, Fault> {
 }
 
 /// Parses a formula whose operands and parts can be lists: `lists` returns the list that a name stands for, or `None` for the name of
-/// a number. An operator on lists gives a list. For example, `2 * v` is `[2 * v_0, 2 * v_1]`.
+/// a number. It may return a number for a name that is otherwise a constant. An operator on lists gives a list. For example, `2 * v` is `[2 * v_0, 2 * v_1]`.
 ///
 /// # Errors
 /// Fails at the first mistake, with its location.
@@ -80,8 +83,8 @@ pub fn parse_condition_with_lists(text: &str, lists: NamedLists<'_>) -> Result<C
     }
 }
 
-/// A function that returns the list that a name stands for.
-pub type NamedLists<'t> = &'t dyn Fn(&str) -> Option<NumberList>;
+/// A function that returns the list that a name stands for, or the number if the name would otherwise be a constant, such as `e`.
+pub type NamedLists<'t> = &'t dyn Fn(&str) -> Option<NumberOrList>;
 
 /// Returns the ranges of bytes of all names, numbers and signs: `2*x` gives 0..1, 1..2 and 2..3. Fails at a character that no
 /// formula can have.
@@ -563,9 +566,15 @@ impl<'t> Parser<'t> {
         }
         self.at += 1;
         if self.peek() != "("
-            && let Some(list) = (self.lists)(&token)
+            && let Some(named) = (self.lists)(&token)
         {
-            return Ok(NumberOrList::List(NumberList { span: self.span(from).into(), ..list }));
+            let span = self.span(from);
+            return Ok(match named {
+                NumberOrList::List(list) => {
+                    NumberOrList::List(NumberList { span: span.into(), ..list })
+                }
+                NumberOrList::Number(number) => Expression::new(number.kind.clone(), span).into(),
+            });
         }
         if self.taken(&["["]) {
             // The index of a word is an integer. In Python, `int` makes it one.

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use super::{
-    CArithmetic, Enclosure, Expression, Fault, NumberList, RBig, parse, parse_condition,
-    parse_with_lists,
+    CArithmetic, EULER, Enclosure, Expression, Fault, NumberList, NumberOrList, RBig, parse,
+    parse_condition, parse_with_lists,
 };
 
 fn value(text: &str, x: f64) -> Enclosure {
@@ -82,12 +82,14 @@ fn written_out(text: &str) -> Result<Vec<String>, Fault> {
     let lists = |name: &str| {
         let (names, axes): (Vec<&str>, Option<&str>) = match name {
             "v" => (vec!["v0", "v1", "v2", "v3"], None),
+            EULER => return Some(Expression::operand(EULER).into()),
             "n" => (vec!["nx", "ny", "nz"], Some("xyz")),
             "l" => (vec!["lx", "ly", "lz"], Some("xyz")),
             _ => return None,
         };
         let elements = names.into_iter().map(|name| Arc::new(Expression::operand(name))).collect();
-        Some(NumberList { elements, axes: axes.map(str::to_owned), span: (0..0).into() })
+        let axes = axes.map(str::to_owned);
+        Some(NumberOrList::List(NumberList { elements, axes, span: (0..0).into() }))
     };
     let formula = parse_with_lists(text, &lists)?;
     Ok(formula.elements().iter().map(|element| element.python()).collect())
@@ -97,6 +99,7 @@ fn written_out(text: &str) -> Result<Vec<String>, Fault> {
 fn lists_become_formulas_of_their_numbers() {
     let cases = [
         ("2 * n", vec!["2 * nx", "2 * ny", "2 * nz"]),
+        ("e * pi", vec!["e * pi"]),
         ("-n ^ 2", vec!["-nx ** 2", "-ny ** 2", "-nz ** 2"]),
         ("dot(n, l)", vec!["nx * lx + ny * ly + nz * lz"]),
         ("dot(n, n)", vec!["nx ** 2 + ny ** 2 + nz ** 2"]),

@@ -11,8 +11,8 @@ use glint_base::config_error::ConfigError;
 use glint_base::fixed::{Format, MAX_WIDTH, exp2};
 use glint_config::{Config, Key, Problems, Schema, TableEntries, TableEntry, TextPattern, Value};
 use glint_formula::{
-    Comparison, Expression, Fault, Kind, NumberList, NumberOrList, Operator, TextSpan, parse,
-    parse_condition_with_lists, parse_with_lists,
+    Comparison, EULER, Expression, Fault, Kind, NumberList, NumberOrList, Operator, TextSpan,
+    parse, parse_condition_with_lists, parse_with_lists,
 };
 use glint_plan::{
     ExpressionStatement, Operation, PartToLimit, PlanRefusal, ProvedPlan, StatedOperand,
@@ -298,9 +298,14 @@ struct KnownNames {
 }
 
 impl KnownNames {
-    fn list(&self, name: &str) -> Option<NumberList> {
-        let found = self.lists.iter().find(|(own, _)| own == name);
-        found.map(|(_, list)| list.clone())
+    /// Returns the list with this name. If an operand or a part has the name `e`, returns it for this name, which otherwise is the base
+    /// of the natural logarithm.
+    fn list_or_constant(&self, name: &str) -> Option<NumberOrList> {
+        if let Some((_, list)) = self.lists.iter().find(|(own, _)| own == name) {
+            return Some(NumberOrList::List(list.clone()));
+        }
+        let is_named = self.is_operand(name) || self.parts.iter().any(|(own, _)| own == name);
+        (is_named && name == EULER).then(|| Expression::operand(name).into())
     }
 
     fn is_operand(&self, name: &str) -> bool {
@@ -311,8 +316,10 @@ impl KnownNames {
     fn all(&self, keys: &Keys) -> String {
         let mut names: Vec<&str> = Vec::new();
         names.extend(keys.operands.0.iter().map(|operand| operand.name.as_str()));
-        let is_known =
-            |name: &str| self.parts.iter().any(|(own, _)| own == name) || self.list(name).is_some();
+        let is_known = |name: &str| {
+            let is_list = self.lists.iter().any(|(own, _)| own == name);
+            is_list || self.parts.iter().any(|(own, _)| own == name)
+        };
         let parts = keys.parts.0.iter().map(|part| part.name.as_str());
         names.extend(parts.filter(|name| is_known(name)));
         names.join(", ")
@@ -676,7 +683,7 @@ fn formula(
     known: &KnownNames,
 ) -> Result<NumberOrList, ConfigError> {
     let text = text.unwrap_or_default();
-    let formula = parse_with_lists(text, &|name| known.list(name))
+    let formula = parse_with_lists(text, &|name| known.list_or_constant(name))
         .map_err(|fault| misread(key.to_owned(), fault, !known.lists.is_empty()))?;
     Ok(match formula {
         NumberOrList::Number(number) => {
@@ -749,8 +756,8 @@ fn promise(
     keys: &Keys,
     known: &KnownNames,
 ) -> Result<Comparison, ConfigError> {
-    let comparison =
-        parse_condition_with_lists(text, &|name| known.list(name)).map_err(|fault| {
+    let comparison = parse_condition_with_lists(text, &|name| known.list_or_constant(name))
+        .map_err(|fault| {
             let remedy = match known.lists.is_empty() {
                 true => "give a condition, for example `x < y` or `s > 0 and x != 0`",
                 false => "compare numbers, for example `n.x > 0`, `min(v) > 0` or `dot(n, n) > 0`",

@@ -5,7 +5,7 @@
 //! colliding name is refused, with a similar name that is free.
 
 use glint_base::identifier;
-use glint_formula::{Kind, parse};
+use glint_formula::{EULER, Kind, parse};
 
 /// Names that a core or its files use themselves, and for what.
 struct TakenNames {
@@ -119,7 +119,7 @@ fn obstacle(table: NamedTable, name: &str, others: &[(NamedTable, &str)]) -> Opt
     if let Err(fault) = identifier::check(name) {
         return Some(fault.to_owned());
     }
-    if parse(name).ok().is_none_or(|it| !matches!(it.kind, Kind::Operand(_))) {
+    if name != EULER && parse(name).ok().is_none_or(|it| !matches!(it.kind, Kind::Operand(_))) {
         return Some(format!("`{name}` is a constant of formulas"));
     }
     let in_lower_case = name.to_ascii_lowercase();

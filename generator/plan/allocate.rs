@@ -249,7 +249,7 @@ impl ExcessiveResult {
             "the error of `{}` {} for {}, with any widths of the parts",
             statement.results[self.result].name,
             self.worst.words(plan),
-            statement.place(&self.worst.limits)
+            statement.place(&self.worst.limits, &statement.operands_of(self.result))
         );
         let is_nearest = statement.results[self.result].error <= HALF_A_UNIT;
         let remedy = match self.worst.units.is_finite() {

@@ -624,7 +624,7 @@ fn chosen(condition: NodeId, cases: [NodeId; 2], values: &[NodeError]) -> NodeEr
 /// value for some of the operands.
 fn stated_value(node: &PlanNode, operands: &[(&str, Enclosure)]) -> Option<NodeError> {
     let StatedValue { formula, accuracy } = node.stated.as_ref()?;
-    let ideal = formula.enclose(operands).ok().filter(|value| value.is_finite())?;
+    let ideal = formula.values(operands).filter(|value| value.is_finite())?;
     let half = exp2(-node.format.frac) / 2.0;
     Some(match accuracy {
         ValueAccuracy::Nearest => NodeError::new(ideal, Enclosure::between(-half, half)),
@@ -643,7 +643,7 @@ fn taken_case(
     let bit = fixed(values[condition.0].actual)?;
     let taken = values[cases[bit as usize].0];
     let stated = node.stated.as_ref()?;
-    let ideal = stated.formula.enclose(operands).ok().filter(|value| value.is_finite())?;
+    let ideal = stated.formula.values(operands).filter(|value| value.is_finite())?;
     let is_known = taken.actual.is_finite();
     is_known.then(|| NodeError { ideal, error: taken.actual - ideal, actual: taken.actual })
 }

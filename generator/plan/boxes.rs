@@ -9,7 +9,7 @@
 //! box, or a function that may have no value in the box.
 
 use std::cmp::Ordering;
-use std::collections::BinaryHeap;
+use std::collections::{BTreeSet, BinaryHeap};
 
 use glint_base::fixed::exp2;
 
@@ -95,11 +95,16 @@ pub(super) struct ErrorSearch {
 /// A search for each result.
 pub(super) type ErrorSearches = Vec<ErrorSearch>;
 
-/// Returns searches that consist of the whole domain.
+/// Returns searches that consist of the whole domain of the operands on which a result depends.
 pub(super) fn undivided(statement: &ExpressionStatement) -> ErrorSearches {
-    let domain = statement.domain();
-    let examples = if has_few_operands(statement) { Vec::new() } else { corners(&domain) };
-    vec![ErrorSearch { boxes: vec![domain], examples }; statement.results.len()]
+    let mut searches = Vec::new();
+    for result in 0..statement.results.len() {
+        let named = statement.operands_of(result);
+        let domain = statement.domain_of(&named);
+        let examples = if named.len() <= FEW_OPERANDS { Vec::new() } else { corners(&domain) };
+        searches.push(ErrorSearch { boxes: vec![domain], examples });
+    }
+    searches
 }
 
 /// Returns whether the domain of a statement is divided as often as the caller wishes.
@@ -107,10 +112,10 @@ pub(super) fn has_few_operands(statement: &ExpressionStatement) -> bool {
     statement.operands.len() <= FEW_OPERANDS
 }
 
-/// Returns the number of divisions of the domain that take an acceptable time: `wished` with up to 3 operands, a 16th of it with 4, and
-/// half as many with each further operand.
-pub(super) fn affordable(statement: &ExpressionStatement, wished: usize) -> usize {
-    affordable_with(statement.operands.len().saturating_sub(FEW_OPERANDS), wished)
+/// Returns the number of divisions of the domain of `operands` operands that take an acceptable time: `wished` with up to 3 operands,
+/// a 16th of it with 4, and half as many with each further operand.
+pub(super) fn affordable(operands: usize, wished: usize) -> usize {
+    affordable_with(operands.saturating_sub(FEW_OPERANDS), wished)
 }
 
 /// Returns the number of divisions for an expression with `more` operands than [`FEW_OPERANDS`].
@@ -149,6 +154,8 @@ pub(super) struct ResultProof<'p> {
     pub(super) needed: Vec<bool>,
     /// For each node, the node at which the branches of its values end ([`joins`]).
     joins: Vec<Option<NodeId>>,
+    /// The names of the operands on which the result or its promise depends.
+    named: BTreeSet<&'p str>,
 }
 
 impl<'p> ResultProof<'p> {
@@ -159,17 +166,17 @@ impl<'p> ResultProof<'p> {
     ) -> Self {
         let needed = plan.needed_for(result);
         let joins = joins(plan, &needed, plan.proved[result]);
-        Self { statement, plan, result, needed, joins }
+        Self { statement, plan, result, needed, joins, named: statement.operands_of(result) }
     }
 
     /// Returns whether an error is computed fast: with few operands, and without several integer parts.
     fn is_fast(&self) -> bool {
-        has_few_operands(self.statement) && self.joins.iter().all(Option::is_none)
+        self.named.len() <= FEW_OPERANDS && self.joins.iter().all(Option::is_none)
     }
 
     /// Returns the number of divisions that take an acceptable time. Several integer parts count as an operand more.
     fn affordable(&self, wished: usize) -> usize {
-        let more = self.statement.operands.len().saturating_sub(FEW_OPERANDS);
+        let more = self.named.len().saturating_sub(FEW_OPERANDS);
         affordable_with(if self.is_fast() { 0 } else { more.max(1) }, wished)
     }
 
@@ -177,7 +184,7 @@ impl<'p> ResultProof<'p> {
     /// times, or until this box is a single combination. No operands have a larger error than this box states. Returns `None`
     /// if the result is promised for no operands.
     pub(super) fn worst(&self, enough: f64, divisions: usize) -> Option<BoxError> {
-        let mut open = self.errors_in(&[self.statement.domain()]);
+        let mut open = self.errors_in(&[self.statement.domain_of(&self.named)]);
         let divisions = self.affordable(divisions);
         self.divide(&mut open, divisions, &mut |worst| worst.units <= enough);
         open.pop()
@@ -188,7 +195,7 @@ impl<'p> ResultProof<'p> {
     /// the result is promised for no operands, and infinity if no limit was found.
     pub(super) fn whole_units(&self, unit: f64, divisions: usize) -> Option<f64> {
         let whole = |error: &BoxError| (error.units / unit).ceil();
-        let mut open = self.errors_in(&[self.statement.domain()]);
+        let mut open = self.errors_in(&[self.statement.domain_of(&self.named)]);
         let divisions = self.affordable(divisions);
         self.divide(&mut open, divisions, &mut |worst| {
             let single = self.error_in(middle_of(&worst.limits));

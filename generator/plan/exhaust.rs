@@ -33,6 +33,23 @@ pub(super) fn largest_errors(
         .try_reduce(none, larger)
 }
 
+/// Returns the largest error of each result, in units of its last bit, over `count` combinations of operands for which the result is
+/// promised. Errors at other combinations can be larger. A combination for which a formula has no value is left out.
+pub(super) fn sampled_errors(
+    statement: &ExpressionStatement,
+    plan: &ExpressionPlan,
+    count: u64,
+) -> Vec<f64> {
+    let mut largest = vec![0.0; statement.results.len()];
+    for raw in statement.spread_operands(count) {
+        let mut errors = largest.clone();
+        if add_errors(statement, plan, &raw, &mut errors).is_ok() {
+            largest = errors;
+        }
+    }
+    largest
+}
+
 /// Returns the largest error of each result over all combinations in which the first operand has the raw value `first`, in
 /// units of the result's last bit. `rest` has the domains of the other operands. Fails if a formula has no value for a
 /// combination.
@@ -101,7 +118,11 @@ fn without_value(
     fault: Fault,
 ) -> PlanRefusal {
     let limits: Vec<(i64, i64)> = raw.iter().map(|raw| (*raw, *raw)).collect();
-    let message = format!("at {}: {}", statement.place(&limits), fault.message);
+    let message = format!(
+        "at {}: {}",
+        statement.place(&limits, &statement.operands_of(result)),
+        fault.message
+    );
     let remedy = "exclude these operands with `where`";
     PlanRefusal::new(message, remedy).at(&fault.span).of_result(result)
 }

@@ -26,16 +26,38 @@ const LARGEST_EXPONENT: u32 = 8;
 /// The most cases of choices in a formula whose conditions are read as facts.
 const MOST_CASES: usize = 64;
 
-/// The exponents of all operands in a product of powers, in the order of the statement.
-type Exponents = Vec<u32>;
+/// The exponents above 0 of the variables in a product of powers. A variable is an operand, or a minimum, a maximum or an absolute value
+/// of polynomials; its key is its text. The product without variables is 1.
+type Exponents = BTreeMap<String, u32>;
 
-/// A polynomial of the operands of a statement, with exact coefficients other than 0.
-#[derive(Clone, Debug, PartialEq)]
-struct OperandPolynomial(BTreeMap<Exponents, RBig>);
+/// A polynomial of operands, minima, maxima and absolute values, with exact coefficients other than 0.
+#[derive(Clone, Debug)]
+struct OperandPolynomial {
+    terms: BTreeMap<Exponents, RBig>,
+    /// The formulas of the variables, by their texts.
+    variables: BTreeMap<String, Expression>,
+}
+
+impl PartialEq for OperandPolynomial {
+    fn eq(&self, other: &Self) -> bool {
+        self.terms == other.terms
+    }
+}
 
 impl OperandPolynomial {
     fn zero() -> Self {
-        Self(BTreeMap::new())
+        Self { terms: BTreeMap::new(), variables: BTreeMap::new() }
+    }
+
+    fn number(value: RBig) -> Self {
+        Self::term(Exponents::new(), value)
+    }
+
+    fn variable(formula: &Expression) -> Self {
+        let name = formula.python();
+        let mut variable = Self::term(Exponents::from([(name.clone(), 1)]), RBig::ONE);
+        variable.variables.insert(name, formula.clone());
+        variable
     }
 
     fn term(exponents: Exponents, coefficient: RBig) -> Self {
@@ -45,10 +67,10 @@ impl OperandPolynomial {
     }
 
     fn add_term(&mut self, exponents: Exponents, coefficient: RBig) {
-        let before = self.0.remove(&exponents).unwrap_or(RBig::ZERO);
+        let before = self.terms.remove(&exponents).unwrap_or(RBig::ZERO);
         let sum = before + coefficient;
         if sum != RBig::ZERO {
-            self.0.insert(exponents, sum);
+            self.terms.insert(exponents, sum);
         }
     }
 
@@ -57,19 +79,31 @@ impl OperandPolynomial {
         if formula.size() > MOST_PARTS {
             return None;
         }
-        let count = statement.operands.len();
         if !formula.varies() {
-            return Some(Self::term(vec![0; count], formula.rational()?));
+            return Some(Self::number(formula.rational()?));
         }
         let of = |part: &Expression| Self::of(part, statement);
         let polynomial = match &formula.kind {
-            Kind::Operand(name) => {
-                let number = statement.operands.iter().position(|it| it.name == *name)?;
-                let mut exponents = vec![0; count];
-                exponents[number] = 1;
-                Self::term(exponents, RBig::ONE)
+            Kind::Operand(name) if statement.operands.iter().any(|it| it.name == *name) => {
+                Self::variable(formula)
             }
             Kind::Unary(Function::Negate, a) => of(a)?.times_number(&RBig::from(-1)),
+            Kind::Unary(Function::Abs, a) => {
+                let operands = statement.enclosed_operands(&statement.domain());
+                let values = a.enclose(&operands).ok()?;
+                let limits = order::limits(a, &operands);
+                match () {
+                    () if values.low >= 0.0 || limits.low >= 0.0 => of(a)?,
+                    () if values.high <= 0.0 || limits.high <= 0.0 => {
+                        of(a)?.times_number(&RBig::from(-1))
+                    }
+                    () => of(a).map(|_| Self::variable(formula))?,
+                }
+            }
+            Kind::Binary(Operator::Min | Operator::Max, a, b) => {
+                let _ = (of(a)?, of(b)?);
+                Self::variable(formula)
+            }
             Kind::Binary(Operator::Add, a, b) => of(a)?.plus(&of(b)?),
             Kind::Binary(Operator::Sub, a, b) => of(a)?.minus(&of(b)?),
             Kind::Binary(Operator::Mul, a, b) => of(a)?.times(&of(b)?)?,
@@ -84,7 +118,7 @@ impl OperandPolynomial {
                     return None;
                 }
                 let base = of(a)?;
-                let mut power = Self::term(vec![0; count], RBig::ONE);
+                let mut power = Self::number(RBig::ONE);
                 for _ in 0..exponent {
                     power = power.times(&base)?;
                 }
@@ -92,12 +126,13 @@ impl OperandPolynomial {
             }
             _ => return None,
         };
-        (polynomial.0.len() <= MOST_TERMS).then_some(polynomial)
+        (polynomial.terms.len() <= MOST_TERMS).then_some(polynomial)
     }
 
     fn plus(&self, other: &Self) -> Self {
         let mut sum = self.clone();
-        for (exponents, coefficient) in &other.0 {
+        sum.variables.extend(other.variables.clone());
+        for (exponents, coefficient) in &other.terms {
             sum.add_term(exponents.clone(), coefficient.clone());
         }
         sum
@@ -108,48 +143,73 @@ impl OperandPolynomial {
     }
 
     fn times_number(&self, factor: &RBig) -> Self {
-        let terms = self.0.iter();
-        Self(terms.map(|(exponents, it)| (exponents.clone(), it.clone() * factor)).collect())
+        let mut product = Self { terms: BTreeMap::new(), variables: self.variables.clone() };
+        for (exponents, coefficient) in &self.terms {
+            product.add_term(exponents.clone(), coefficient.clone() * factor);
+        }
+        product
     }
 
     /// Returns the product, or `None` if it has too many terms.
     fn times(&self, other: &Self) -> Option<Self> {
-        let mut product = Self::zero();
-        for (left, a) in &self.0 {
-            for (right, b) in &other.0 {
-                let exponents = left.iter().zip(right).map(|(a, b)| a + b).collect();
+        let mut product = Self { terms: BTreeMap::new(), variables: self.variables.clone() };
+        product.variables.extend(other.variables.clone());
+        for (left, a) in &self.terms {
+            for (right, b) in &other.terms {
+                let mut exponents = left.clone();
+                for (variable, exponent) in right {
+                    *exponents.entry(variable.clone()).or_insert(0) += exponent;
+                }
                 product.add_term(exponents, a.clone() * b);
             }
         }
-        (product.0.len() <= MOST_TERMS).then_some(product)
+        (product.terms.len() <= MOST_TERMS).then_some(product)
     }
 
     /// Returns whether the polynomial depends on no operand.
     fn is_number(&self) -> bool {
-        self.0.keys().all(|exponents| is_constant(exponents))
+        self.terms.keys().all(Exponents::is_empty)
+    }
+
+    /// Returns the number whose absolute value the polynomial is; `None` for another polynomial.
+    fn size_of_number(&self) -> Option<&Expression> {
+        let mut terms = self.terms.iter();
+        let (exponents, coefficient) = terms.next()?;
+        let (variable, exponent) = exponents.iter().next()?;
+        let is_variable = exponents.len() == 1 && *exponent == 1 && *coefficient == RBig::ONE;
+        if terms.next().is_some() || !is_variable {
+            return None;
+        }
+        match &self.variables[variable].kind {
+            Kind::Unary(Function::Abs, number) => Some(number),
+            _ => None,
+        }
     }
 
     /// Returns a polynomial m and a rest r with `self` = m · `divisor` + r. First tries a number m with which the rest is a number
-    /// too, and then a division by an operand that `divisor` has only to the first power and without another operand. Returns
+    /// too, and then a division by a variable that `divisor` has only to the first power and without another variable. Returns
     /// `None` if neither is possible, or if m is 0.
     fn divided_by(&self, divisor: &Self) -> Option<(Self, Self)> {
         let (exponents, leading) =
-            divisor.0.iter().find(|(exponents, _)| !is_constant(exponents))?;
-        if let Some(own) = self.0.get(exponents) {
+            divisor.terms.iter().find(|(exponents, _)| !exponents.is_empty())?;
+        if let Some(own) = self.terms.get(exponents) {
             let factor = own.clone() / leading;
             let rest = self.minus(&divisor.times_number(&factor));
             if rest.is_number() {
-                return Some((Self::term(vec![0; exponents.len()], factor), rest));
+                return Some((Self::number(factor), rest));
             }
         }
-        let operand = (0..exponents.len()).find(|operand| divisor.is_linear_in(*operand))?;
-        let mut unit = vec![0; exponents.len()];
-        unit[operand] = 1;
-        let slope = divisor.0.get(&unit)?;
+        let variable = divisor.variables.keys().find(|variable| divisor.is_linear_in(variable))?;
+        let unit = Exponents::from([(variable.clone(), 1)]);
+        let slope = divisor.terms.get(&unit)?;
         let (mut factor, mut rest) = (Self::zero(), self.clone());
-        while let Some((highest, coefficient)) = rest.highest_in(operand) {
-            let mut lower = highest;
-            lower[operand] -= 1;
+        factor.variables = self.variables.clone();
+        factor.variables.extend(divisor.variables.clone());
+        while let Some((mut lower, coefficient)) = rest.highest_in(variable) {
+            let exponent = lower.remove(variable)?;
+            if exponent > 1 {
+                lower.insert(variable.clone(), exponent - 1);
+            }
             let step = Self::term(lower, coefficient / slope);
             rest = rest.minus(&step.times(divisor)?);
             factor = factor.plus(&step);
@@ -157,36 +217,48 @@ impl OperandPolynomial {
         (factor != Self::zero()).then_some((factor, rest))
     }
 
-    /// Returns whether exactly one term has the operand, to the first power and without another operand.
-    fn is_linear_in(&self, operand: usize) -> bool {
-        let mut terms = self.0.keys().filter(|exponents| exponents[operand] > 0);
-        let only = terms.next().is_some_and(|exponents| exponents.iter().sum::<u32>() == 1);
+    /// Returns whether exactly one term has the variable, to the first power and without another variable.
+    fn is_linear_in(&self, variable: &str) -> bool {
+        let mut terms = self.terms.keys().filter(|exponents| exponents.contains_key(variable));
+        let only = terms.next().is_some_and(|exponents| exponents.values().sum::<u32>() == 1);
         only && terms.next().is_none()
     }
 
-    /// Returns the exponents and the coefficient of a term with the largest exponent of the operand; `None` if no term has it.
-    fn highest_in(&self, operand: usize) -> Option<(Exponents, RBig)> {
-        let terms = self.0.iter().filter(|(exponents, _)| exponents[operand] > 0);
-        let highest = terms.max_by_key(|(exponents, _)| exponents[operand])?;
+    /// Returns the exponents and the coefficient of a term with the largest exponent of the variable; `None` if no term has it.
+    fn highest_in(&self, variable: &str) -> Option<(Exponents, RBig)> {
+        let terms = self.terms.iter().filter(|(exponents, _)| exponents.contains_key(variable));
+        let highest = terms.max_by_key(|(exponents, _)| exponents[variable])?;
         Some((highest.0.clone(), highest.1.clone()))
     }
 
     /// Returns a number that divides every value of the polynomial, for operands of the statement.
     fn step(&self, statement: &ExpressionStatement) -> RBig {
         let mut step = RBig::ZERO;
-        for (exponents, coefficient) in &self.0 {
-            let mut bits = 0;
-            for (operand, exponent) in statement.operands.iter().zip(exponents) {
-                bits += operand.format.frac as isize * *exponent as isize;
+        for (exponents, coefficient) in &self.terms {
+            let mut of_term = coefficient.clone();
+            for (variable, exponent) in exponents {
+                let of_variable = step_of(&self.variables[variable], statement);
+                of_term *= of_variable.pow(*exponent as isize);
             }
-            step = common_divisor(step, coefficient.clone() * RBig::from(2).pow(-bits));
+            step = common_divisor(step, of_term);
         }
         step
     }
 }
 
-fn is_constant(exponents: &[u32]) -> bool {
-    exponents.iter().all(|exponent| *exponent == 0)
+/// Returns a number that divides every value of a variable of polynomials.
+fn step_of(variable: &Expression, statement: &ExpressionStatement) -> RBig {
+    if let Kind::Operand(name) = &variable.kind {
+        let operand = statement.operands.iter().find(|operand| operand.name == *name);
+        let frac = operand.map_or(0, |operand| operand.format.frac as isize);
+        return RBig::from(2).pow(-frac);
+    }
+    let mut step = RBig::ZERO;
+    for part in variable.parts() {
+        let Some(polynomial) = OperandPolynomial::of(part, statement) else { return RBig::ZERO };
+        step = common_divisor(step, polynomial.step(statement));
+    }
+    step
 }
 
 /// Returns the largest number that divides both numbers. For example, 3/4 and 1/2 give 1/4.
@@ -256,6 +328,13 @@ fn single_comparisons(comparison: &Comparison, outcome: bool) -> Vec<(Comparison
         | (_, Kind::Binary(Operator::Min, a, b), false) => {
             [beside(left, a), beside(left, b)].concat()
         }
+        // A size of at most c means that the number is from −c to c.
+        (_, Kind::Unary(Function::Abs, a), true) => {
+            [beside(left, a), beside(left, &negated(a))].concat()
+        }
+        (Kind::Unary(Function::Abs, a), _, false) => {
+            [beside(a, right), beside(&negated(a), right)].concat()
+        }
         (Kind::If(condition, yes, no), _, true) => {
             let without =
                 Comparison { left: no.clone(), right: right.clone(), or_equal: *or_equal };
@@ -269,6 +348,11 @@ fn single_comparisons(comparison: &Comparison, outcome: bool) -> Vec<(Comparison
         }
         _ => vec![(comparison.clone(), outcome)],
     }
+}
+
+fn negated(part: &Arc<Expression>) -> Arc<Expression> {
+    let kind = Kind::Unary(Function::Negate, part.clone());
+    Arc::new(Expression::new(kind, part.span.clone()))
 }
 
 /// Returns whether a result is promised only where `a` is below `b`.
@@ -301,25 +385,56 @@ fn facts_of(statement: &ExpressionStatement, uses: &PartUses) -> Vec<Fact> {
     {
         facts.extend(Fact::all_of(promise, true, statement));
     }
-    facts
+    with_signs(facts, statement)
+}
+
+/// Adds the facts that follow from the size and the sign of a number: from `abs(x - y) >= 1` and `x - y >= 0` follows
+/// `x - y >= 1`.
+fn with_signs(facts: Vec<Fact>, statement: &ExpressionStatement) -> Vec<Fact> {
+    let mut all = facts.clone();
+    for Fact { polynomial, least } in &facts {
+        let Some(number) = polynomial.size_of_number() else { continue };
+        let Some(number) = OperandPolynomial::of(number, statement) else { continue };
+        for signed in [number.times_number(&RBig::from(-1)), number] {
+            if is_not_negative(&signed, &facts) {
+                all.push(Fact { polynomial: signed, least: least.clone() });
+            }
+        }
+    }
+    all
+}
+
+/// Returns whether a fact, or the sum of two facts, states that a polynomial is not below 0.
+fn is_not_negative(polynomial: &OperandPolynomial, facts: &[Fact]) -> bool {
+    let states = |polynomial: &OperandPolynomial| {
+        facts.iter().any(|it| it.polynomial == *polynomial && it.least >= RBig::ZERO)
+    };
+    let mut parts = facts.iter().filter(|it| it.least >= RBig::ZERO);
+    states(polynomial) || parts.any(|part| states(&polynomial.minus(&part.polynomial)))
 }
 
 /// A polynomial whose coefficients are intervals in `f64`.
-struct EnclosedPolynomial(Vec<(Exponents, Enclosure)>);
+#[derive(Clone, Debug)]
+struct EnclosedPolynomial {
+    terms: Vec<(Exponents, Enclosure)>,
+    variables: BTreeMap<String, Expression>,
+}
 
 impl EnclosedPolynomial {
     fn new(polynomial: &OperandPolynomial) -> Self {
-        let terms = polynomial.0.iter();
-        Self(terms.map(|(exponents, it)| (exponents.clone(), enclosed(it))).collect())
+        let terms = polynomial.terms.iter();
+        let terms = terms.map(|(exponents, it)| (exponents.clone(), enclosed(it))).collect();
+        Self { terms, variables: polynomial.variables.clone() }
     }
 
-    /// Returns an interval that contains all values for operands within limits, which are in the order of the statement.
+    /// Returns an interval that contains all values for operands within limits.
     fn values(&self, operands: &[(&str, Enclosure)]) -> Enclosure {
         let mut sum = Enclosure::exactly(0.0);
-        for (exponents, coefficient) in &self.0 {
+        for (exponents, coefficient) in &self.terms {
             let mut product = *coefficient;
-            for ((_, operand), exponent) in operands.iter().zip(exponents) {
-                product = product * power(*operand, *exponent);
+            for (variable, exponent) in exponents {
+                let value = self.variables[variable].enclose(operands).unwrap_or(ANYTHING);
+                product = product * power(value, *exponent);
             }
             sum = sum + product;
         }
@@ -350,6 +465,7 @@ fn power(base: Enclosure, exponent: u32) -> Enclosure {
 }
 
 /// A part that is a multiple of a fact's polynomial plus a rest.
+#[derive(Clone, Debug)]
 struct LimitedPart {
     factor: EnclosedPolynomial,
     rest: EnclosedPolynomial,
@@ -372,6 +488,7 @@ impl LimitedPart {
 }
 
 /// A part of a formula with facts about it, and the name of the operand that replaces it.
+#[derive(Clone, Debug)]
 struct GuardedPart {
     name: String,
     part: Expression,
@@ -384,17 +501,23 @@ impl GuardedPart {
     /// Returns an interval that contains the values of the part, wherever its facts hold. Returns `None` if the formula matters for
     /// none of the operands within the limits.
     fn values(&self, operands: &[(&str, Enclosure)]) -> Option<Enclosure> {
-        let Enclosure { mut low, mut high } = self.part.enclose(operands).unwrap_or(ANYTHING);
+        let values = self.part.enclose(operands).unwrap_or(ANYTHING);
+        let mut stated = ANYTHING;
         for fact in &self.facts {
             let limits = fact.limits(operands);
-            low = low.max(limits.low);
-            high = high.min(limits.high);
+            stated.low = stated.low.max(limits.low);
+            stated.high = stated.high.min(limits.high);
         }
+        let (low, high) = (values.low.max(stated.low), values.high.min(stated.high));
         match (low <= high, self.is_always) {
             (true, _) => Some(Enclosure::between(low, high)),
             (false, true) => None,
-            // The case with the part is taken for none of these operands, so that any value will do.
-            (false, false) => Some(Enclosure::exactly(if low.is_finite() { low } else { high })),
+            // The case with the part is taken for none of these operands, so that any value will do. A stated limit is a value with
+            // which the case has a value of its own: no divisor is 0.
+            (false, false) => {
+                let limit = if stated.low.is_finite() { stated.low } else { stated.high };
+                Some(Enclosure::exactly(limit))
+            }
         }
     }
 }
@@ -402,7 +525,8 @@ impl GuardedPart {
 const ANYTHING: Enclosure = Enclosure::between(f64::NEG_INFINITY, f64::INFINITY);
 
 /// A formula whose value matters only under some conditions, in which an operand replaces each part with a fact about it.
-pub(super) struct GuardedFormula {
+#[derive(Clone, Debug)]
+pub struct GuardedFormula {
     formula: Arc<Expression>,
     parts: Vec<GuardedPart>,
 }
@@ -501,6 +625,11 @@ impl GuardRewriting<'_> {
                 Kind::Binary(*operator, a, self.rewritten(b, facts, is_case, known))
             }
             Kind::If(comparison, yes, no) => {
+                if let Ok(Some(outcome)) = comparison.holds(&self.operands) {
+                    // No operand takes the other case.
+                    let case = if outcome { yes } else { no };
+                    return self.rewritten(case, facts, is_case, known);
+                }
                 let left = self.rewritten(&comparison.left, facts, is_case, known);
                 let right = self.rewritten(&comparison.right, facts, is_case, known);
                 let yes = self.case(yes, facts, (comparison, true), is_case, known);
@@ -528,7 +657,7 @@ impl GuardRewriting<'_> {
             return self.rewritten(case, facts, is_case, known);
         }
         self.cases += 1;
-        let all = [facts, &own].concat();
+        let all = with_signs([facts, &own].concat(), self.statement);
         self.rewritten(case, &all, true, &mut HashMap::new())
     }
 }
@@ -547,10 +676,20 @@ pub(super) fn has_fact(
     !limited(statement, &facts_of(statement, uses), part).is_empty()
 }
 
-/// Returns the limits of a part that follow from facts. An operand has none: boxes of operands show its values.
+/// Returns whether a part is an operand, or a minimum, a maximum or an absolute value.
+fn is_variable(part: &Expression) -> bool {
+    matches!(
+        part.kind,
+        Kind::Operand(_)
+            | Kind::Binary(Operator::Min | Operator::Max, ..)
+            | Kind::Unary(Function::Abs, _)
+    )
+}
+
+/// Returns the limits of a part that follow from facts. A variable of polynomials has none: boxes of operands show its values.
 fn limited(statement: &ExpressionStatement, facts: &[Fact], part: &Expression) -> Vec<LimitedPart> {
     let mut limits = Vec::new();
-    if facts.is_empty() || matches!(part.kind, Kind::Operand(_)) || !part.varies() {
+    if facts.is_empty() || is_variable(part) || !part.varies() {
         return limits;
     }
     let Some(polynomial) = OperandPolynomial::of(part, statement) else { return limits };

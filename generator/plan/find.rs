@@ -15,7 +15,7 @@ use glint_base::fixed::MAX_WIDTH;
 use super::allocate::{Allocation, allocated, largest_excess};
 use super::boxes::ResultProof;
 use super::cost::cells_of_function;
-use super::exhaust::largest_errors;
+use super::exhaust::{largest_errors, sampled_errors};
 use super::lower::{
     FoundPolynomials, Guards, PlanSearch, PlanStyle, TableRule, has_functions_of_operands, lowered,
 };
@@ -29,6 +29,9 @@ pub(super) const DIVISIONS: usize = 4000;
 
 /// The plan is computed for every combination of operands if there are at most 2 to this power.
 const MOST_COMBINATIONS: u32 = 20;
+
+/// The number of combinations of operands at which a proof by intervals is compared with the formulas, if there are more of them.
+const SAMPLES: u64 = 512;
 
 /// The styles that the planner tries. The final rounding has an error of up to half a unit. If a table has an error a little
 /// below one unit, a result from a single table may keep its bound with one guard bit less.
@@ -192,18 +195,12 @@ fn find_with(
     if statement.combinations() <= 1 << MOST_COMBINATIONS {
         proof = ProofKind::EveryCombination;
         let largest = largest_errors(statement, &plan)?;
-        for (number, (bound, largest)) in bounds.iter_mut().zip(largest).enumerate() {
-            if largest > *bound + EVALUATION_ERROR {
-                let name = &statement.results[number].name;
-                let message = format!(
-                    "the two proofs of the error of `{name}` disagree: by intervals it is at most {bound:.4} units, and a \
-                     combination of operands has {largest:.4}"
-                );
-                let remedy = "this is a fault of Glint: please report the formula, and write it in another way";
-                return Err(PlanRefusal::new(message, remedy).of_result(number));
-            }
+        check_agreement(statement, &enclosed, &largest)?;
+        for (bound, largest) in bounds.iter_mut().zip(largest) {
             *bound = bound.min(largest);
         }
+    } else {
+        check_agreement(statement, &enclosed, &sampled_errors(statement, &plan, SAMPLES))?;
     }
     let mut shares = Vec::new();
     for of_result in error_shares(statement, &whole, divisions) {
@@ -215,6 +212,28 @@ fn find_with(
     }
     let statement = statement.clone();
     Ok(ProvedPlan { statement, plan, whole_functions: whole, bounds, enclosed, shares, proof })
+}
+
+/// Checks that no combination of operands has an error above the bound of the proof by intervals. `largest` has the largest error of
+/// each result that was found. Fails if a rewriting of a formula or a rule of the proof is wrong.
+fn check_agreement(
+    statement: &ExpressionStatement,
+    bounds: &[f64],
+    largest: &[f64],
+) -> Result<(), PlanRefusal> {
+    for (number, (bound, largest)) in bounds.iter().zip(largest).enumerate() {
+        if *largest > *bound + EVALUATION_ERROR {
+            let name = &statement.results[number].name;
+            let message = format!(
+                "the two proofs of the error of `{name}` disagree: by intervals it is at most {bound:.4} units, and a \
+                 combination of operands has {largest:.4}"
+            );
+            let remedy =
+                "this is a fault of Glint: please report the formula, and write it in another way";
+            return Err(PlanRefusal::new(message, remedy).of_result(number));
+        }
+    }
+    Ok(())
 }
 
 /// Checks that one multiplier can compute all products of a plan. Fails if a product would have more bits than a net; the refusal
@@ -463,7 +482,7 @@ pub(super) fn enclosed_errors(
                 "the error of `{}` {} for {}",
                 stated.name,
                 worst.words(plan),
-                statement.place(&worst.limits)
+                statement.place(&worst.limits, &statement.operands_of(result))
             );
             let remedy = match worst.units.is_finite() {
                 true => "allow a larger error",

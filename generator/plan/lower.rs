@@ -8,9 +8,11 @@
 mod choice;
 mod direction;
 mod division;
+mod divisor;
 mod exponential;
 mod nearest;
 mod quotient;
+mod rational;
 mod root;
 mod shape;
 mod wave;
@@ -24,7 +26,7 @@ use glint_base::fixed::{Format, Rounding, exp2, nearest, shifted_left};
 use glint_formula::{Comparison, Enclosure, Expression, Function, Kind, Operator};
 
 use super::boxes::ResultProof;
-use super::facts::{has_fact, is_polynomial};
+use super::facts::{GuardedFormula, has_fact};
 use super::node::{Approximation, NodeId, Operation, PlanNode, StatedValue, ValueAccuracy};
 use super::order;
 use super::plan::ExpressionPlan;
@@ -34,9 +36,11 @@ use super::statement::{
     ExpressionStatement, HALF_A_UNIT, StatedOverflow, StatedResult, StatedWidth,
 };
 use super::uses::{PartUses, reads_always};
+use nearest::has_no_function;
+use rational::{QuotientParts, ceiling_of, floor_of_quotient, rational_quotient};
 use shape::{
-    core_of, dominators, dyadic, floor_of, is_limit_of, is_size_of, modulus_exponent, number,
-    power_of_two, products_of,
+    core_of, dominators, dyadic, floor_of, is_limit_of, is_logarithm_of_multiple, is_size_of,
+    modulus_exponent, number, power_of_two, products_of,
 };
 
 /// The widest operand of a table of polynomials, in bits. A wider one is shortened first.
@@ -430,11 +434,27 @@ impl<'s> Lowering<'s> {
         Ok(node)
     }
 
-    /// Returns the known node of a part that has the right value for the present uses, and that has limits or none.
+    /// Returns the known node of a part that has the right value for the present uses, and that has limits or none. The limits are as
+    /// narrow as those that follow from the present uses.
     fn known_part(&self, part: &Expression, is_limited: bool) -> Option<&KnownPart> {
         self.known.iter().find(|known| {
-            known.is_limited == is_limited && known.part == *part && known.uses.contain(&self.uses)
+            known.is_limited == is_limited
+                && known.part == *part
+                && known.uses.contain(&self.uses)
+                && (!is_limited || self.has_same_range(known))
         })
+    }
+
+    /// Returns whether the interval of a known part is the same for its uses and for the present ones, or one of them is not known.
+    fn has_same_range(&self, known: &KnownPart) -> bool {
+        if known.uses.conditions == self.uses.conditions {
+            return true;
+        }
+        let known_range = self.ranges.range_of(self.statement, &known.uses, &known.part);
+        match (known_range, self.range(&known.part)) {
+            (Ok(known_range), Ok(range)) => known_range == range,
+            _ => true,
+        }
     }
 
     /// Returns the operands with the limits of their domains.
@@ -472,6 +492,12 @@ impl<'s> Lowering<'s> {
         self.uses.conditions.is_empty() && promises.all(|promise| Some(promise) == first)
     }
 
+    /// Returns the stated value of a part whose value matters for `uses` alone.
+    fn stated(&self, part: &Expression, uses: &PartUses, accuracy: ValueAccuracy) -> StatedValue {
+        let formula = Arc::new(GuardedFormula::new(self.statement, uses, part));
+        StatedValue { formula, accuracy }
+    }
+
     fn new_part(&mut self, part: &Expression) -> Result<NodeId, PlanRefusal> {
         if !part.varies() {
             return self.number(part);
@@ -490,11 +516,8 @@ impl<'s> Lowering<'s> {
         if products_of(part, &core).is_some_and(|products| products <= MOST_PRODUCTS) {
             return self.operation(part);
         }
-        let is_polynomial = |formula: &Expression| is_polynomial(self.statement, formula);
-        let of_polynomials = |quotient: division::QuotientParts| {
-            is_polynomial(&quotient.dividend) && is_polynomial(&quotient.divisor)
-        };
-        if has_remainder && division::quotient_of(&core).is_some_and(of_polynomials) {
+        if has_remainder && rational_quotient(&core).is_some_and(|it| Self::is_exact_quotient(&it))
+        {
             // The integer part of a quotient is exact; a table would read a rounded quotient.
             return self.operation(part);
         }
@@ -524,7 +547,9 @@ impl<'s> Lowering<'s> {
             } else if is_size_of(dominator, &operand) {
                 // A root or a logarithm of an absolute value is computed octave by octave.
                 let mut outer = inner[at + 1..].iter().chain([&part]);
-                if outer.any(|outer| is_singular(outer, dominator)) {
+                if outer.any(|outer| {
+                    is_singular(outer, dominator) || is_logarithm_of_multiple(outer, dominator)
+                }) {
                     operand = (*dominator).clone();
                 }
             }
@@ -708,6 +733,13 @@ impl<'s> Lowering<'s> {
                 let of_zero = Expression::new(kind, part.span.clone());
                 self.choice(&is_positive(a), &power, &of_zero)
             }
+            Operator::Mod
+                if !b.varies()
+                    && let Some(quotient) = rational_quotient(a)
+                    && Self::is_exact_quotient(&quotient) =>
+            {
+                self.remainder_of_quotient(&quotient, b, part)
+            }
             Operator::Mod if modulus_exponent(b).is_some() => {
                 let [_, fraction] = self.division(a, modulus_exponent(b).unwrap_or(0))?;
                 Ok(fraction)
@@ -724,14 +756,15 @@ impl<'s> Lowering<'s> {
                     let other = self.part(other)?;
                     return self.plan.scale("scaled", other, exponent);
                 }
+                let b = match operator {
+                    Operator::Div => reciprocal_of(b),
+                    _ => b.clone(),
+                };
                 let a = self.factor(a)?;
-                let b = self.factor(b)?;
+                let b = self.factor(&b)?;
                 self.plan.multiply("product", a, b)
             }
-            Operator::Add
-                if let Some(division::QuotientParts { dividend, divisor }) =
-                    division::ceiling_of(a, b) =>
-            {
+            Operator::Add if let Some(QuotientParts { dividend, divisor }) = ceiling_of(a, b) => {
                 // The ceiling of x is minus the floor of −x.
                 let [whole, _] = self.whole_quotient(&dividend, &divisor, &part.span)?;
                 self.plan.negate("ceiling", whole)
@@ -741,8 +774,7 @@ impl<'s> Lowering<'s> {
                 self.plan.add("sum", a, b)
             }
             Operator::Sub
-                if let Some(division::QuotientParts { dividend, divisor }) =
-                    division::floor_of(a, b) =>
+                if let Some(QuotientParts { dividend, divisor }) = floor_of_quotient(a, b) =>
             {
                 let [whole, _] = self.whole_quotient(&dividend, &divisor, &part.span)?;
                 Ok(whole)
@@ -763,6 +795,35 @@ impl<'s> Lowering<'s> {
                 let (a, b) = (self.part(a)?, self.part(b)?);
                 self.plan.maximum("larger", a, b)
             }
+        }
+    }
+
+    /// Returns whether the dividend and the divisor of a quotient are sums, products and choices of operands, which can be exact.
+    fn is_exact_quotient(quotient: &QuotientParts) -> bool {
+        [&quotient.dividend, &quotient.divisor].into_iter().all(has_no_function)
+    }
+
+    /// Returns the node of the remainder of a quotient p / q by the constant `modulus`, which is the remainder of p by q · `modulus`,
+    /// divided by q. `part` is the whole part. Fails if a part has too many bits, no finite values, or no rule.
+    fn remainder_of_quotient(
+        &mut self,
+        quotient: &QuotientParts,
+        modulus: &Expression,
+        part: &Expression,
+    ) -> Result<NodeId, PlanRefusal> {
+        let binary = |operator, a: &Expression, b: &Expression| {
+            let kind = Kind::Binary(operator, Arc::new(a.clone()), Arc::new(b.clone()));
+            Expression::new(kind, part.span.clone())
+        };
+        let QuotientParts { dividend, divisor } = quotient;
+        let modulus = match *modulus == number("1") {
+            true => divisor.clone(),
+            false => binary(Operator::Mul, modulus, divisor),
+        };
+        let remainder = binary(Operator::Mod, dividend, &modulus);
+        match divisor.varies() {
+            true => self.quotient(&remainder, divisor, part),
+            false => self.part(&binary(Operator::Div, &remainder, divisor)),
         }
     }
 
@@ -925,6 +986,13 @@ impl<'s> Lowering<'s> {
             !is_needed || node.source.is_none() && !node.stated.as_ref().is_some_and(is_nearest)
         })
     }
+}
+
+/// Returns 1 / `divisor`.
+fn reciprocal_of(divisor: &Expression) -> Expression {
+    let one = Arc::new(number("1"));
+    let kind = Kind::Binary(Operator::Div, one, Arc::new(divisor.clone()));
+    Expression::new(kind, divisor.span.clone())
 }
 
 /// Returns whether `part` is a logarithm, a root or a reciprocal of `core`, or a product of roots and reciprocals. None of these has a

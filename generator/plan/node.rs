@@ -7,7 +7,9 @@ use std::sync::Arc;
 use glint_approximate::{Piecewise, TargetFunction};
 use glint_base::fixed::{Format, Rounding};
 use glint_base::interval::Interval;
-use glint_formula::{Enclosure, Expression};
+use glint_formula::Enclosure;
+
+use super::facts::GuardedFormula;
 
 /// The index of a node in [`super::ExpressionPlan::nodes`]. A node reads only nodes with a smaller index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -41,8 +43,8 @@ pub struct PlanNode {
 /// The value of a node, stated by the formula that it computes.
 #[derive(Clone, Debug)]
 pub struct StatedValue {
-    /// The formula.
-    pub formula: Arc<Expression>,
+    /// The formula, with what holds wherever its value matters.
+    pub formula: Arc<GuardedFormula>,
     /// How near the hardware's value is to the formula.
     pub accuracy: ValueAccuracy,
 }

@@ -27,10 +27,10 @@ pub(super) fn limits(part: &Expression, operands: &[(&str, Enclosure)]) -> Enclo
     }
     match &part.kind {
         Kind::Binary(Operator::Sub, a, b) => {
-            if has_number(b, Operator::Max, a) || has_number(a, Operator::Min, b) {
+            if is_at_least(b, a) {
                 limits.high = 0.0;
             }
-            if has_number(a, Operator::Max, b) || has_number(b, Operator::Min, a) {
+            if is_at_least(a, b) {
                 limits.low = 0.0;
             }
         }
@@ -70,6 +70,13 @@ pub(super) fn clamped(
         (_, true) => with(Operator::Min, limits.high),
         _ => None,
     }
+}
+
+/// Returns whether `a` is not below `b` for any operands: a maximum and one of its numbers, a number and a minimum with it, or a maximum
+/// and a minimum with a common number.
+fn is_at_least(a: &Expression, b: &Expression) -> bool {
+    let least = leaves_of(b, Operator::Min);
+    leaves_of(a, Operator::Max).iter().any(|number| least.contains(number))
 }
 
 /// Returns whether `part` is a maximum (or a minimum) of several numbers that include `number`.
@@ -169,6 +176,9 @@ mod tests {
         assert_eq!(limits_of("b - min(a, b)").low, 0.0);
         assert_eq!(limits_of("min(a, b) - a").high, 0.0);
         assert_eq!(limits_of("c - max(a, b)").high, f64::INFINITY);
+        assert_eq!(limits_of("max(a, b, c) - min(c, b)").low, 0.0);
+        assert_eq!(limits_of("min(a, b) - max(b, c)").high, 0.0);
+        assert_eq!(limits_of("max(a, b) - min(c, 2)").low, f64::NEG_INFINITY);
     }
 
     /// Returns whether a lower limit is `exact`, or just below it.

@@ -3,7 +3,7 @@
 
 use std::cell::RefCell;
 use std::cmp::Ordering;
-use std::collections::BinaryHeap;
+use std::collections::{BTreeSet, BinaryHeap};
 use std::sync::Arc;
 
 use glint_formula::{Comparison, Enclosure, Expression, Function, Kind, Operator};
@@ -60,7 +60,7 @@ impl NoRange {
     pub(super) fn refusal(self, statement: &ExpressionStatement, part: &Expression) -> PlanRefusal {
         match self {
             Self::NotFinite(limits) => {
-                let place = statement.place(&limits);
+                let place = statement.place(&limits, &part.operands().into_iter().collect());
                 let message = format!("this is not finite, or has no value, for {place}");
                 let limited = limited_part(part, &statement.enclosed_operands(&limits));
                 let limited = limited.map(Box::new);
@@ -167,6 +167,7 @@ fn range_of(
     formula: &Expression,
 ) -> Result<Enclosure, NoRange> {
     let guarded = GuardedFormula::new(statement, uses, formula);
+    let named = operands_that_matter(statement, uses, formula);
     let values_in = |limits: &OperandBox| {
         let operands = statement.enclosed_operands(limits);
         let may_be_promised = |(result, reads): (&StatedResult, &bool)| {
@@ -185,7 +186,7 @@ fn range_of(
         Some(BoxValues { limits: limits.clone(), values })
     };
     let mut finite = Vec::new();
-    let mut open: Vec<BoxValues> = values_in(&statement.domain()).into_iter().collect();
+    let mut open: Vec<BoxValues> = values_in(&statement.domain_of(&named)).into_iter().collect();
     let mut divisions = 0;
     while let Some(next) = open.pop() {
         if next.values.is_finite() {
@@ -204,12 +205,28 @@ fn range_of(
     }
     let high_of = |it: BoxValues| BoxEnd { limits: it.limits, end: it.values.high };
     let low_of = |it: BoxValues| BoxEnd { limits: it.limits, end: -it.values.low };
-    let divisions = affordable(statement, DIVISIONS_OF_AN_END);
+    let divisions = affordable(named.len(), DIVISIONS_OF_AN_END);
     let boxes = finite.iter().cloned();
     let high =
         largest(divisions, boxes.clone().map(high_of), &|limits| values_in(limits).map(high_of));
     let low = largest(divisions, boxes.map(low_of), &|limits| values_in(limits).map(low_of));
     Ok(Enclosure::between(-low, high))
+}
+
+/// Returns the names of the operands on which a formula depends, or a condition of its uses.
+fn operands_that_matter<'f>(
+    statement: &'f ExpressionStatement,
+    uses: &'f PartUses,
+    formula: &'f Expression,
+) -> BTreeSet<&'f str> {
+    let mut named = BTreeSet::from_iter(formula.operands());
+    let promises = statement.results.iter().zip(&uses.readers).filter(|(_, reads)| **reads);
+    let promises = promises.filter_map(|(result, _)| result.promise.as_ref());
+    for comparison in promises.chain(uses.conditions.iter().map(|(comparison, _)| comparison)) {
+        named.extend(comparison.left.operands());
+        named.extend(comparison.right.operands());
+    }
+    named
 }
 
 /// Returns a lower limit of the absolute values of a result, for all operands for which it is promised. The limit is at least

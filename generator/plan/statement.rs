@@ -1,6 +1,8 @@
 //! Defines the statement of an expression: the operands with their domains, and the results with their formulas and allowed
 //! errors.
 
+use std::collections::BTreeSet;
+
 use glint_approximate::Outside;
 use glint_base::fixed::{Format, exp2};
 use glint_base::interval;
@@ -94,10 +96,14 @@ impl ExpressionStatement {
         values
     }
 
-    /// Returns the values of the operands in intervals of raw values, as text. For example, `x from 0 to 0.5 and y = 1`.
-    pub fn place(&self, limits: &[(i64, i64)]) -> String {
+    /// Returns the values of the operands with the names `named` in intervals of raw values, as text. For example, `x from 0 to 0.5 and
+    /// y = 1`.
+    pub(super) fn place(&self, limits: &[(i64, i64)], named: &BTreeSet<&str>) -> String {
         let mut place = Vec::new();
         for (name, value) in self.enclosed_operands(limits) {
+            if !named.contains(name) {
+                continue;
+            }
             place.push(if value.low == value.high {
                 format!("{name} = {}", value.low)
             } else {
@@ -110,6 +116,47 @@ impl ExpressionStatement {
     /// Returns the smallest and the largest raw value of each operand, in the order of the operands.
     pub fn domain(&self) -> Vec<(i64, i64)> {
         self.operands.iter().map(|operand| operand.domain).collect()
+    }
+
+    /// Returns the names of the operands on which the result with the index `result` depends, or the condition of its promise.
+    pub(super) fn operands_of(&self, result: usize) -> BTreeSet<&str> {
+        let StatedResult { formula, promise, .. } = &self.results[result];
+        let mut named = BTreeSet::from_iter(formula.operands());
+        if let Some(Comparison { left, right, .. }) = promise {
+            named.extend(left.operands());
+            named.extend(right.operands());
+        }
+        named
+    }
+
+    /// Returns the domain of all operands, in which each operand whose name is not in `named` has only its first value.
+    pub(super) fn domain_of(&self, named: &BTreeSet<&str>) -> Vec<(i64, i64)> {
+        let limits = |operand: &StatedOperand| {
+            let (first, last) = operand.domain;
+            if named.contains(operand.name.as_str()) { (first, last) } else { (first, first) }
+        };
+        self.operands.iter().map(limits).collect()
+    }
+
+    /// Returns `count` combinations of raw operands that are spread over their domains: the smallest values, the largest values, and then
+    /// numbers of a linear congruential generator.
+    pub(super) fn spread_operands(&self, count: u64) -> Vec<Vec<i64>> {
+        let mut state: u64 = 0x9e37_79b9_7f4a_7c15;
+        let mut spread = Vec::new();
+        for number in 0..count {
+            let mut raw = Vec::with_capacity(self.operands.len());
+            for StatedOperand { domain: (first, last), .. } in &self.operands {
+                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(number | 1);
+                let values = last.abs_diff(*first).saturating_add(1);
+                raw.push(match number {
+                    0 => *first,
+                    1 => *last,
+                    _ => first + ((state >> 16) % values) as i64,
+                });
+            }
+            spread.push(raw);
+        }
+        spread
     }
 
     /// Returns the number of combinations of raw operands in their domains.

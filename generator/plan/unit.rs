@@ -130,19 +130,9 @@ impl UnitPlan {
     /// Compares the merged plan with the plan of a function, for operands that are spread over its domain. Fails if they differ.
     fn compare(&self, opcode: usize) -> Result<(), PlanRefusal> {
         let statement = &self.functions[opcode].planned.statement;
-        let mut state: u64 = 0x9e37_79b9_7f4a_7c15;
-        for number in 0..COMPARED {
+        for raw in statement.spread_operands(COMPARED) {
             let mut words = vec![0; self.operands.len() - 1];
-            for (word, operand) in words.iter_mut().zip(&statement.operands) {
-                // The ends of the domain, and then numbers of a linear congruential generator.
-                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(number | 1);
-                let (first, last) = operand.domain;
-                let count = last.abs_diff(first).saturating_add(1);
-                let raw = match number {
-                    0 => first,
-                    1 => last,
-                    _ => first + ((state >> 16) % count) as i64,
-                };
+            for ((word, operand), raw) in words.iter_mut().zip(&statement.operands).zip(raw) {
                 *word = operand.format.bits(raw.into()) as i64;
             }
             let [merged, own] = self.both_results(opcode, &words);
@@ -154,7 +144,7 @@ impl UnitPlan {
                 if is_promised && merged[result] != own[result] {
                     let message = format!(
                         "the unit and the function alone differ for {}",
-                        statement.place(&limits)
+                        statement.place(&limits, &statement.operands_of(result))
                     );
                     let remedy = "this is a fault of Glint: please report the configuration";
                     return Err(PlanRefusal::new(message, remedy));

@@ -28,7 +28,49 @@ const TINY: &str =
 operands.c = { bits = 3, fraction = 40 }\noperands.d = { bits = 3, fraction = 40 }";
 
 /// Operands, and results that other results read or that need no operation.
-const CASES: [(&str, &str); 39] = [
+const CASES: [(&str, &str); 45] = [
+    (
+        // Divisions by constants are exact.
+        "operands.x = { bits = 7, fraction = 0 }\noperands.y = { bits = 6, fraction = 2, signed = true }",
+        "results.tens = { formula = \"floor(x / 10)\", fraction = 0, error = 0.5 }
+results.ones = { formula = \"x % 10\", fraction = 0, error = 0.5 }
+results.mean = { formula = \"(x + y + 1) / 3\", fraction = 2, error = 0.5 }
+results.thirds = { formula = \"round(y / 3 - 0.1)\", fraction = 0, error = 0.5 }
+results.turn = { formula = \"mod(0.3 * x + y, 1.5)\", fraction = 4, error = 0.6 }",
+    ),
+    (
+        // A mean with weights that may all be 0, and a blend of pixels.
+        "operands.a = { bits = 4, fraction = 0 }\noperands.b = { bits = 4, fraction = 0 }
+operands.u = { bits = 3, fraction = 0 }\noperands.v = { bits = 3, fraction = 0 }",
+        "results.mean = { formula = \"if(u + v == 0, 0, (a * u + b * v) / (u + v))\", fraction = 0, error = 0.5 }
+results.blend = { formula = \"15 - (15 - a) * (15 - b) / 15\", fraction = 0, error = 0.5 }
+results.stretch = { formula = \"if(b > a, int(15 * (u - a) / (b - a)), 0)\", fraction = 0, error = 0.5, where = \"u >= a and b >= u\" }",
+    ),
+    (
+        // The hue of a colour: quotients by the difference of a maximum and a minimum, where it is not 0.
+        "operands.r = { bits = 4, fraction = 0 }\noperands.g = { bits = 4, fraction = 0 }
+operands.b = { bits = 4, fraction = 0 }\nlet.m = \"max(r, g, b)\"\nlet.c = \"m - min(r, g, b)\"",
+        "results.hue = { formula = \"if(c == 0, 0, if(m == r, mod((g - b) / c, 6), if(m == g, (b - r) / c + 2, (r - g) / c + 4)))\", fraction = 4 }
+results.saturation = { formula = \"if(m == 0, 0, c / m)\", fraction = 5, error = 0.5 }",
+    ),
+    (
+        // A comparison with a constant that is not exact in binary guards its cases, and a division by a constant is no product with it.
+        "operands.x = { bits = 10, fraction = 9, signed = true }\nlet.size = \"87.6 * abs(x)\"\nlet.full = \"1 + ln(87.6)\"",
+        "results.y = { formula = \"if(size < 1, 87.6 * x / full, sign(x) * (1 + ln(size)) / full)\", fraction = 9 }
+results.dead = { formula = \"if(abs(x) < 0.1, 0, x - 0.1 * sign(x))\", fraction = 9 }",
+    ),
+    (
+        // Results need not depend on the same operands, and an operand can have the name of a constant.
+        "operands.e = { bits = 5, fraction = 4, signed = true }\noperands.y = { bits = 5, fraction = 4, signed = true }
+operands.z = { bits = 5, fraction = 4, signed = true }",
+        "results.angle = { formula = \"atan2(y, z)\", fraction = 6, where = \"y^2 + z^2 > 0\" }
+results.sum = { formula = \"2 * e + sign(z) * y - sign(y) * z\", fraction = 3, error = 0.5 }",
+    ),
+    (
+        // Rounding can make the hardware take a root where the formula takes 0.
+        "operands.x = { bits = 7, fraction = 5 }\noperands.y = { bits = 6, fraction = 6 }\nlet.k = \"1 - 0.3 * x^2 * (1 - 0.7 * y^2)\"",
+        "results.root = { formula = \"if(k < 0, 0, sqrt(k))\", fraction = 5, error = 2 }",
+    ),
     (
         // Each exponential function has integer parts of its own, and the sum is at least 1.
         "operands.v = { size = 3, bits = 4, fraction = 1, signed = true }",

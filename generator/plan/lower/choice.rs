@@ -1,12 +1,53 @@
 //! Rewrites choices, such as `if(a < b, x, y)`, and finds maxima and minima among them.
 
-use glint_formula::{Comparison, Expression};
+use glint_base::fixed::exp2;
+use glint_formula::{Comparison, Expression, Kind, Operator};
 
 use super::Lowering;
+use super::rational::without_fractions;
+use super::shape::dyadic;
 use crate::node::NodeId;
 use crate::refusal::PlanRefusal;
 
+/// The largest raw value that takes the place of a compared constant.
+const LARGEST_LIMIT: f64 = (1u64 << 50) as f64;
+
+/// The nodes of both sides of a comparison.
+pub(super) struct ComparedNodes {
+    /// The comparison holds where the first number is larger than the second.
+    nodes: [NodeId; 2],
+    /// Whether the comparison also holds where both numbers are equal.
+    or_equal: bool,
+    /// Whether no number is rounded, so that the hardware decides like the formula.
+    pub(super) is_exact: bool,
+}
+
+/// Returns the largest raw value with `frac` fraction bits that is below a constant. Returns `None` if the constant may be such a value
+/// itself, or if the raw value has many bits.
+fn raw_below(constant: &Expression, frac: i32) -> Option<i128> {
+    let value = constant.enclose(&[]).ok()?;
+    let [low, high] = [value.low, value.high].map(|end| end * exp2(frac));
+    let below = low.floor();
+    let is_between = below < low && high < below + 1.0;
+    (is_between && below.abs() < LARGEST_LIMIT).then_some(below as i128)
+}
+
 impl Lowering<'_> {
+    /// Returns whether a comparison holds for all operands for which the present part matters, or for none of them. Returns `None` if
+    /// the domains of the operands, and limits of the difference of both sides, do not decide it.
+    pub(super) fn decided(&self, comparison: &Comparison) -> Option<bool> {
+        let operands = self.statement.enclosed_operands(&self.statement.domain());
+        if let Ok(Some(holds)) = comparison.holds(&operands) {
+            return Some(holds);
+        }
+        let Comparison { left, right, or_equal } = comparison;
+        let kind = Kind::Binary(Operator::Sub, left.clone(), right.clone());
+        let difference = self.range_here(&Expression::new(kind, left.span.clone())).ok()?;
+        let holds = difference.low > 0.0 || *or_equal && difference.low == 0.0;
+        let fails = difference.high < 0.0 || !or_equal && difference.high == 0.0;
+        if holds || fails { Some(holds) } else { None }
+    }
+
     /// Returns the node of a choice: `yes` if the comparison holds, and `no` otherwise. Fails if a part has too many bits, or no finite
     /// values under its condition.
     pub(super) fn choice(
@@ -15,43 +56,111 @@ impl Lowering<'_> {
         yes: &Expression,
         no: &Expression,
     ) -> Result<NodeId, PlanRefusal> {
-        let operands = self.statement.enclosed_operands(&self.statement.domain());
-        if let Ok(Some(outcome)) = comparison.holds(&operands) {
-            // No operand takes the other case.
+        if let Some(outcome) = self.decided(comparison) {
             return self.part(if outcome { yes } else { no });
         }
         if let Some(comparison) = self.without_quotients(comparison) {
             return self.choice(&comparison, yes, no);
         }
-        let (first, second) = (&*comparison.left, &*comparison.right);
-        let (left, right) = (self.part(first)?, self.part(second)?);
-        if (yes, no) == (second, first) {
-            // If two numbers are nearly equal, rounding can make the other one larger, but the error stays small.
-            return self.plan.minimum("smaller", left, right);
-        }
-        if (yes, no) == (first, second) {
-            return self.plan.maximum("larger", left, right);
-        }
-        let [yes, no] = if self.is_exact(left) && self.is_exact(right) {
-            let yes = self.under(comparison, true, |own| own.part(yes))?;
-            let no = self.under(comparison, false, |own| own.part(no))?;
-            [yes, no]
-        } else {
+        let compared = self.compared(comparison)?;
+        if !compared.is_exact {
+            let (first, second) = (&*comparison.left, &*comparison.right);
+            let [left, right] = compared.nodes;
+            if (yes, no) == (second, first) {
+                // If two numbers are nearly equal, rounding can make the other one larger, but the error stays small.
+                return self.plan.minimum("smaller", left, right);
+            }
+            if (yes, no) == (first, second) {
+                return self.plan.maximum("larger", left, right);
+            }
             // Rounding can make the hardware take the other case, so that the value of each case matters for all operands.
-            [self.part(yes)?, self.part(no)?]
-        };
-        self.chosen(comparison.or_equal, [left, right], [yes, no])
+            let [yes, no] = [(yes, true), (no, false)]
+                .map(|(case, outcome)| self.case_for_all(case, comparison, outcome));
+            let cases = [self.part(&yes)?, self.part(&no)?];
+            return self.chosen(&compared, cases);
+        }
+        let yes = self.under(comparison, true, |own| own.part(yes))?;
+        let no = self.under(comparison, false, |own| own.part(no))?;
+        self.chosen(&compared, [yes, no])
     }
 
-    /// Returns the node of the value of `yes` where the first number is larger than the second, or equal if `or_equal`, and of `no`
-    /// elsewhere. Fails if a node has too many bits.
+    /// Returns the nodes of both sides of a comparison. If one side is an exact node and the other one is a constant that is not exact in
+    /// binary, the nearest multiple of the node's last place below the constant takes its place. For example, `x > 0.1` with 4 fraction
+    /// bits of x becomes `x > 1/16`, and `0.1 > x` becomes `1/16 >= x`. If both sides can be multiplied by a number so that they are
+    /// exact, they are: `x / 3 > y` becomes `x > 3 * y`. Fails if a part has too many bits.
+    pub(super) fn compared(
+        &mut self,
+        comparison: &Comparison,
+    ) -> Result<ComparedNodes, PlanRefusal> {
+        let Comparison { left, right, .. } = comparison;
+        let (limit, other) = if left.varies() { (right, left) } else { (left, right) };
+        if !limit.varies() && dyadic(limit).is_none() {
+            let node = self.part(other)?;
+            let frac = self.plan.node(node).format.frac;
+            if self.is_exact(node)
+                && let Some(raw) = raw_below(limit, frac)
+            {
+                let limit = self.plan.constant("limit", raw, frac)?;
+                return Ok(match left.varies() {
+                    true => ComparedNodes { nodes: [node, limit], or_equal: false, is_exact: true },
+                    false => ComparedNodes { nodes: [limit, node], or_equal: true, is_exact: true },
+                });
+            }
+        }
+        let compared = self.compared_as_written(comparison)?;
+        if !compared.is_exact
+            && let Some(multiple) = without_fractions(comparison)
+            && let Ok(exact) = self.compared_as_written(&multiple)
+            && exact.is_exact
+        {
+            return Ok(exact);
+        }
+        Ok(compared)
+    }
+
+    fn compared_as_written(
+        &mut self,
+        comparison: &Comparison,
+    ) -> Result<ComparedNodes, PlanRefusal> {
+        let nodes = [self.part(&comparison.left)?, self.part(&comparison.right)?];
+        let is_exact = nodes.iter().all(|node| self.is_exact(*node));
+        Ok(ComparedNodes { nodes, or_equal: comparison.or_equal, is_exact })
+    }
+
+    /// Returns a formula that equals `case` wherever the comparison has the outcome `outcome`, and that has a value where rounding makes
+    /// the hardware take this case for another outcome. For example, `if(x < 0, 0, sqrt(x))` has the case `sqrt(max(x, 0))`. The
+    /// function returns `case` itself if it has values for all operands, or if no side of the comparison limits it.
+    fn case_for_all(
+        &self,
+        case: &Expression,
+        comparison: &Comparison,
+        outcome: bool,
+    ) -> Expression {
+        if self.range(case).is_ok() {
+            return case.clone();
+        }
+        let Comparison { left, right, .. } = comparison;
+        let (larger, smaller) = if outcome { (left, right) } else { (right, left) };
+        for (side, operator, limit) in
+            [(larger, Operator::Max, smaller), (smaller, Operator::Min, larger)]
+        {
+            if side.varies() && case.count(&|part| part == &**side) > 0 {
+                let kind = Kind::Binary(operator, side.clone(), limit.clone());
+                let limited = Expression::new(kind, side.span.clone());
+                return case.substitute(side, &limited, &case.span);
+            }
+        }
+        case.clone()
+    }
+
+    /// Returns the node of the value of `yes` where the comparison holds, and of `no` elsewhere. Fails if a node has too many bits.
     pub(super) fn chosen(
         &mut self,
-        or_equal: bool,
-        [left, right]: [NodeId; 2],
+        compared: &ComparedNodes,
         [yes, no]: [NodeId; 2],
     ) -> Result<NodeId, PlanRefusal> {
-        if or_equal {
+        let [left, right] = compared.nodes;
+        if compared.or_equal {
             // Equivalent to `left >= right`, because the cases are swapped.
             let is_less = self.plan.less("is_less", left, right)?;
             self.plan.choose("chosen", is_less, [yes, no])

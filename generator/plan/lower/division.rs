@@ -10,9 +10,10 @@ use std::sync::Arc;
 use glint_base::fixed::{Format, Rounding, exp2};
 use glint_formula::{Comparison, Enclosure, Expression, Function, Kind, Operator, TextSpan};
 
+use super::rational::{QuotientParts, quotient_of};
 use super::shape::number;
 use super::{FixedGuard, KnownPart, Lowering};
-use crate::node::{NodeId, Operation, PlanNode, StatedValue, ValueAccuracy};
+use crate::node::{NodeId, Operation, PlanNode, ValueAccuracy};
 use crate::refusal::PlanRefusal;
 use crate::uses::reads_always;
 
@@ -31,75 +32,6 @@ const GUARD_BITS: std::ops::RangeInclusive<i32> = 4..=8;
 /// The operations that compute a quotient only of exact numbers: a remedy for other numbers.
 const EXACT_NUMBERS: &str =
     "divide operands, or sums, differences and products of operands, with constants such as 0.75";
-
-/// A quotient of two formulas.
-pub(super) struct QuotientParts {
-    pub(super) dividend: Expression,
-    pub(super) divisor: Expression,
-}
-
-/// Returns a quotient q for which `a - b` is floor(q): `b` is the remainder of `a` by 1, and `a` is q. Returns `None` if `a` is no
-/// quotient with a divisor that varies.
-pub(super) fn floor_of(a: &Expression, b: &Expression) -> Option<QuotientParts> {
-    let is_remainder =
-        matches!(&b.kind, Kind::Binary(Operator::Mod, of, one) if **of == *a && is_one(one));
-    if is_remainder { quotient_of(a) } else { None }
-}
-
-/// Returns a quotient q for which `a + b` is the ceiling of −q: `b` is the remainder of `-a` by 1, and `-a` is q. Returns `None` if
-/// `a` is no quotient with a divisor that varies.
-pub(super) fn ceiling_of(a: &Expression, b: &Expression) -> Option<QuotientParts> {
-    let Kind::Binary(Operator::Mod, negated, one) = &b.kind else { return None };
-    let is_negated = matches!(&negated.kind, Kind::Unary(Function::Negate, of) if **of == *a);
-    if is_negated && is_one(one) { quotient_of(negated) } else { None }
-}
-
-fn is_one(part: &Expression) -> bool {
-    !part.varies() && *part == number("1")
-}
-
-/// Writes a formula as a quotient with a divisor that varies. For example, `x / y + 1/2` is `(x + 1/2 * y) / y`, and `x / y / 2` is
-/// `x / (y * 2)`. Returns `None` for a formula without such a quotient.
-pub(super) fn quotient_of(formula: &Expression) -> Option<QuotientParts> {
-    let made = |kind: Kind| Expression::new(kind, formula.span.clone());
-    let binary = |operator, a: &Expression, b: &Expression| {
-        made(Kind::Binary(operator, Arc::new(a.clone()), Arc::new(b.clone())))
-    };
-    match &formula.kind {
-        Kind::Binary(Operator::Div, a, b) => match quotient_of(a) {
-            Some(QuotientParts { dividend, divisor }) => {
-                let divisor = binary(Operator::Mul, &divisor, b);
-                Some(QuotientParts { dividend, divisor })
-            }
-            None if b.varies() => {
-                Some(QuotientParts { dividend: (**a).clone(), divisor: (**b).clone() })
-            }
-            None => None,
-        },
-        Kind::Binary(Operator::Mul, a, b) if !a.varies() || !b.varies() => {
-            let (constant, other) = if a.varies() { (b, a) } else { (a, b) };
-            let QuotientParts { dividend, divisor } = quotient_of(other)?;
-            let dividend = binary(Operator::Mul, constant, &dividend);
-            Some(QuotientParts { dividend, divisor })
-        }
-        Kind::Unary(Function::Negate, a) => {
-            let QuotientParts { dividend, divisor } = quotient_of(a)?;
-            let dividend = made(Kind::Unary(Function::Negate, Arc::new(dividend)));
-            Some(QuotientParts { dividend, divisor })
-        }
-        Kind::Binary(operator @ (Operator::Add | Operator::Sub), a, b) if !b.varies() => {
-            let QuotientParts { dividend, divisor } = quotient_of(a)?;
-            let moved = binary(Operator::Mul, b, &divisor);
-            Some(QuotientParts { dividend: binary(*operator, &dividend, &moved), divisor })
-        }
-        Kind::Binary(operator @ (Operator::Add | Operator::Sub), a, b) if !a.varies() => {
-            let QuotientParts { dividend, divisor } = quotient_of(b)?;
-            let moved = binary(Operator::Mul, a, &divisor);
-            Some(QuotientParts { dividend: binary(*operator, &moved, &dividend), divisor })
-        }
-        _ => None,
-    }
-}
 
 /// Returns the comparison `part < 0`.
 fn is_negative(part: &Expression) -> Comparison {
@@ -201,17 +133,21 @@ impl Lowering<'_> {
         };
         let bits =
             Format::holding(values.low.floor() as i128, values.high.ceil() as i128, 0).width();
-        let nodes = match bits > MOST_QUOTIENT_BITS {
-            _ if positive.divisor != *b => self.quotient_of_positive(positive, b, span),
-            true if values.low < 0.0 => self.quotient_of_size(a, b, span),
-            true => self.quotient_by_digits(a, b, span),
-            false => self.corrected_quotient(a, b, values),
+        let multiplier = match b.varies() {
+            true => None,
+            false => self.exact_reciprocal(dividend, b),
+        };
+        let nodes = match (multiplier, bits > MOST_QUOTIENT_BITS) {
+            (Some(multiplier), _) => self.quotient_by_constant(dividend, divisor, &multiplier),
+            (None, _) if positive.divisor != *b => self.quotient_of_positive(positive, b, span),
+            (None, true) if values.low < 0.0 => self.quotient_of_size(a, b, span),
+            (None, true) => self.quotient_by_digits(a, b, span),
+            (None, false) => self.corrected_quotient(a, b, values),
         };
         let uses = mem::replace(&mut self.uses, outer);
         let nodes = nodes?;
         for (node, part) in nodes.into_iter().zip([whole, remainder]) {
-            let formula = Arc::new(part.clone());
-            let stated = StatedValue { formula, accuracy: ValueAccuracy::Exact };
+            let stated = self.stated(&part, &uses, ValueAccuracy::Exact);
             self.plan.nodes[node.0].stated = Some(stated);
             let uses = uses.clone();
             self.known.push(KnownPart { part, node, uses, is_limited: false });

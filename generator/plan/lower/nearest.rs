@@ -10,11 +10,11 @@ use std::sync::Arc;
 use glint_base::fixed::{Format, Rounding, exp2};
 use glint_formula::{Comparison, Enclosure, Expression, Function, Kind, Operator, TextSpan};
 
-use super::division::{QuotientParts, quotient_of};
+use super::rational::{QuotientParts, rational_quotient};
 use super::shape::number;
 use super::{FixedGuard, Lowering};
 use crate::facts::is_polynomial;
-use crate::node::{NodeId, Operation, PlanNode, StatedValue, ValueAccuracy};
+use crate::node::{NodeId, Operation, PlanNode, ValueAccuracy};
 use crate::refusal::PlanRefusal;
 
 /// The largest error of the estimate of a root, in units of the result.
@@ -27,7 +27,7 @@ const GUARD_BITS: std::ops::RangeInclusive<i32> = 2..=8;
 const LARGEST_SHIFT: i32 = 30;
 
 /// Returns whether a formula has sums, products, absolute values and choices alone, so that its value can be exact.
-fn has_no_function(formula: &Expression) -> bool {
+pub(super) fn has_no_function(formula: &Expression) -> bool {
     let is_function = |kind: &Kind| match kind {
         Kind::Unary(function, _) => !matches!(function, Function::Negate | Function::Abs),
         Kind::Binary(operator, _, exponent) => match operator {
@@ -59,7 +59,7 @@ impl Lowering<'_> {
             && is_polynomial(self.statement, square)
         {
             self.nearest_root(formula, square, frac)?
-        } else if let Some(QuotientParts { dividend, divisor }) = quotient_of(formula)
+        } else if let Some(QuotientParts { dividend, divisor }) = rational_quotient(formula)
             && has_no_function(&dividend)
             && has_no_function(&divisor)
             && self.are_exact([&dividend, &divisor])?
@@ -71,8 +71,7 @@ impl Lowering<'_> {
         };
         let whole = self.plan.node(integer).clone();
         let format = Format { int: whole.format.int - frac, frac, ..whole.format };
-        let formula = Arc::new(formula.clone());
-        let stated = Some(StatedValue { formula, accuracy: ValueAccuracy::Nearest });
+        let stated = Some(self.stated(formula, &self.uses, ValueAccuracy::Nearest));
         let node = PlanNode { name: "nearest".to_owned(), format, stated, ..whole };
         Ok(Some(self.plan.push_copy(&node, Operation::Scale(integer))))
     }
@@ -86,19 +85,23 @@ impl Lowering<'_> {
         no: &Expression,
         frac: i32,
     ) -> Result<Option<NodeId>, PlanRefusal> {
-        let without = self.without_quotients(comparison);
-        let comparison = without.as_ref().unwrap_or(comparison);
-        let (left, right) = (&*comparison.left, &*comparison.right);
-        if !has_no_function(left) || !has_no_function(right) || !self.are_exact([left, right])? {
+        if let Some(outcome) = self.decided(comparison) {
+            return self.nearest_case(if outcome { yes } else { no }, frac);
+        }
+        if let Some(comparison) = self.without_quotients(comparison) {
+            return self.nearest_choice(&comparison, yes, no, frac);
+        }
+        if !has_no_function(&comparison.left) || !has_no_function(&comparison.right) {
             return Ok(None);
         }
-        let compared = [self.part(left)?, self.part(right)?];
+        let compared = self.compared(comparison)?;
+        if !compared.is_exact {
+            return Ok(None);
+        }
         let yes = self.under(comparison, true, |own| own.nearest_case(yes, frac))?;
         let no = self.under(comparison, false, |own| own.nearest_case(no, frac))?;
         match (yes, no) {
-            (Some(yes), Some(no)) => {
-                Ok(Some(self.chosen(comparison.or_equal, compared, [yes, no])?))
-            }
+            (Some(yes), Some(no)) => Ok(Some(self.chosen(&compared, [yes, no])?)),
             _ => Ok(None),
         }
     }

@@ -11,7 +11,7 @@ use glint_base::fixed::{Format, Rounding, exp2};
 use glint_formula::{Enclosure, Expression, Function, Kind, Operator, RBig};
 
 use super::{Lowering, WIDEST_OPERAND};
-use crate::node::{NodeId, StatedValue, ValueAccuracy};
+use crate::node::{NodeId, ValueAccuracy};
 use crate::refusal::PlanRefusal;
 
 /// If the largest value of a domain is less than this times the smallest, one table covers the domain.
@@ -134,8 +134,7 @@ impl Lowering<'_> {
         let is_some = self.plan.nonzero("is_nonzero", octave.word)?;
         let chosen = self.plan.choose("power_or_zero", is_some, [zero, shifted])?;
         // A word that was rounded to 0 has no power in the table.
-        let formula = Arc::new(part.clone());
-        let stated = StatedValue { formula, accuracy: ValueAccuracy::FromInputs };
+        let stated = self.stated(part, &self.uses, ValueAccuracy::FromInputs);
         self.plan.nodes[chosen.0].stated = Some(stated);
         Ok(Some(chosen))
     }

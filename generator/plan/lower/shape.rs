@@ -89,16 +89,24 @@ pub(super) fn is_size_of(part: &Expression, core: &Expression) -> bool {
     matches!(&part.kind, Kind::Unary(Function::Abs, a) if **a == *core)
 }
 
-/// Returns whether `part` limits `core`: `part` is the minimum or the maximum of `core` and a constant. For example, the part
-/// `max(0, x)` limits x. The planner then lets a table read the limited value, because a table over all values of x would be
-/// larger.
+/// Returns whether `part` limits `core`: `part` is the minimum or the maximum of a constant and `core`, or of a constant and sums and
+/// products of `core`. For example, the parts `max(0, x)` and `max(0, 1 - x)` limit x. The planner then lets a table read the
+/// limited value, because a table over all values of x would be larger.
 pub(super) fn is_limit_of(part: &Expression, core: &Expression) -> bool {
-    match &part.kind {
-        Kind::Binary(Operator::Min | Operator::Max, a, b) => {
-            **a == *core && !b.varies() || **b == *core && !a.varies()
-        }
-        _ => false,
-    }
+    let Kind::Binary(Operator::Min | Operator::Max, a, b) = &part.kind else { return false };
+    let limited = match (a.varies(), b.varies()) {
+        (true, false) => a,
+        (false, true) => b,
+        _ => return false,
+    };
+    products_of(limited, core).is_some()
+}
+
+/// Returns whether a formula is the logarithm of a constant times `core`.
+pub(super) fn is_logarithm_of_multiple(formula: &Expression, core: &Expression) -> bool {
+    let Kind::Unary(Function::Ln | Function::Log2, operand) = &formula.kind else { return false };
+    let Kind::Binary(Operator::Mul | Operator::Div, a, b) = &operand.kind else { return false };
+    **a == *core && !b.varies() || **b == *core && !a.varies()
 }
 
 /// Returns the cost of the multiplications that compute a formula from its core by sums, products, squares, minima and absolute
@@ -138,6 +146,16 @@ fn new_products(
     }
     match &formula.kind {
         Kind::Unary(Function::Negate | Function::Abs, a) => products_of(a, core),
+        Kind::If(comparison, yes, no) => {
+            let mut total = 0;
+            for part in [&comparison.left, &comparison.right, yes, no] {
+                total += products_of(part, core)?;
+            }
+            Some(total)
+        }
+        Kind::Binary(Operator::Sub, a, b) if let Some(dividend) = dividend_of_floor(a, b) => {
+            Some(products_of(dividend, core)? + 1)
+        }
         Kind::Binary(Operator::Add | Operator::Sub | Operator::Min | Operator::Max, a, b) => {
             Some(products_of(a, core)? + products_of(b, core)?)
         }
@@ -159,10 +177,32 @@ fn new_products(
         Kind::Binary(Operator::Mod, a, b) if modulus_exponent(b).is_some() && !rounds(a) => {
             products_of(a, core)
         }
+        // A remainder by another constant is a product with its reciprocal.
+        Kind::Binary(Operator::Mod, a, b) if dyadic(b).is_some() && !rounds(a) => {
+            Some(products_of(a, core)? + 1)
+        }
         Kind::Binary(Operator::Power, a, b) if **b == number("2") => {
             Some(products_of(a, core)? + PRODUCT)
         }
         _ => None,
+    }
+}
+
+/// Returns p if `a - b` is the integer part of a sum or a product of p and rational constants, such as p / 3 + 1. Returns `None` for
+/// other formulas.
+fn dividend_of_floor<'f>(a: &'f Expression, b: &Expression) -> Option<&'f Expression> {
+    floor_of(a, b).filter(|exponent| *exponent == 0)?;
+    let dividend = without_constants(a);
+    (dividend != a).then_some(dividend)
+}
+
+/// Returns the part of a formula that its sums, products and quotients with rational constants read: x in `x / 3 + 1`.
+fn without_constants(formula: &Expression) -> &Expression {
+    use Operator::{Add, Div, Mul, Sub};
+    match &formula.kind {
+        Kind::Binary(Add | Sub | Mul | Div, a, c) if c.rational().is_some() => without_constants(a),
+        Kind::Binary(Add | Sub | Mul, c, a) if c.rational().is_some() => without_constants(a),
+        _ => formula,
     }
 }
 
