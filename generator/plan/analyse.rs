@@ -12,13 +12,16 @@ use glint_base::fixed::{Format, Rounding, exp2};
 use glint_formula::Enclosure;
 
 use super::node::{
-    Approximation, NodeId, Operation, PlanNode, StatedValue, ValueAccuracy, middle,
+    Approximation, CaseAgreement, NodeId, Operation, PlanNode, StatedValue, ValueAccuracy, middle,
     normalising_shifts,
 };
 use super::plan::ExpressionPlan;
 
 /// The largest number of integer parts that are analysed one by one.
 const MOST_INTEGERS: i64 = 70;
+
+/// The most octaves of a word whose branches reach the end of the plan, if it has several normalised words.
+const FEW_OCTAVES: u32 = 4;
 
 /// The limits of a node's value and of its error, for all operands within a box.
 #[derive(Clone, Copy, Debug)]
@@ -30,6 +33,9 @@ pub(super) struct NodeError {
     /// Contains the hardware's value.
     pub(super) actual: Enclosure,
 }
+
+/// A factor that exceeds 1 by more than the roundings of a few operations in `f64`.
+const ROUNDED_UP: f64 = 1.0 + 1e-12;
 
 const NOTHING: Enclosure = Enclosure::exactly(0.0);
 const ANYTHING: Enclosure = Enclosure::between(f64::NEG_INFINITY, f64::INFINITY);
@@ -107,8 +113,9 @@ struct Known {
 
 /// The analysis of the errors of a plan.
 ///
-/// Each value of an integer part is a branch of its own. If a plan has several integer parts, the branches of one of
-/// them end where they meet again ([`joins`]), so that their numbers add up and do not multiply.
+/// Each value of an integer part is a branch of its own, and so is each shift of a normalised word. If a plan has several integer parts,
+/// or several words with many shifts, the branches of one of them end where they meet again ([`joins`]), so that their numbers add up
+/// and do not multiply.
 #[derive(Clone, Copy)]
 pub(super) struct ErrorAnalysis<'p> {
     pub(super) plan: &'p ExpressionPlan,
@@ -121,15 +128,22 @@ pub(super) struct ErrorAnalysis<'p> {
 }
 
 /// Returns for each integer part of a plan the first later node through which `result` reads it, if `result` depends on several integer
-/// parts. Returns `None` for the other nodes, and for an integer part that reaches `result` only by several ways. `needed` must have
+/// parts, and the same for normalised words. Returns `None` for the other nodes, and for one that reaches `result` only by several ways. `needed` must have
 /// the nodes on which `result` depends.
 pub(super) fn joins(plan: &ExpressionPlan, needed: &[bool], result: NodeId) -> Vec<Option<NodeId>> {
-    let is_integer = |node: usize| {
-        needed[node] && matches!(plan.nodes[node].operation, Operation::IntegerPart(_))
+    let count = |is: fn(&Operation) -> bool| -> Vec<usize> {
+        (0..plan.nodes.len()).filter(|at| needed[*at] && is(&plan.nodes[*at].operation)).collect()
     };
-    let integers: Vec<usize> = (0..plan.nodes.len()).filter(|node| is_integer(*node)).collect();
+    let integers = count(|operation| matches!(operation, Operation::IntegerPart(_)));
+    let words = count(|operation| matches!(operation, Operation::Normalise { .. }));
+    let mut branching = Vec::new();
+    for nodes in [integers, words] {
+        if nodes.len() > 1 {
+            branching.extend(nodes);
+        }
+    }
     let mut joins = vec![None; plan.nodes.len()];
-    if integers.len() < 2 {
+    if branching.is_empty() {
         return joins;
     }
     // For each node, the first later node that is on all ways from it to the result.
@@ -156,14 +170,36 @@ pub(super) fn joins(plan: &ExpressionPlan, needed: &[bool], result: NodeId) -> V
             Operation::Normalise { .. } | Operation::Places(_) | Operation::IntegerPart(_)
         )
     };
-    for integer in integers {
-        let mut join = next[integer];
+    for node in branching {
+        let mut join = next[node];
         while let Some(at) = join.filter(|at| branches(*at)) {
             join = next[at];
         }
-        joins[integer] = join.filter(|join| *join != result.0).map(NodeId);
+        joins[node] = join.filter(|join| *join != result.0).map(NodeId);
     }
     joins
+}
+
+/// Returns limits that contain the values of all branches of an analysis, which `run` visits. The branches have the nodes in `known` and
+/// the same further nodes. Returns `None` without a branch.
+fn joined(known: &Known, run: impl FnOnce(&mut Visit<'_>)) -> Option<Known> {
+    let mut all: Option<Known> = None;
+    let before = known.values.len();
+    run(&mut |values, undecided| match &mut all {
+        None => {
+            let mut joined = known.clone();
+            joined.values.extend_from_slice(&values[before..]);
+            joined.undecided = undecided.cloned();
+            all = Some(joined);
+        }
+        Some(joined) => {
+            for (joined, value) in joined.values[before..].iter_mut().zip(&values[before..]) {
+                *joined = joined.hull(*value);
+            }
+            joined.undecided = joined.undecided.take().or_else(|| undecided.cloned());
+        }
+    });
+    all
 }
 
 /// Returns the first node that is on the ways of both nodes. `next` has the next node of each node on its way.
@@ -210,13 +246,30 @@ impl ErrorAnalysis<'_> {
             } else if !node.has_stated_error() && !is_choice && inputs.iter().any(is_unknown) {
                 known.values.push(NodeError::UNKNOWN);
             } else if let Operation::Normalise { word, by_pairs } = node.operation {
-                return self.each_shift(word, by_pairs, &known, end, operands, visit);
+                let join = self.joins[id.0].filter(|join| join.0 + 1 < end);
+                match join.filter(|_| self.has_many_octaves(word, &known.values)) {
+                    None => return self.each_shift(word, by_pairs, &known, end, operands, visit),
+                    Some(join) => {
+                        let all = joined(&known, |visit| {
+                            let end = join.0 + 1;
+                            self.each_shift(word, by_pairs, &known, end, operands, visit);
+                        });
+                        let Some(all) = all else { return };
+                        known = all;
+                    }
+                }
             } else if let Operation::IntegerPart(a) = node.operation
                 && let Some(integers) = self.integers(a, &known.values)
             {
                 match self.joins[id.0].filter(|join| join.0 + 1 < end) {
                     None => return self.each_integer(a, integers, &known, end, operands, visit),
-                    Some(join) => known = self.joined(a, integers, &known, join, operands),
+                    Some(join) => {
+                        let all = joined(&known, |visit| {
+                            self.each_integer(a, integers, &known, join.0 + 1, operands, visit);
+                        });
+                        let Some(all) = all else { return };
+                        known = all;
+                    }
                 }
             } else {
                 match self.value(id, &known.values, operands) {
@@ -312,36 +365,10 @@ impl ErrorAnalysis<'_> {
         }
     }
 
-    /// Analyses the nodes up to `join`, once for each value that an integer part can have, and returns limits that contain the
-    /// values of all branches.
-    fn joined(
-        &self,
-        id: NodeId,
-        integers: (i64, i64),
-        known: &Known,
-        join: NodeId,
-        operands: &[(&str, Enclosure)],
-    ) -> Known {
-        let mut all: Option<Known> = None;
-        let before = known.values.len();
-        self.each_integer(id, integers, known, join.0 + 1, operands, &mut |values, undecided| {
-            match &mut all {
-                None => {
-                    let mut joined = known.clone();
-                    joined.values.extend_from_slice(&values[before..]);
-                    joined.undecided = undecided.cloned();
-                    all = Some(joined);
-                }
-                Some(joined) => {
-                    for (joined, value) in joined.values[before..].iter_mut().zip(&values[before..])
-                    {
-                        *joined = joined.hull(*value);
-                    }
-                    joined.undecided = joined.undecided.take().or_else(|| undecided.cloned());
-                }
-            }
-        });
-        all.expect("an integer part has a value")
+    /// Returns whether a word can have so many shifts that the branches of two words would take too long.
+    fn has_many_octaves(&self, word: NodeId, values: &[NodeError]) -> bool {
+        let (low, high) = raw_limits(values[word.0].actual, self.plan.node(word).format);
+        high.max(1) >> FEW_OCTAVES > low.max(1)
     }
 
     /// Continues the analysis after a normalised word, which is the last value of `branch`. The next node is the number of bits
@@ -434,7 +461,8 @@ impl ErrorAnalysis<'_> {
                 condition(is_nonzero(a.ideal), is_nonzero(a.actual), a.error == NOTHING)
             }
             Operation::Choose { condition, cases } => {
-                let value = chosen(*condition, *cases, values);
+                let apart = self.distance_of_cases(node, *condition, values, operands);
+                let value = chosen(*condition, *cases, apart, values);
                 match value.is_limited() {
                     true => value,
                     false => taken_case(node, values, operands).unwrap_or(value),
@@ -539,6 +567,27 @@ impl ErrorAnalysis<'_> {
         Ok(value)
     }
 
+    /// Returns limits of the difference of both cases of a choice, where rounding can make the hardware take the other case than the
+    /// formula. The compared numbers are then no farther from each other than the difference of their errors. The limits are infinite
+    /// if the choice states no agreement.
+    fn distance_of_cases(
+        &self,
+        choice: &PlanNode,
+        condition: NodeId,
+        values: &[NodeError],
+        operands: &[(&str, Enclosure)],
+    ) -> Enclosure {
+        let Some(CaseAgreement { slope, scale }) = &choice.agreement else { return ANYTHING };
+        let Operation::Less(a, b) = self.plan.node(condition).operation else { return ANYTHING };
+        let off = values[a.0].error - values[b.0].error;
+        let distance = off.high.max(-off.low);
+        let Some(scale) = scale.values(operands).filter(|scale| scale.low > 0.0) else {
+            return ANYTHING;
+        };
+        let most = slope * distance / scale.low * ROUNDED_UP;
+        if most.is_finite() { Enclosure::between(-most, most) } else { ANYTHING }
+    }
+
     /// Returns limits of the hardware's value of a node that follow from the hardware's values of its inputs alone. The limits
     /// may be infinite.
     fn actual(&self, node: &PlanNode, values: &[NodeError]) -> Enclosure {
@@ -598,8 +647,17 @@ impl ErrorAnalysis<'_> {
 /// Returns the limits of a choice.
 ///
 /// If rounding can make the condition wrong, the hardware may take the other case than the formula. Then the errors of both
-/// cases count, and the difference between both cases.
-fn chosen(condition: NodeId, cases: [NodeId; 2], values: &[NodeError]) -> NodeError {
+/// cases count, and the difference between both cases, which `most_apart` limits.
+fn chosen(
+    condition: NodeId,
+    cases: [NodeId; 2],
+    most_apart: Enclosure,
+    values: &[NodeError],
+) -> NodeError {
+    let within = |apart: Enclosure| {
+        let apart = apart.hull(NOTHING);
+        Enclosure::between(apart.low.max(most_apart.low), apart.high.min(most_apart.high))
+    };
     let [zero, one] = cases.map(|case| values[case.0]);
     let condition = values[condition.0];
     // If nothing was rounded before the condition, the hardware decides like the formula.
@@ -609,7 +667,7 @@ fn chosen(condition: NodeId, cases: [NodeId; 2], values: &[NodeError]) -> NodeEr
         let mut error = zero.error.hull(one.error);
         if !decides_alike {
             let apart = zero.ideal - one.ideal;
-            error = error + apart.hull(-apart).hull(NOTHING);
+            error = error + within(apart.hull(-apart));
         }
         return NodeError::new(ideal, error);
     };
@@ -617,7 +675,7 @@ fn chosen(condition: NodeId, cases: [NodeId; 2], values: &[NodeError]) -> NodeEr
     if decides_alike || fixed(condition.ideal) == Some(bit) {
         return taken;
     }
-    NodeError::new(ideal, taken.error + (taken.ideal - other.ideal).hull(NOTHING))
+    NodeError::new(ideal, taken.error + within(taken.ideal - other.ideal))
 }
 
 /// Returns the value and the error of a node whose stated value alone limits its error. Returns `None` if the formula has no finite

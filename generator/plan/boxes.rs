@@ -14,7 +14,7 @@ use std::collections::{BTreeSet, BinaryHeap};
 use glint_base::fixed::exp2;
 
 use super::analyse::{ErrorAnalysis, NodeError, Undecided, joins};
-use super::node::NodeId;
+use super::node::{NodeId, Operation};
 use super::plan::ExpressionPlan;
 use super::statement::ExpressionStatement;
 
@@ -171,7 +171,14 @@ impl<'p> ResultProof<'p> {
 
     /// Returns whether an error is computed fast: with few operands, and without several integer parts.
     fn is_fast(&self) -> bool {
-        self.named.len() <= FEW_OPERANDS && self.joins.iter().all(Option::is_none)
+        self.named.len() <= FEW_OPERANDS && !self.joins_integers()
+    }
+
+    /// Returns whether the branches of several integer parts end where they meet.
+    fn joins_integers(&self) -> bool {
+        let is_integer =
+            |at: usize| matches!(self.plan.nodes[at].operation, Operation::IntegerPart(_));
+        self.joins.iter().enumerate().any(|(at, join)| join.is_some() && is_integer(at))
     }
 
     /// Returns the number of divisions that take an acceptable time. Several integer parts count as an operand more.

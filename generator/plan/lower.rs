@@ -561,7 +561,10 @@ impl<'s> Lowering<'s> {
             }
             let mut widest = None;
             for dominator in dominators(part, &operand) {
-                if self.spans_octaves(dominator, &operand)? {
+                let is_sum = products_of(dominator, &operand).is_some();
+                if self.spans_octaves(dominator, &operand)?
+                    || is_sum && self.spans_octaves(part, dominator)?
+                {
                     widest = Some(dominator.clone());
                 }
             }

@@ -35,6 +35,9 @@ pub struct PlanNode {
     /// The value of the node by a formula of the operands, for all operands for which the node matters. The rewriting supplies it
     /// where the nodes before this one do not show the value; `None` for the others.
     pub stated: Option<StatedValue>,
+    /// How near the cases of a choice are to each other where the compared numbers are nearly equal; `None` if this is not known, and
+    /// for other operations.
+    pub agreement: Option<CaseAgreement>,
     /// The index of the rounding operation in the list of numbers of fraction bits that the planner chooses. `None` for an
     /// exact operation.
     pub source: Option<usize>,
@@ -47,6 +50,17 @@ pub struct StatedValue {
     pub formula: Arc<GuardedFormula>,
     /// How near the hardware's value is to the formula.
     pub accuracy: ValueAccuracy,
+}
+
+/// How near the cases of a choice are to each other. If d is the distance of the numbers that the condition compares, the cases differ by
+/// at most `slope` · d / `scale`. For example, the angles of a direction on both sides of a diagonal differ by at most twice the distance
+/// from the diagonal, divided by the larger coordinate.
+#[derive(Clone, Debug)]
+pub struct CaseAgreement {
+    /// The slope.
+    pub slope: f64,
+    /// The formula by which the distance is divided. Its values are not below 0.
+    pub scale: Arc<GuardedFormula>,
 }
 
 /// How near the hardware's value of a node is to the formula that the node computes.

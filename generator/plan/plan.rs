@@ -161,6 +161,7 @@ impl ExpressionPlan {
             limits: ANYTHING,
             actual_limits: ANYTHING,
             stated: None,
+            agreement: None,
             source: None,
         });
         Ok(NodeId(self.nodes.len() - 1))

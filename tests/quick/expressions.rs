@@ -28,7 +28,20 @@ const TINY: &str =
 operands.c = { bits = 3, fraction = 40 }\noperands.d = { bits = 3, fraction = 40 }";
 
 /// Operands, and results that other results read or that need no operation.
-const CASES: [(&str, &str); 45] = [
+const CASES: [(&str, &str); 47] = [
+    (
+        // Directions of rounded coordinates: the choices of octant and quadrant are continuous, apart from the negative x axis.
+        "operands.x = { bits = 5, fraction = 4, signed = true }\noperands.y = { bits = 5, fraction = 4, signed = true }
+operands.z = { bits = 5, fraction = 4, signed = true }",
+        "results.pitch = { formula = \"atan2(-x, sqrt(y^2 + z^2))\", fraction = 5, where = \"x^2 + y^2 + z^2 > 0.25\" }
+results.tilt = { formula = \"atan2(sqrt(x^2 + y^2), z) / pi\", fraction = 6, where = \"x^2 + y^2 + z^2 > 0.25\" }
+results.sum = { formula = \"atan2(0.3 * x - y, z + 1.1)\", fraction = 5 }",
+    ),
+    (
+        "operands.x = { bits = 9, fraction = 8, signed = true }\noperands.y = { bits = 7, fraction = 7 }",
+        "results.angle = { formula = \"atan2(sin(3 * x), cos(3 * x) + y / 4) / pi\", fraction = 6, bits = 7, signed = true, overflow = \"wrap\", \
+         where = \"y < 0.7\" }",
+    ),
     (
         // Divisions by constants are exact.
         "operands.x = { bits = 7, fraction = 0 }\noperands.y = { bits = 6, fraction = 2, signed = true }",

@@ -12,7 +12,8 @@ use glint_formula::{Enclosure, Expression, Function, Kind, Operator};
 use super::Lowering;
 use super::root::holding;
 use super::shape::number;
-use crate::node::NodeId;
+use crate::facts::GuardedFormula;
+use crate::node::{CaseAgreement, NodeId};
 use crate::refusal::PlanRefusal;
 
 /// A constant by which a direction is multiplied or divided.
@@ -100,9 +101,41 @@ impl Lowering<'_> {
         let quarter = self.number(&scaling.of(number("pi / 2")))?;
         let mirrored = self.plan.subtract("octant_mirrored", quarter, in_octant)?;
         let in_quadrant = self.plan.choose("quadrant", is_steep, [in_octant, mirrored])?;
+        // Let t be the smaller coordinate divided by the larger one. On both sides of the diagonal the angles differ by
+        // π/2 − 2 · atan(t), which is at most 2 · (1 − t). On both sides of an axis they differ by at most twice the angle from the
+        // axis, which is at most π · t.
+        let agreement = self.agreement(y, x, scaling, "2");
+        self.plan.nodes[in_quadrant.0].agreement = agreement;
         let in_half = self.mirrored_where_negative("half", in_quadrant, x_node, Some(scaling))?;
+        let is_right_half = in_half == in_quadrant;
+        let at_axis = self.agreement(y, x, scaling, "pi");
+        if !is_right_half {
+            self.plan.nodes[in_half.0].agreement = at_axis.clone();
+        }
         let whole = self.mirrored_where_negative("direction", in_half, y_node, None)?;
+        if is_right_half && whole != in_half {
+            // At the negative x axis the direction jumps.
+            self.plan.nodes[whole.0].agreement = at_axis;
+        }
         Ok(whole)
+    }
+
+    /// Returns the agreement of two angles of the point (x, y) that differ by at most `slope`, a number, times the distance of the compared
+    /// coordinates, divided by the larger coordinate. Returns `None` if the constant in `scaling` has no value.
+    fn agreement(
+        &self,
+        y: &Expression,
+        x: &Expression,
+        scaling: &Scaling,
+        slope: &str,
+    ) -> Option<CaseAgreement> {
+        let slope = scaling.of(number(slope)).enclose(&[]).ok()?;
+        let size = |part: &Expression| {
+            Arc::new(Expression::new(Kind::Unary(Function::Abs, Arc::new(part.clone())), 0..0))
+        };
+        let larger = Expression::new(Kind::Binary(Operator::Max, size(x), size(y)), 0..0);
+        let scale = Arc::new(GuardedFormula::new(self.statement, &self.uses, &larger));
+        Some(CaseAgreement { slope: slope.high.abs().max(slope.low.abs()), scale })
     }
 
     /// Returns the node of an angle that is mirrored if `coordinate` is negative. With `scaling`, the mirrored angle is half a
@@ -128,7 +161,6 @@ impl Lowering<'_> {
             }
             None => self.plan.negate(&format!("{name}_mirrored"), angle)?,
         };
-        // At the negative x axis, the direction jumps, so a wrong sign would cause a large error.
         self.plan.choose(name, is_negative, [angle, mirrored])
     }
 }

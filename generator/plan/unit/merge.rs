@@ -154,6 +154,7 @@ impl Merger<'_> {
             limits: ANYTHING,
             actual_limits: ANYTHING,
             stated: None,
+            agreement: None,
             source: None,
             ..node.clone()
         };
