@@ -10,13 +10,15 @@
 
 use std::cmp::Ordering;
 use std::collections::{BTreeSet, BinaryHeap};
+use std::fmt::{self, Write};
+use std::hash::{DefaultHasher, Hash, Hasher};
 
 use glint_base::fixed::exp2;
 
 use super::analyse::{ErrorAnalysis, NodeError, Undecided, joins};
-use super::node::{NodeId, Operation};
+use super::node::{NodeId, Operation, PlanNode};
 use super::plan::ExpressionPlan;
-use super::statement::ExpressionStatement;
+use super::statement::{ExpressionStatement, StatedResult};
 
 /// The smallest and the largest raw value of each operand, both included.
 pub(super) type OperandBox = Vec<(i64, i64)>;
@@ -90,6 +92,18 @@ pub(super) struct ErrorSearch {
     boxes: Vec<OperandBox>,
     /// Single combinations with large errors, if the expression has many operands. They are tried first.
     examples: Vec<OperandBox>,
+    /// The last outcome, with the digest of the nodes for which it holds.
+    last: Option<(u64, Option<BoxError>)>,
+}
+
+/// A digest of the text that is written to it.
+struct TextDigest(DefaultHasher);
+
+impl Write for TextDigest {
+    fn write_str(&mut self, text: &str) -> fmt::Result {
+        text.hash(&mut self.0);
+        Ok(())
+    }
 }
 
 /// A search for each result.
@@ -102,7 +116,7 @@ pub(super) fn undivided(statement: &ExpressionStatement) -> ErrorSearches {
         let named = statement.operands_of(result);
         let domain = statement.domain_of(&named);
         let examples = if named.len() <= FEW_OPERANDS { Vec::new() } else { corners(&domain) };
-        searches.push(ErrorSearch { boxes: vec![domain], examples });
+        searches.push(ErrorSearch { boxes: vec![domain], examples, last: None });
     }
     searches
 }
@@ -218,7 +232,38 @@ impl<'p> ResultProof<'p> {
     /// A single combination ends the search early, because no division shows a smaller error for it. The search begins with the
     /// examples and the boxes in `search`. If the error is allowed, the boxes that show it replace them, because they mostly show
     /// it for a similar plan, too. Otherwise, a single combination becomes an example if the expression has many operands.
+    ///
+    /// If the result depends on the same nodes as in the last search, the outcome is the same.
     pub(super) fn excess(&self, divisions: usize, search: &mut ErrorSearch) -> Option<BoxError> {
+        let digest = self.digest(divisions);
+        if let Some((last, outcome)) = &search.last
+            && *last == digest
+        {
+            return outcome.clone();
+        }
+        let outcome = self.new_excess(divisions, search);
+        search.last = Some((digest, outcome.clone()));
+        outcome
+    }
+
+    /// Returns a number that differs, in all probability, for other nodes on which the result depends, for another promise or allowed
+    /// error, or for other divisions.
+    pub(super) fn digest(&self, divisions: usize) -> u64 {
+        let mut digest = TextDigest(DefaultHasher::new());
+        divisions.hash(&mut digest.0);
+        let StatedResult { promise, error, fraction, .. } = &self.statement.results[self.result];
+        // Writing to a digest does not fail.
+        let _ = write!(digest, "{promise:?}{error:?}{fraction}");
+        for (at, node) in self.plan.nodes.iter().enumerate() {
+            if self.needed[at] {
+                let PlanNode { operation, format, limits, actual_limits, .. } = node;
+                let _ = write!(digest, "{at}{operation:?}{format:?}{limits:?}{actual_limits:?}");
+            }
+        }
+        digest.0.finish()
+    }
+
+    fn new_excess(&self, divisions: usize, search: &mut ErrorSearch) -> Option<BoxError> {
         let stated = &self.statement.results[self.result];
         let exceeds = |error: &BoxError| !stated.allows(error.units);
         if let Some(example) = self.errors_in(&search.examples).pop().filter(exceeds) {

@@ -17,6 +17,7 @@ mod root;
 mod shape;
 mod wave;
 
+use std::cell::RefCell;
 use std::collections::HashMap;
 use std::mem;
 use std::sync::Arc;
@@ -148,6 +149,7 @@ struct FixedGuard {
 pub(super) struct Lowering<'s> {
     statement: &'s ExpressionStatement,
     ranges: &'s RangeMemo,
+    errors: &'s ErrorMemo,
     guards: &'s Guards,
     first_guard: i32,
     found: &'s FoundPolynomials,
@@ -171,6 +173,25 @@ pub(super) struct PlanSearch<'s> {
     pub(super) statement: &'s ExpressionStatement,
     pub(super) tables: TableRule,
     ranges: RangeMemo,
+    errors: ErrorMemo,
+}
+
+/// The errors of nodes that were bounded for a statement. Most plans of a search differ in few nodes, so that most nodes have the same
+/// error in all of them.
+#[derive(Default)]
+struct ErrorMemo(RefCell<HashMap<u64, f64>>);
+
+impl ErrorMemo {
+    /// Returns an upper bound of the error of a result as a whole number of `unit` units, and infinity if none was found.
+    fn units_of(&self, proof: &ResultProof<'_>, unit: f64) -> f64 {
+        let digest = proof.digest(DIVISIONS_FOR_AN_ERROR);
+        if let Some(known) = self.0.borrow().get(&digest) {
+            return *known;
+        }
+        let units = proof.whole_units(unit, DIVISIONS_FOR_AN_ERROR).unwrap_or(0.0);
+        self.0.borrow_mut().insert(digest, units);
+        units
+    }
 }
 
 /// How the planner finds the polynomials of the functions in a plan.
@@ -184,7 +205,7 @@ pub(super) enum TableRule {
 
 impl<'s> PlanSearch<'s> {
     pub(super) fn new(statement: &'s ExpressionStatement, tables: TableRule) -> Self {
-        Self { statement, tables, ranges: RangeMemo::default() }
+        Self { statement, tables, ranges: RangeMemo::default(), errors: ErrorMemo::default() }
     }
 }
 
@@ -204,6 +225,7 @@ pub(super) fn lowered(
     let mut lowering = Lowering {
         statement,
         ranges: &search.ranges,
+        errors: &search.errors,
         guards,
         first_guard,
         found,
@@ -953,14 +975,19 @@ impl<'s> Lowering<'s> {
     }
 
     /// Returns for each result an upper bound of the error of a node in units of its last bit, rounded up, over all operands for
-    /// which the result is promised and that satisfy the conditions of the present uses. A bound is infinite if none was found.
+    /// which the result is promised and that satisfy the conditions of the present uses. A bound is infinite if none was found, and for
+    /// a result that does not read the part that is being rewritten.
     fn errors_by_result(&self, node: NodeId) -> Vec<f64> {
         let unit = exp2(-self.plan.node(node).format.frac);
         let mut plan = self.plan.clone();
         plan.results = vec![node];
         plan.proved = vec![node];
         let mut errors = Vec::new();
-        for result in &self.statement.results {
+        for (result, reads) in self.statement.results.iter().zip(&self.uses.readers) {
+            if !reads {
+                errors.push(f64::INFINITY);
+                continue;
+            }
             let mut statement = self.statement.clone();
             let mut alone = StatedResult { fraction: 0, ..result.clone() };
             for (comparison, outcome) in &self.uses.conditions {
@@ -975,7 +1002,7 @@ impl<'s> Lowering<'s> {
             }
             statement.results = vec![alone];
             let proof = ResultProof::new(&statement, &plan, 0);
-            errors.push(proof.whole_units(unit, DIVISIONS_FOR_AN_ERROR).unwrap_or(0.0));
+            errors.push(self.errors.units_of(&proof, unit));
         }
         errors
     }
