@@ -23,13 +23,18 @@ pub const FUNCTIONS: [(&str, Function); 13] = [
 ];
 
 /// Functions of one number u that are combinations of other functions: in `cosh(2 * x)`, `2 * x` replaces u.
-const DEFINED: [(&str, &str); 21] = [
+const DEFINED: [(&str, &str); 26] = [
     ("reciprocal", "1 / u"),
     ("rsqrt", "1 / sqrt(u)"),
     ("sigmoid", "1 / (1 + exp(-u))"),
     ("gelu", "u / 2 * (1 + erf(u / sqrt(2)))"),
     ("silu", "u / (1 + exp(-u))"),
     ("softplus", "ln(1 + exp(u))"),
+    ("erfc", "1 - erf(u)"),
+    ("log1p", "ln(1 + u)"),
+    ("expm1", "exp(u) - 1"),
+    ("radians", "u * pi / 180"),
+    ("degrees", "u * 180 / pi"),
     ("sinh", "(exp(u) - exp(-u)) / 2"),
     ("cosh", "(exp(u) + exp(-u)) / 2"),
     ("asin", "2 * atan(u / (1 + sqrt((1 - u) * (1 + u))))"),
@@ -77,9 +82,7 @@ const DEFINED_OF_THREE: [(&str, &str); 4] = [
 pub(super) const FUNCTIONS_OF_MANY: [&str; 3] = ["min", "max", "hypot"];
 
 /// Functions that a formula cannot call, each with a formula to write instead.
-const INSTEAD: [(&str, &str); 18] = [
-    ("expm1", "exp(x) - 1"),
-    ("log1p", "ln(1 + x)"),
+const INSTEAD: [(&str, &str); 15] = [
     ("exp10", "10^x"),
     ("square", "x^2"),
     ("sqr", "x^2"),
@@ -95,7 +98,6 @@ const INSTEAD: [(&str, &str); 18] = [
     ("fmax", "max(x, y)"),
     ("sgn", "sign(x)"),
     ("logistic", "sigmoid(x)"),
-    ("radians", "x * pi / 180"),
 ];
 
 /// Returns the least number of arguments of a function of numbers. Returns `None` if there is no such function.

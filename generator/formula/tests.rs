@@ -220,7 +220,7 @@ fn mistakes_are_shown_under_their_places() {
             "if(x = 2, 1, 2)",
             "     ^ `=` cannot be a part of a formula: compare with `<`, `>`, `<=`, `>=`, `==` or `!=`",
         ),
-        ("1 + expm1(x)", "    ^^^^^ there is no function `expm1`: write exp(x) - 1"),
+        ("1 + square(x)", "    ^^^^^^ there is no function `square`: write x^2"),
         ("clamp(x, 1)", "          ^ `,` is missing"),
         ("x < 1 ? 2", "         ^ `:` is missing"),
         ("2 * y", "    ^ there is no `y`: the operand is `x`"),

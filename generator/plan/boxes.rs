@@ -80,7 +80,7 @@ fn size_of(limits: &OperandBox) -> u128 {
 const LEAST_SHARE_OF_DIVISIONS: usize = 4;
 
 /// The most operands of an expression whose domain is divided as often as the caller wishes.
-const FEW_OPERANDS: usize = 3;
+pub(super) const FEW_OPERANDS: usize = 3;
 
 /// The least number of divisions of a domain with many operands.
 const LEAST_DIVISIONS: usize = 8;

@@ -328,6 +328,17 @@ fn single_comparisons(comparison: &Comparison, outcome: bool) -> Vec<(Comparison
         | (_, Kind::Binary(Operator::Min, a, b), false) => {
             [beside(left, a), beside(left, b)].concat()
         }
+        // Conditions that are joined compare differences with 0.
+        (Kind::Binary(Operator::Sub, a, b), _, _) if has_sign_or_root(a, b) && is_zero(right) => {
+            beside(a, b)
+        }
+        // Both sides are not below 0, so that their squares compare alike.
+        (Kind::Unary(Function::Sqrt, a), _, _) if is_not_negative_number(right) => {
+            beside(a, &squared(right))
+        }
+        (_, Kind::Unary(Function::Sqrt, a), _) if is_not_negative_number(left) => {
+            beside(&squared(left), a)
+        }
         // A size of at most c means that the number is from −c to c.
         (_, Kind::Unary(Function::Abs, a), true) => {
             [beside(left, a), beside(left, &negated(a))].concat()
@@ -348,6 +359,27 @@ fn single_comparisons(comparison: &Comparison, outcome: bool) -> Vec<(Comparison
         }
         _ => vec![(comparison.clone(), outcome)],
     }
+}
+
+/// Returns whether one of two formulas is a root or an absolute value, and the other one is a number.
+fn has_sign_or_root(a: &Expression, b: &Expression) -> bool {
+    let is = |part: &Expression, other: &Expression| {
+        matches!(part.kind, Kind::Unary(Function::Sqrt | Function::Abs, _)) && !other.varies()
+    };
+    is(a, b) || is(b, a)
+}
+
+fn is_zero(part: &Expression) -> bool {
+    part.rational().is_some_and(|value| value.is_zero())
+}
+
+fn is_not_negative_number(part: &Expression) -> bool {
+    part.rational().is_some_and(|value| value >= RBig::ZERO)
+}
+
+fn squared(part: &Arc<Expression>) -> Arc<Expression> {
+    let kind = Kind::Binary(Operator::Mul, part.clone(), part.clone());
+    Arc::new(Expression::new(kind, part.span.clone()))
 }
 
 fn negated(part: &Arc<Expression>) -> Arc<Expression> {
@@ -560,7 +592,8 @@ impl GuardedFormula {
     pub(super) fn values(&self, operands: &[(&str, Enclosure)]) -> Option<Enclosure> {
         let mut all = operands.to_vec();
         for part in &self.parts {
-            all.push((&part.name, part.values(operands)?));
+            let values = part.values(&all)?;
+            all.push((&part.name, values));
         }
         Some(self.formula.enclose(&all).unwrap_or(ANYTHING))
     }
@@ -606,11 +639,20 @@ impl GuardRewriting<'_> {
     ) -> Arc<Expression> {
         let limits = limited(self.statement, facts, part);
         if !limits.is_empty() {
+            // Facts about the numbers of a minimum or a maximum limit it, too.
+            let part = match &part.kind {
+                Kind::Binary(operator @ (Operator::Min | Operator::Max), a, b) => {
+                    let a = self.rewritten(a, facts, is_case, known);
+                    let b = self.rewritten(b, facts, is_case, known);
+                    Expression::new(Kind::Binary(*operator, a, b), part.span.clone())
+                }
+                _ => part.clone(),
+            };
             // No operand of a user has such a name.
             let name = format!("part {}", self.parts.len());
             let operand = Arc::new(Expression::operand(&name));
             let is_always = !is_case;
-            self.parts.push(GuardedPart { name, part: part.clone(), facts: limits, is_always });
+            self.parts.push(GuardedPart { name, part, facts: limits, is_always });
             return operand;
         }
         let kind = match &part.kind {
@@ -676,20 +718,22 @@ pub(super) fn has_fact(
     !limited(statement, &facts_of(statement, uses), part).is_empty()
 }
 
-/// Returns whether a part is an operand, or a minimum, a maximum or an absolute value.
-fn is_variable(part: &Expression) -> bool {
-    matches!(
+/// Returns whether boxes of operands show the values of a part, because it is an operand, or a minimum, a maximum or an absolute value
+/// of one operand.
+fn is_shown_by_boxes(part: &Expression) -> bool {
+    let is_variable = matches!(
         part.kind,
         Kind::Operand(_)
             | Kind::Binary(Operator::Min | Operator::Max, ..)
             | Kind::Unary(Function::Abs, _)
-    )
+    );
+    is_variable && part.operands().len() <= 1
 }
 
-/// Returns the limits of a part that follow from facts. A variable of polynomials has none: boxes of operands show its values.
+/// Returns the limits of a part that follow from facts.
 fn limited(statement: &ExpressionStatement, facts: &[Fact], part: &Expression) -> Vec<LimitedPart> {
     let mut limits = Vec::new();
-    if facts.is_empty() || is_variable(part) || !part.varies() {
+    if facts.is_empty() || !part.varies() || is_shown_by_boxes(part) {
         return limits;
     }
     let Some(polynomial) = OperandPolynomial::of(part, statement) else { return limits };

@@ -46,6 +46,7 @@ mod evaluate;
 mod exhaust;
 mod facts;
 mod find;
+mod frontier;
 mod lower;
 mod node;
 mod order;

@@ -26,8 +26,9 @@ use glint_approximate::{Curve, Outside, Piecewise, SharedWidths, TargetFunction}
 use glint_base::fixed::{Format, Rounding, exp2, nearest, shifted_left};
 use glint_formula::{Comparison, Enclosure, Expression, Function, Kind, Operator};
 
-use super::boxes::ResultProof;
+use super::boxes::{FEW_OPERANDS, ResultProof};
 use super::facts::{GuardedFormula, has_fact};
+use super::frontier::PlanOfParts;
 use super::node::{Approximation, NodeId, Operation, PlanNode, StatedValue, ValueAccuracy};
 use super::order;
 use super::plan::ExpressionPlan;
@@ -999,6 +1000,17 @@ impl<'s> Lowering<'s> {
                     None => condition,
                     Some(promise) => promise.and(condition),
                 });
+            }
+            let count = alone.formula.operands().len();
+            if count > FEW_OPERANDS
+                && let Some(parts) = PlanOfParts::of(&plan, node, &alone, count)
+            {
+                let proof = ResultProof::new(&parts.statement, &parts.plan, 0);
+                let units = self.errors.units_of(&proof, unit);
+                if units.is_finite() {
+                    errors.push(units);
+                    continue;
+                }
             }
             statement.results = vec![alone];
             let proof = ResultProof::new(&statement, &plan, 0);

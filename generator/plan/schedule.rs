@@ -147,11 +147,27 @@ impl ExpressionPlan {
             Some(PlanStep::Hold(others)) => !others.iter().any(reads_late),
             _ => false,
         };
+        let addressed = self.addressed_by_operands(schedule);
+        let addressed = addressed.filter(|table| self.reads_unheld(*table, late, schedule));
         match (joins, schedule.steps.get_mut(place)) {
             (true, Some(PlanStep::Hold(others))) => others.push(late),
             _ => schedule.steps.insert(place, PlanStep::Hold(vec![late])),
         }
+        if let Some(table) = addressed {
+            // The operands no longer address the table in the first clock; the register does, one clock later.
+            schedule.steps.insert(place + 1, PlanStep::Address(table));
+        }
         schedule.held[late.0] = true;
+    }
+
+    /// Returns the polynomial whose table the operands address in the first clock, without a microinstruction of its own.
+    fn addressed_by_operands(&self, schedule: &PlanSchedule) -> Option<NodeId> {
+        let mut polynomials = schedule.steps.iter().filter_map(|step| match step {
+            PlanStep::Sum { polynomial, .. } => Some(*polynomial),
+            _ => None,
+        });
+        let first = polynomials.next()?;
+        (!schedule.steps.contains(&PlanStep::Address(first))).then_some(first)
     }
 
     /// Returns whether the logic in front of `node`'s register reads `late`.
@@ -285,6 +301,8 @@ mod tests {
             "sqrt(a^2 + b^2)",
             "sin(pi * a) * b - cos(pi * a) * c",
             "min(max(a * b + c, -1), 1) * d + abs(abs(a) - abs(d))",
+            // The operands address the first table, until a register stores the sum for the second quotient.
+            "a / (1.25 + b / 8) + c / (1.25 + b / 8)^2",
         ] {
             let plan = plan_of(formula);
             let schedule = plan.schedule(false);
@@ -296,8 +314,25 @@ mod tests {
                     PlanStep::Sum { polynomial, coefficient: 0 } => vec![*polynomial],
                     PlanStep::Sum { .. } | PlanStep::Address(_) => Vec::new(),
                 };
-                for node in &loaded {
-                    for register in registers_before(&plan, &schedule, *node) {
+                // A table gets its address in a microinstruction, or from the operands in the first clock.
+                let addressed = match step {
+                    PlanStep::Address(table) => Some(*table),
+                    PlanStep::Sum { polynomial, .. } => {
+                        let address = PlanStep::Address(*polynomial);
+                        (!schedule.steps.contains(&address)).then_some(*polynomial)
+                    }
+                    _ => None,
+                };
+                if let (Some(table), PlanStep::Sum { .. }) = (addressed, step) {
+                    assert!(registers_before(&plan, &schedule, table).is_empty(), "{formula}");
+                }
+                for node in loaded.iter().chain(&addressed) {
+                    // The same microinstruction loads a normalised word and its shift.
+                    let node = match plan.node(*node).operation {
+                        Operation::Places(word) => word,
+                        _ => *node,
+                    };
+                    for register in registers_before(&plan, &schedule, node) {
                         let name = &plan.node(register).name;
                         assert!(is_loaded[register.0], "{formula}: {name} is read too early");
                     }

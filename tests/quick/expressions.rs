@@ -28,7 +28,22 @@ const TINY: &str =
 operands.c = { bits = 3, fraction = 40 }\noperands.d = { bits = 3, fraction = 40 }";
 
 /// Operands, and results that other results read or that need no operation.
-const CASES: [(&str, &str); 47] = [
+const CASES: [(&str, &str); 49] = [
+    (
+        // A choice with a hole, divided by a constant; the root of a sum of integers; digits of a number of seconds.
+        "operands.x = { bits = 6, fraction = 3, signed = true }\noperands.y = { bits = 5, fraction = 0 }",
+        "results.part = { formula = \"if(x > 0, ln(x), -8) / 6 + y\", fraction = 5 }
+results.length = { formula = \"sqrt((8 * x)^2 + y^2)\", fraction = 0, error = 0.5 }
+results.digit = { formula = \"floor(((8 * x + 40) % 36) / 6)\", fraction = 0, error = 0.5 }",
+    ),
+    (
+        // Conditions about lengths, and about the number in a maximum.
+        "operands.a = { size = 2, bits = 4, fraction = 3, signed = true }\noperands.n = { bits = 2, fraction = 0 }
+operands.r = { bits = 6, fraction = 6 }",
+        "results.cosine = { formula = \"a[0] / length(a)\", fraction = 5, where = \"length(a) > 0.5 and n > 0\" }
+results.shine = { formula = \"max(0, 2 * a[0] * a[1])^n\", fraction = 5, where = \"n >= 1 and 2 * a[0] * a[1] <= 1\" }
+results.value = { formula = \"n / (1 + r) + n / (1 + r)^2\", fraction = 4 }",
+    ),
     (
         // Directions of rounded coordinates: the choices of octant and quadrant are continuous, apart from the negative x axis.
         "operands.x = { bits = 5, fraction = 4, signed = true }\noperands.y = { bits = 5, fraction = 4, signed = true }

@@ -137,7 +137,8 @@ impl Lowering<'_> {
             true => None,
             false => self.exact_reciprocal(dividend, b),
         };
-        let nodes = match (multiplier, bits > MOST_QUOTIENT_BITS) {
+        let has_digits = bits > MOST_QUOTIENT_BITS || !b.varies();
+        let nodes = match (multiplier, has_digits) {
             (Some(multiplier), _) => self.quotient_by_constant(dividend, divisor, &multiplier),
             (None, _) if positive.divisor != *b => self.quotient_of_positive(positive, b, span),
             (None, true) if values.low < 0.0 => self.quotient_of_size(a, b, span),

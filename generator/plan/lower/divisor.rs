@@ -10,7 +10,7 @@ use super::Lowering;
 use crate::node::NodeId;
 use crate::refusal::PlanRefusal;
 
-/// The most bits of the product with a reciprocal.
+/// The most bits of the product with a reciprocal, without its sign.
 const MOST_BITS: u32 = 63;
 
 /// A reciprocal of a constant, with which floor(A / d) is the integer part of (A · `factor` + `offset`) / 2^`places` for each raw
@@ -45,8 +45,10 @@ impl ExactReciprocal {
             if largest >= one {
                 continue;
             }
-            let most = high.max(-low).checked_mul(factor)?.checked_add(offset)?;
-            let is_short = most < 1 << MOST_BITS;
+            // The multiplier gives both factors a sign.
+            let width =
+                Format::holding(low, high, 0).width() + Format::holding(0, factor, 0).width();
+            let is_short = width + 2 <= MOST_BITS + 1;
             let places = places as i32;
             return is_short.then_some(Self { dropped, factor, offset, places });
         }

@@ -23,17 +23,20 @@ const LARGEST_ERROR: f64 = 0.25;
 /// The fraction bits beyond the result's that the estimate of a root has at least, and the most that are tried.
 const GUARD_BITS: std::ops::RangeInclusive<i32> = 2..=8;
 
+/// The integer bits of a root that its guard bits include.
+const FEW_BITS: i32 = 2;
+
 /// The largest power of two by which a formula is multiplied at once.
 const LARGEST_SHIFT: i32 = 30;
 
-/// Returns whether a formula has sums, products, absolute values and choices alone, so that its value can be exact.
+/// Returns whether a formula has sums, products, remainders, absolute values and choices alone, so that its value can be exact.
 pub(super) fn has_no_function(formula: &Expression) -> bool {
     let is_function = |kind: &Kind| match kind {
         Kind::Unary(function, _) => !matches!(function, Function::Negate | Function::Abs),
         Kind::Binary(operator, _, exponent) => match operator {
             Operator::Power => exponent.varies(),
             Operator::Div => exponent.varies(),
-            Operator::Atan2 | Operator::Mod => true,
+            Operator::Atan2 => true,
             _ => false,
         },
         _ => false,
@@ -195,8 +198,11 @@ impl Lowering<'_> {
     /// Returns the node of an estimate of `root` with an error of at most a quarter of 2^−`frac`, for all results that read the part
     /// that is being rewritten. Fails if no number of guard bits shows this, or if a node has too many bits.
     fn estimated_root(&mut self, root: &Expression, frac: i32) -> Result<NodeId, PlanRefusal> {
+        // A factor of a large root needs as many bits more as the root has integer bits.
+        let bits = (self.range(root)?.high + 1.0).log2().ceil() as i32;
+        let value_bits = if bits <= FEW_BITS { 0 } else { bits };
         for guard in GUARD_BITS {
-            let fixed = FixedGuard { guard: frac + guard - self.finest, value_bits: 0 };
+            let fixed = FixedGuard { guard: frac + guard - self.finest, value_bits };
             let before = self.fixed_guard.replace(fixed);
             let estimate = self.new_part(root);
             self.fixed_guard = before;

@@ -136,7 +136,16 @@ fn over_number(formula: &Expression) -> Option<OverNumber> {
         return Some(OverNumber { dividend, divisor: odd });
     }
     match &formula.kind {
-        Kind::Operand(_) => Some(OverNumber::undivided(formula.clone())),
+        // Remainders and integer parts are whole numbers of the last place, and need no divisor.
+        Kind::Operand(_) | Kind::Binary(Operator::Mod, ..) => {
+            Some(OverNumber::undivided(formula.clone()))
+        }
+        Kind::Binary(Operator::Sub, a, b) if floor_of_quotient(a, b).is_some() => {
+            Some(OverNumber::undivided(formula.clone()))
+        }
+        Kind::Binary(Operator::Add, a, b) if ceiling_of(a, b).is_some() => {
+            Some(OverNumber::undivided(formula.clone()))
+        }
         Kind::Unary(function @ (Function::Negate | Function::Abs), a) => {
             let OverNumber { dividend, divisor } = over_number(a)?;
             let dividend = with_kind(Kind::Unary(*function, Arc::new(dividend)));
