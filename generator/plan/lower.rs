@@ -9,6 +9,7 @@ mod choice;
 mod direction;
 mod division;
 mod divisor;
+mod errors;
 mod exponential;
 mod nearest;
 mod quotient;
@@ -17,18 +18,16 @@ mod root;
 mod shape;
 mod wave;
 
-use std::cell::RefCell;
 use std::collections::HashMap;
 use std::mem;
 use std::sync::Arc;
 
 use glint_approximate::{Curve, Outside, Piecewise, SharedWidths, TargetFunction};
 use glint_base::fixed::{Format, Rounding, exp2, nearest, shifted_left};
-use glint_formula::{Comparison, Enclosure, Expression, Function, Kind, Operator};
+use glint_formula::{Comparison, Enclosure, Expression, Function, Kind, Operator, RBig};
 
-use super::boxes::{FEW_OPERANDS, ResultProof};
-use super::facts::{GuardedFormula, has_fact};
-use super::frontier::PlanOfParts;
+use super::facts::has_fact;
+use super::guarded::GuardedFormula;
 use super::node::{Approximation, NodeId, Operation, PlanNode, StatedValue, ValueAccuracy};
 use super::order;
 use super::plan::ExpressionPlan;
@@ -38,6 +37,7 @@ use super::statement::{
     ExpressionStatement, HALF_A_UNIT, StatedOverflow, StatedResult, StatedWidth,
 };
 use super::uses::{PartUses, reads_always};
+use errors::ErrorMemo;
 use nearest::has_no_function;
 use rational::{QuotientParts, ceiling_of, floor_of_quotient, rational_quotient};
 use shape::{
@@ -64,9 +64,6 @@ const WIDEST_EXACT_SQUARE: u32 = 30;
 
 /// A quotient is computed with a reciprocal if the result has no more bits than this.
 const WIDEST_RATIO: i32 = 28;
-
-/// The number of divisions of the domain in a proof of the error of a single node.
-const DIVISIONS_FOR_AN_ERROR: usize = 64;
 
 /// The numbers of fraction bits and the choices with which formulas are rewritten as a plan.
 #[derive(Clone, Debug, PartialEq)]
@@ -175,24 +172,6 @@ pub(super) struct PlanSearch<'s> {
     pub(super) tables: TableRule,
     ranges: RangeMemo,
     errors: ErrorMemo,
-}
-
-/// The errors of nodes that were bounded for a statement. Most plans of a search differ in few nodes, so that most nodes have the same
-/// error in all of them.
-#[derive(Default)]
-struct ErrorMemo(RefCell<HashMap<u64, f64>>);
-
-impl ErrorMemo {
-    /// Returns an upper bound of the error of a result as a whole number of `unit` units, and infinity if none was found.
-    fn units_of(&self, proof: &ResultProof<'_>, unit: f64) -> f64 {
-        let digest = proof.digest(DIVISIONS_FOR_AN_ERROR);
-        if let Some(known) = self.0.borrow().get(&digest) {
-            return *known;
-        }
-        let units = proof.whole_units(unit, DIVISIONS_FOR_AN_ERROR).unwrap_or(0.0);
-        self.0.borrow_mut().insert(digest, units);
-        units
-    }
 }
 
 /// How the planner finds the polynomials of the functions in a plan.
@@ -897,6 +876,11 @@ impl<'s> Lowering<'s> {
         function: &Expression,
         range: Enclosure,
     ) -> Result<NodeId, PlanRefusal> {
+        if range.low == range.high
+            && let Some(value) = function_of_number(function, range.low)
+        {
+            return self.number(&value);
+        }
         let operand = self.plan.node(node).format;
         // The node may differ from its exact value by the roundings before it.
         let slack = if self.is_exact(node) { 0.0 } else { self.largest_error(node) };
@@ -964,70 +948,6 @@ impl<'s> Lowering<'s> {
         let approximation = Approximation { function: target, polynomials };
         self.plan.polynomial(name, node, approximation, values)
     }
-
-    /// Returns an upper bound of the error of a node in units of its last bit, rounded up, over all operands for which a result is
-    /// promised and that satisfy the conditions of the present uses. Returns the units of an error of 1 if no bound was found.
-    fn largest_error(&self, node: NodeId) -> f64 {
-        let unit = exp2(-self.plan.node(node).format.frac);
-        let errors = self.errors_by_result(node);
-        // The promise of a result that does not depend on the node can allow operands for which the node has no value.
-        let finite = errors.into_iter().filter(|units| units.is_finite());
-        finite.reduce(f64::max).unwrap_or_else(|| (1.0 / unit).ceil())
-    }
-
-    /// Returns for each result an upper bound of the error of a node in units of its last bit, rounded up, over all operands for
-    /// which the result is promised and that satisfy the conditions of the present uses. A bound is infinite if none was found, and for
-    /// a result that does not read the part that is being rewritten.
-    fn errors_by_result(&self, node: NodeId) -> Vec<f64> {
-        let unit = exp2(-self.plan.node(node).format.frac);
-        let mut plan = self.plan.clone();
-        plan.results = vec![node];
-        plan.proved = vec![node];
-        let mut errors = Vec::new();
-        for (result, reads) in self.statement.results.iter().zip(&self.uses.readers) {
-            if !reads {
-                errors.push(f64::INFINITY);
-                continue;
-            }
-            let mut statement = self.statement.clone();
-            let mut alone = StatedResult { fraction: 0, ..result.clone() };
-            for (comparison, outcome) in &self.uses.conditions {
-                let condition = match outcome {
-                    true => comparison.clone(),
-                    false => comparison.negated(),
-                };
-                alone.promise = Some(match alone.promise {
-                    None => condition,
-                    Some(promise) => promise.and(condition),
-                });
-            }
-            let count = alone.formula.operands().len();
-            if count > FEW_OPERANDS
-                && let Some(parts) = PlanOfParts::of(&plan, node, &alone, count)
-            {
-                let proof = ResultProof::new(&parts.statement, &parts.plan, 0);
-                let units = self.errors.units_of(&proof, unit);
-                if units.is_finite() {
-                    errors.push(units);
-                    continue;
-                }
-            }
-            statement.results = vec![alone];
-            let proof = ResultProof::new(&statement, &plan, 0);
-            errors.push(self.errors.units_of(&proof, unit));
-        }
-        errors
-    }
-
-    /// Returns whether the value of a node has no rounding error.
-    fn is_exact(&self, node: NodeId) -> bool {
-        let needed = self.plan.needed_by(node);
-        let mut nodes = self.plan.nodes.iter().zip(needed);
-        nodes.all(|(node, is_needed)| {
-            let is_nearest = |stated: &StatedValue| stated.accuracy == ValueAccuracy::Nearest;
-            !is_needed || node.source.is_none() && !node.stated.as_ref().is_some_and(is_nearest)
-        })
-    }
 }
 
 /// Returns 1 / `divisor`.
@@ -1062,6 +982,13 @@ pub(super) fn has_functions_of_operands(statement: &ExpressionStatement) -> bool
         is_short_operand(statement, core) && !is_by_products
     };
     statement.results.iter().any(|result| result.formula.count(&is_function) > 0)
+}
+
+/// Returns a function of x with a number in place of x. Returns `None` if the number is not finite.
+fn function_of_number(function: &Expression, number: f64) -> Option<Expression> {
+    let value = RBig::try_from(number).ok()?;
+    let value = shape::number(&value.to_string());
+    Some(function.substitute(&Expression::operand("x"), &value, &function.span))
 }
 
 /// Returns limits of the values of a function of x over the raw domain. Returns `None` if the limits are not finite.

@@ -9,7 +9,7 @@ use glint_base::fixed::{Format, Rounding};
 use glint_base::interval::Interval;
 use glint_formula::Enclosure;
 
-use super::facts::GuardedFormula;
+use super::guarded::GuardedFormula;
 
 /// The index of a node in [`super::ExpressionPlan::nodes`]. A node reads only nodes with a smaller index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

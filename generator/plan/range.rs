@@ -9,7 +9,7 @@ use std::sync::Arc;
 use glint_formula::{Comparison, Enclosure, Expression, Function, Kind, Operator};
 
 use super::boxes::{BoxScore, OperandBox, affordable, best_halves};
-use super::facts::GuardedFormula;
+use super::guarded::GuardedFormula;
 use super::refusal::{PartToLimit, PlanRefusal};
 use super::statement::{ExpressionStatement, StatedResult};
 use super::uses::PartUses;

@@ -12,7 +12,7 @@ use glint_formula::{Enclosure, Expression, Function, Kind, Operator};
 use super::Lowering;
 use super::root::holding;
 use super::shape::number;
-use crate::facts::GuardedFormula;
+use crate::guarded::GuardedFormula;
 use crate::node::{CaseAgreement, NodeId};
 use crate::refusal::PlanRefusal;
 
