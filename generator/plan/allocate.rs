@@ -213,7 +213,8 @@ pub(super) fn largest_excess(
 
 impl ExcessiveResult {
     /// Returns the number of the rounding operation with the largest share of the error. An operation with the largest number
-    /// of guard bits does not count. Fails if no operation is left.
+    /// of guard bits does not count. If the error has a limit, a share without a limit is not known; such an operation counts if the
+    /// other shares together are less than half of the error. Fails if no operation is left.
     pub(super) fn source(
         &self,
         statement: &ExpressionStatement,
@@ -222,22 +223,32 @@ impl ExcessiveResult {
     ) -> Result<usize, PlanRefusal> {
         let proof = ResultProof::new(statement, plan, self.result);
         let mut largest = (0.0, None);
+        let mut fewest_unknown: Option<(i32, usize)> = None;
+        let mut known = 0.0;
         for (node, needed) in plan.nodes.iter().zip(&proof.needed) {
             let Some(source) = node.source.filter(|_| *needed) else { continue };
-            if guards.bits.get(source).is_some_and(|guard| *guard >= MOST_GUARD) {
+            let guard = guards.bits.get(source).copied().unwrap_or(0);
+            if guard >= MOST_GUARD {
                 continue;
             }
             let share = proof.share(&self.worst.limits, source);
-            // A share without a limit is not meaningful if the whole error has a limit.
-            let share = match share.is_finite() || self.worst.units.is_infinite() {
-                true => share,
-                false => f64::MIN_POSITIVE,
-            };
+            if share.is_infinite() && self.worst.units.is_finite() {
+                let unknown = (guard, source);
+                fewest_unknown = Some(fewest_unknown.map_or(unknown, |it| it.min(unknown)));
+                continue;
+            }
+            known += share;
             if share > largest.0 {
                 largest = (share, Some(source));
             }
         }
-        largest.1.ok_or_else(|| self.refusal(statement, plan))
+        let is_known = known >= self.worst.units / 2.0;
+        let unknown = fewest_unknown.map(|(_, source)| source);
+        let source = match is_known {
+            true => largest.1.or(unknown),
+            false => unknown.or(largest.1),
+        };
+        source.ok_or_else(|| self.refusal(statement, plan))
     }
 
     pub(super) fn refusal(
