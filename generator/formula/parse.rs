@@ -14,7 +14,8 @@ use super::{Comparison, Expression, Fault, Function, Kind, Literal, Operator, Te
 /// The constants, each with the largest `f64` that is not above it.
 const CONSTANTS: [(&str, f64); 2] = [("pi", std::f64::consts::PI), (EULER, std::f64::consts::E)];
 
-/// The name of the base of the natural logarithm. An operand may have this name too, because `e` often is an error.
+/// The name of the base of the natural logarithm. An operand may have this name too, because controllers often
+/// call their error `e`.
 pub const EULER: &str = "e";
 
 const SIGNS_OF_COMPARISONS: [&str; 6] = ["<", ">", "<=", ">=", "==", "!="];
@@ -42,7 +43,8 @@ pub fn parse(text: &str) -> Result<Expression, Fault> {
 }
 
 /// Parses a formula whose operands and parts can be lists: `lists` returns the list that a name stands for, or `None` for the name of
-/// a number. It may return a number for a name that is otherwise a constant. An operator on lists gives a list. For example, `2 * v` is `[2 * v_0, 2 * v_1]`.
+/// a number. It may return a number for a name that is otherwise a constant. An operator on lists gives a list. For example, `2 * v` is
+/// `[2 * v_0, 2 * v_1]`.
 ///
 /// # Errors
 /// Fails at the first mistake, with its location.

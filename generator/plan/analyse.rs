@@ -128,8 +128,8 @@ pub(super) struct ErrorAnalysis<'p> {
 }
 
 /// Returns for each integer part of a plan the first later node through which `result` reads it, if `result` depends on several integer
-/// parts, and the same for normalised words. Returns `None` for the other nodes, and for one that reaches `result` only by several ways. `needed` must have
-/// the nodes on which `result` depends.
+/// parts, and the same for normalised words. Returns `None` for the other nodes, and for one that reaches `result` only by several ways.
+/// `needed` must have the nodes on which `result` depends.
 pub(super) fn joins(plan: &ExpressionPlan, needed: &[bool], result: NodeId) -> Vec<Option<NodeId>> {
     let count = |is: fn(&Operation) -> bool| -> Vec<usize> {
         (0..plan.nodes.len()).filter(|at| needed[*at] && is(&plan.nodes[*at].operation)).collect()

@@ -436,8 +436,8 @@ impl<'s> Lowering<'s> {
         Ok(node)
     }
 
-    /// Returns the known node of a part that has the right value for the present uses, and that has limits or none. The limits are as
-    /// narrow as those that follow from the present uses.
+    /// Returns the known node of a part that has the right value for the present uses, and that has limits or none. The present uses
+    /// give no narrower limits.
     fn known_part(&self, part: &Expression, is_limited: bool) -> Option<&KnownPart> {
         self.known.iter().find(|known| {
             known.is_limited == is_limited
