@@ -50,10 +50,10 @@ ${ name }$_results ${ name }$_model(${ name }$_operands operands);
 void ${ name }$_model_points(const ${ name }$_operands *operands, ${ name }$_results *results,
                              size_t count);
 <%- endif %>
-<%- for (constant, value) in named_values %>
+<%- for (constant, doc) in functions %>
 
-/* ${ value.doc }$ */
-#define ${ constant }$ ${ value.value }$
+/* ${ doc }$ */
+#define ${ constant }$ ${ loop.index0 }$
 <%- endfor %>
 <%- for field in operands %>
 

@@ -1,8 +1,8 @@
 // ${ name }$_single_formal: formal properties of ${ name }$_single
 //
-// For formal tools only. All inputs are arbitrary. A stub replaces the pipeline: it accepts a point in
-// any clock, delivers it in any later clock, and has arbitrary results. To prove the properties, run in
-// a directory with the files of both folders:
+// For formal tools only. All inputs are arbitrary. A stub replaces the pipeline: it accepts a point
+// in any clock, delivers it in any later clock, and has arbitrary results. To prove the properties,
+// run in a directory with the files of both folders:
 //   $ yosys -q ${ name }$_single_formal.ys
 //   $ yosys-smtbmc -s z3 --unroll -t 3 ${ name }$_single_formal.smt2
 //   $ yosys-smtbmc -s z3 --unroll -i -t 2 ${ name }$_single_formal.smt2
@@ -91,7 +91,9 @@ module ${ name }$_single_formal (
         assert (done == $past(dut.arrives));
         // A start offers the point until the pipeline accepts it.
         if ($past(start && !busy)) assert (dut.offered);
-        if ($past(dut.offered) && !$past(dut.pipeline.inside)) assert (dut.offered || dut.pipeline.inside);
+        if ($past(dut.offered) && !$past(dut.pipeline.inside)) begin
+            assert (dut.offered || dut.pipeline.inside);
+        end
         // The pipeline gets the operands that were loaded before the start or with it.
 <%- for operand in operands %>
         assert (dut.held_${ operand.name }$ == ($past(${ operand.name }$_write && !busy)

@@ -5,9 +5,9 @@
 
 use glint_base::text;
 use glint_config::{Config, Shared};
-use glint_plan::{StatedResult, UnitPlan};
+use glint_plan::{StatedResult, UnitFunction, UnitPlan};
 use glint_rtl::dsl::Designer;
-use glint_rtl::netlist::{About, NamedValue};
+use glint_rtl::netlist::{About, CoreFunction, FunctionPort};
 
 use crate::plan::{PlanOutput, describe_plan};
 
@@ -19,15 +19,36 @@ pub fn describe(d: &Designer, config: &Config, planned: &UnitPlan) {
     for (name, _) in &planned.results {
         outputs.push(PlanOutput { name: format!("{name}_out"), doc: String::new() });
     }
-    let width = planned.operands[0].format.width();
-    for (opcode, function) in planned.functions.iter().enumerate() {
-        let name = format!("FUNCTION_{}", function.name.to_uppercase());
-        let results = function.planned.statement.results.iter();
-        let formulas: Vec<String> = results.map(|result| result.formula.python()).collect();
-        let doc = formulas.join(", ");
-        d.named_value(NamedValue { name, value: opcode as u64, width, doc });
-    }
+    d.functions(planned.functions.iter().map(|it| core_function(it, planned, &outputs)).collect());
     describe_plan(d, &planned.operands, &planned.plan, &outputs, is_pipelined);
+}
+
+/// Returns the names and formats of a function's operands and results at the ports of the unit.
+fn core_function(function: &UnitFunction, unit: &UnitPlan, outputs: &[PlanOutput]) -> CoreFunction {
+    let UnitFunction { name, planned } = function;
+    let mut operands = Vec::new();
+    for (operand, port) in planned.statement.operands.iter().zip(&unit.operands[1..]) {
+        operands.push(FunctionPort {
+            port: port.name.clone(),
+            name: operand.name.clone(),
+            format: operand.format,
+            doc: operand.doc.clone(),
+        });
+    }
+    let mut results = Vec::new();
+    let mut formulas = Vec::new();
+    for (number, result) in planned.statement.results.iter().enumerate() {
+        let bound = text::rounded_up(planned.bounds[number], 4);
+        let formula = result.formula.python();
+        results.push(FunctionPort {
+            port: outputs[number].name.clone(),
+            name: result.name.clone(),
+            format: planned.plan.node(planned.plan.results[number]).format,
+            doc: format!("{formula}, with an error of at most {bound} units of the last place"),
+        });
+        formulas.push(formula);
+    }
+    CoreFunction { name: name.clone(), doc: formulas.join(", "), operands, results }
 }
 
 fn about(planned: &UnitPlan) -> About {

@@ -12,15 +12,20 @@ pub(super) struct MeantSetting {
 
 const AXI_LITE: MeantSetting = MeantSetting::to("interface.registers", "\"axi-lite\"");
 const WISHBONE: MeantSetting = MeantSetting::to("interface.registers", "\"wishbone\"");
+const CFU: MeantSetting = MeantSetting::to("interface.processor", "\"cfu\"");
+const PCPI: MeantSetting = MeantSetting::to("interface.processor", "\"pcpi\"");
 const STREAM: MeantSetting = MeantSetting::to("interface.stream", "true");
 
 /// Words, [`folded`], for the keys that every device has.
-const SETTINGS: [(&[&str], &[MeantSetting]); 21] = [
+const SETTINGS: [(&[&str], &[MeantSetting]); 24] = [
     (&["axilite", "axi4lite", "axil"], &[AXI_LITE]),
     (&["wishbone", "wb"], &[WISHBONE]),
     (&["axistream", "axi4stream", "axis", "axi4s", "streaming"], &[STREAM]),
     (&["axi", "axi4"], &[AXI_LITE, STREAM]),
     (&["bus", "apb", "ahb", "avalon", "csr"], &[AXI_LITE, WISHBONE]),
+    (&["cfu", "vexriscv"], &[CFU]),
+    (&["pcpi", "picorv32"], &[PCPI]),
+    (&["instruction", "instructions", "custom", "coprocessor", "cpu"], &[CFU, PCPI]),
     (&["tuser"], &[MeantSetting::of("interface.user_bits")]),
     (&["tkeep"], &[MeantSetting::to("interface.keep", "true")]),
     (&["pipelined", "pipeline"], &[MeantSetting::to("architecture", "\"pipelined\"")]),

@@ -99,6 +99,10 @@ keys! {
         registers: String = Key::choice("interface.registers", "none", &["none", "axi-lite", "wishbone"],
             "Writes a wrapper with bus registers: <name>_axil.v for AXI4-Lite, or <name>_wb.v for Wishbone. A \
              pipeline computes one point at a time then, by <name>_single.v."),
+        processor: String = Key::choice("interface.processor", "none", &["none", "cfu", "pcpi"],
+            "Writes a wrapper by which a RISC-V processor computes with one instruction: <name>_cfu.v for CFU \
+             Playground and VexRiscv, or <name>_pcpi.v for PicoRV32, and software/<name>/<name>_instructions.h, \
+             a function in C for each instruction."),
         software: bool = Key::flag("package.software", false,
             "Writes software/<name>/, a bit-exact model of the core in C."),
         recomputation: bool = Key::flag("package.recomputation", false,

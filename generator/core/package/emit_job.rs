@@ -3,9 +3,13 @@
 //! An [`EmitJob`] has the netlist, facts such as the clocks of a computation, the names of modules and memories in the emitted
 //! Verilog, and the core's registers on a bus.
 
+use anyhow::Result;
+
 use super::bus::Bus;
 use super::inputs::EmitInputs;
+use super::instructions::Instructions;
 use super::map::Map;
+use super::processor::ProcessorInterface;
 use glint_rtl::netlist::Design;
 use glint_rtl::verilog::naming::Naming;
 
@@ -16,9 +20,27 @@ pub struct EmitJob<'a> {
     pub naming: &'a Naming,
     /// The bus that the configuration asks for, and the map of the core's registers on it.
     pub registers: Option<(&'static Bus, Map)>,
+    /// The interface of a processor that the configuration asks for, and the instructions of the core on it.
+    pub instructions: Option<(&'static ProcessorInterface, Instructions)>,
 }
 
 impl<'a> EmitJob<'a> {
+    /// Returns the job for a core, with the registers and the instructions that its configuration asks for.
+    ///
+    /// # Errors
+    /// Fails if the core cannot have them.
+    pub fn new(design: &'a Design, inputs: &'a EmitInputs, naming: &'a Naming) -> Result<Self> {
+        let registers = match inputs.around.registers {
+            Some(bus) => Some((bus, Map::new(design, inputs)?)),
+            None => None,
+        };
+        let instructions = match inputs.around.processor {
+            Some(processor) => Some((processor, Instructions::new(design, inputs)?)),
+            None => None,
+        };
+        Ok(Self { design, inputs, naming, registers, instructions })
+    }
+
     pub fn name(&self) -> &'a str {
         &self.design.name
     }

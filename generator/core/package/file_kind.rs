@@ -3,9 +3,9 @@
 
 use FileKind::{
     Bench, BenchPackage, BenchVectors, BusWrapper, CocotbBench, CocotbDriver, Constraint,
-    CorePackage, CoreProof, CoreProofScript, CoreVerilog, Manifest, Memory, Recomputation,
-    Software, StreamWrapper, SystemVerilogPackage, TargetVerilog, VendorScript, Vhdl, WrapperProof,
-    WrapperProofScript,
+    CorePackage, CoreProof, CoreProofScript, CoreVerilog, Manifest, Memory, ProcessorWrapper,
+    Recomputation, SingleWrapper, Software, StreamWrapper, SystemVerilogPackage, TargetVerilog,
+    VendorScript, Vhdl, WrapperProof, WrapperProofScript,
 };
 
 /// Lists of a core's files follow the order of the kinds here, except for the kinds that `FileKind::listed_with` moves.
@@ -21,6 +21,10 @@ pub enum FileKind {
     /// Verilog that puts the core behind registers on a bus, the top module first. For example, `rough_axil.v` and
     /// `rough_registers.v`.
     BusWrapper,
+    /// Verilog by which a processor calls the core. For example, `rough_cfu.v`.
+    ProcessorWrapper,
+    /// Verilog that computes one point at a time with a pipeline, for the two wrappers above. For example, `rough_single.v`.
+    SingleWrapper,
     /// ROM contents. For example, `rough_sine.mem`.
     Memory,
     /// The FuseSoC core of the device. For example, `rough.core`.
@@ -64,21 +68,34 @@ impl FileKind {
     pub const CORE_SOURCES: &[Self] = &[CoreVerilog, Memory];
 
     /// The files of the core and of its wrappers that synthesis tools and simulators read.
-    pub const DESIGN_SOURCES: &[Self] = &[CoreVerilog, StreamWrapper, BusWrapper, Memory];
+    pub const DESIGN_SOURCES: &[Self] =
+        &[CoreVerilog, StreamWrapper, BusWrapper, ProcessorWrapper, SingleWrapper, Memory];
+
+    /// The modules that connect the core to a system.
+    pub const WRAPPERS: &[Self] = &[StreamWrapper, BusWrapper, ProcessorWrapper, SingleWrapper];
 
     pub const BENCH_SOURCES: &[Self] = &[Bench, BenchVectors];
 
     /// The files that a simulator of Verilog reads: the core, its wrappers and the benches.
-    pub const SIMULATED: &[Self] =
-        &[CoreVerilog, StreamWrapper, BusWrapper, Memory, Bench, BenchVectors];
+    pub const SIMULATED: &[Self] = &[
+        CoreVerilog,
+        StreamWrapper,
+        BusWrapper,
+        ProcessorWrapper,
+        SingleWrapper,
+        Memory,
+        Bench,
+        BenchVectors,
+    ];
 
     /// Returns the folder in the output directory for files of this kind. In it, each configuration has a folder of its own:
     /// the memories of `rough` are in `rtl_out/rough/`. Only the driver that all configurations share,
     /// [`FileKind::CocotbDriver`], is in the folder itself.
     pub fn folder(self) -> &'static str {
         match self {
-            CoreVerilog | TargetVerilog | StreamWrapper | BusWrapper | Memory | CorePackage
-            | Constraint | VendorScript | Vhdl | SystemVerilogPackage | Manifest => "rtl_out",
+            CoreVerilog | TargetVerilog | StreamWrapper | BusWrapper | ProcessorWrapper
+            | SingleWrapper | Memory | CorePackage | Constraint | VendorScript | Vhdl
+            | SystemVerilogPackage | Manifest => "rtl_out",
             CocotbBench | WrapperProof | WrapperProofScript | CoreProof | CoreProofScript
             | Bench | BenchVectors | BenchPackage | CocotbDriver => "testbench",
             Software | Recomputation => "software",
@@ -88,7 +105,16 @@ impl FileKind {
     /// Returns whether simulators, linters and synthesis tools compile the files of this kind as Verilog. SystemVerilog is not
     /// among them.
     pub fn is_verilog(self) -> bool {
-        matches!(self, CoreVerilog | TargetVerilog | StreamWrapper | BusWrapper | Bench)
+        matches!(
+            self,
+            CoreVerilog
+                | TargetVerilog
+                | StreamWrapper
+                | BusWrapper
+                | ProcessorWrapper
+                | SingleWrapper
+                | Bench
+        )
     }
 
     /// Returns the kind that decides the position of a file of this kind in the list of a core's files. For example,

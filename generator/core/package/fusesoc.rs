@@ -30,8 +30,7 @@ pub fn files(job: &EmitJob, tops: &[Top], files: &mut OutputFiles) -> Result<()>
         // The portable Verilog files that a target replaces by its own version.
         replaced: &'a [String] = &replaced,
         primitives: &'a [String] = &primitives,
-        wrappers: Vec<String> =
-            files.local_paths(&[FileKind::StreamWrapper, FileKind::BusWrapper]),
+        wrappers: Vec<String> = files.local_paths(FileKind::WRAPPERS),
         memories: Vec<String> = files.local_paths(&[FileKind::Memory]),
         // The suffixes of the wrappers that have a bench.
         benches: Option<Vec<&'static str>> = wrapper_benches(tops, files),

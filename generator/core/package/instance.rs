@@ -5,7 +5,6 @@ use anyhow::Result;
 
 use super::emit_job::EmitJob;
 use super::inputs::EmitInputs;
-use super::map::Map;
 use super::output_files::OutputFiles;
 use super::tops::{Face, Top, TopPort, tops};
 use glint_rtl::netlist::Design;
@@ -27,11 +26,7 @@ pub struct InstanceExample {
 /// and registers on a bus cannot hold a line of results.
 pub fn instances(design: &Design, inputs: &EmitInputs) -> Result<Vec<InstanceExample>> {
     let naming = Naming::new(design);
-    let registers = match inputs.around.registers {
-        Some(bus) => Some((bus, Map::new(design, inputs)?)),
-        None => None,
-    };
-    let job = EmitJob { design, inputs, naming: &naming, registers };
+    let job = EmitJob::new(design, inputs, &naming)?;
     let modules = tops(&job, &OutputFiles::new(job.name()))?;
     // Most systems use the outermost module, so it comes first.
     Ok(modules.into_iter().rev().map(|top| instance(design, top)).collect())
@@ -40,7 +35,7 @@ pub fn instances(design: &Design, inputs: &EmitInputs) -> Result<Vec<InstanceExa
 fn instance(design: &Design, top: Top) -> InstanceExample {
     let rows = match top.face {
         Face::Core => core_wires(design),
-        Face::Stream | Face::Registers(_) => {
+        Face::Stream | Face::Registers(_) | Face::Processor(_) => {
             let ports = top.ports.iter().filter(|port| port.name != top.clock);
             ports.map(wire).collect()
         }

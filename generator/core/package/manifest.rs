@@ -16,8 +16,7 @@ use super::output_file::digest;
 use super::output_files::OutputFiles;
 use super::wrap::fields::Transfer;
 use crate::observation::{Computation, ContractFacts, Quantity};
-use glint_rtl::netlist::HandshakeTiming;
-use glint_rtl::netlist::{Design, Pipeline, RegId};
+use glint_rtl::netlist::{CoreFunction, Design, FunctionPort, HandshakeTiming, Pipeline, RegId};
 
 /// The version of the manifest's structure, for programs that read it. It increases when a name is renamed, moved, or gets
 /// another meaning, and not when a name is added.
@@ -36,6 +35,8 @@ struct Manifest<'a> {
     regenerate: String,
     scale: &'static str,
     ports: Vec<PortFacts<'a>>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    functions: Vec<Value>,
     timing: &'a HandshakeTiming,
     #[serde(skip_serializing_if = "Option::is_none")]
     control: Option<Value>,
@@ -86,7 +87,7 @@ fn file_names(files: &OutputFiles) -> serde_json::Map<String, Value> {
             ],
         ),
         ("primitives", &[FileKind::TargetVerilog]),
-        ("wrappers", &[FileKind::StreamWrapper, FileKind::BusWrapper]),
+        ("wrappers", FileKind::WRAPPERS),
         ("software", &[FileKind::Software, FileKind::Recomputation]),
         ("constraints", &[FileKind::Constraint]),
         ("scripts", &[FileKind::VendorScript]),
@@ -123,6 +124,7 @@ pub fn contents(job: &EmitJob, others: &OutputFiles) -> Result<String> {
         regenerate: inputs.regenerate.clone(),
         scale: "value = raw * 2^-fraction_bits",
         ports: facts::ports(design),
+        functions: design.functions.iter().map(function).collect(),
         timing: &inputs.timing,
         control: design.pipeline.is_none().then(|| control(design)),
         pipeline: design.pipeline.as_ref().map(pipeline),
@@ -151,6 +153,28 @@ pub fn contents(job: &EmitJob, others: &OutputFiles) -> Result<String> {
         stream: inputs.around.stream.then(|| stream(job)).transpose()?,
     };
     Ok(serde_json::to_string_pretty(&manifest)? + "\n")
+}
+
+/// Returns the names and formats of a function's values at the ports. The place in the list is the opcode.
+fn function(function: &CoreFunction) -> Value {
+    let values = |ports: &[FunctionPort]| -> Vec<Value> {
+        let entry = |it: &FunctionPort| {
+            json!({
+                "name": it.name,
+                "port": it.port,
+                "signed": it.format.signed,
+                "width": it.format.width(),
+                "fraction_bits": it.format.frac,
+                "doc": it.doc,
+            })
+        };
+        ports.iter().map(entry).collect()
+    };
+    json!({
+        "name": function.name,
+        "operands": values(&function.operands),
+        "results": values(&function.results),
+    })
 }
 
 fn stream(job: &EmitJob) -> Result<Value> {

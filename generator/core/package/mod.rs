@@ -31,6 +31,7 @@ mod formal_pipeline;
 mod fusesoc;
 mod inputs;
 mod instance;
+mod instructions;
 mod languages;
 mod manifest;
 mod map;
@@ -39,6 +40,7 @@ mod multiplier;
 mod output_file;
 mod output_files;
 mod points;
+mod processor;
 pub mod seal;
 mod software;
 mod surroundings;
@@ -88,7 +90,8 @@ pub fn points_bench(design: &Design, limit: u32) -> Result<PointsBench> {
 /// anything else.
 pub fn emit_core(design: &Design, inputs: &EmitInputs) -> Result<OutputFiles> {
     let naming = Naming::new(design).styled(inputs.around.style);
-    let files = core_files(&EmitJob { design, inputs, naming: &naming, registers: None })?;
+    let job = EmitJob { design, inputs, naming: &naming, registers: None, instructions: None };
+    let files = core_files(&job)?;
     module_names::check(files.as_slice())?;
     Ok(files)
 }
@@ -117,11 +120,8 @@ fn core_files(job: &EmitJob) -> Result<OutputFiles> {
 /// else.
 pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<OutputFiles> {
     let naming = Naming::new(design).styled(inputs.around.style);
-    let mut job = EmitJob { design, inputs, naming: &naming, registers: None };
+    let job = EmitJob::new(design, inputs, &naming)?;
     let mut files = core_files(&job)?;
-    if let Some(bus) = inputs.around.registers {
-        job.registers = Some((bus, map::Map::new(design, inputs)?));
-    }
     if let (Some(_), Some(example), Some(accuracy)) =
         (&inputs.vectors, &inputs.example, &inputs.accuracy)
     {

@@ -96,7 +96,12 @@ impl OutputFiles {
     /// `rough_axil`.
     pub fn top_modules(&self) -> Vec<&str> {
         let mut tops = Vec::new();
-        for kind in [FileKind::CoreVerilog, FileKind::StreamWrapper, FileKind::BusWrapper] {
+        for kind in [
+            FileKind::CoreVerilog,
+            FileKind::StreamWrapper,
+            FileKind::BusWrapper,
+            FileKind::ProcessorWrapper,
+        ] {
             tops.extend(self.modules(&[kind]).first());
         }
         tops

@@ -3,6 +3,7 @@
 //! The module also checks that the core allows two of these keys, `package.clock_mhz` and `package.rom_style`.
 
 use super::bus::{BUSES, Bus};
+use super::processor::{PROCESSORS, ProcessorInterface};
 use glint_base::config_error::ConfigError;
 use glint_config::{Config, Schema, Shared};
 use glint_rtl::netlist::{Design, Pipeline};
@@ -83,6 +84,7 @@ pub struct Surroundings {
     /// Whether the streams have `tkeep`, which marks the valid bytes of a transfer.
     pub keep: bool,
     pub registers: Option<&'static Bus>,
+    pub processor: Option<&'static ProcessorInterface>,
     /// Whether to emit a C model, in `software/<name>/`.
     pub software: bool,
     /// Whether to emit a C program that compares the results of every combination of operands with the formulas.
@@ -124,6 +126,7 @@ impl Surroundings {
             power_of_two: keys.data_width == "power-of-two",
             keep: keys.keep,
             registers: BUSES.iter().find(|bus| bus.key == keys.registers),
+            processor: PROCESSORS.iter().find(|it| it.key == keys.processor),
             software: keys.software,
             recomputation: keys.recomputation,
             style: Style {

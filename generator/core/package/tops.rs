@@ -1,5 +1,5 @@
-//! Lists the modules that a system can instantiate, with their ports: the core itself, its stream wrapper and its bus wrapper.
-//! The generators of constraints, Tcl scripts, IP-XACT, VHDL and LiteX modules read this list.
+//! Lists the modules that a system can instantiate, with their ports: the core itself, its stream wrapper, its bus wrapper and the wrapper
+//! for a processor. The generators of constraints, Tcl scripts, IP-XACT, VHDL and LiteX modules read this list.
 
 use anyhow::Result;
 
@@ -7,6 +7,7 @@ use super::bus::{Bus, Protocol, STREAMS};
 use super::emit_job::EmitJob;
 use super::file_kind::FileKind;
 use super::output_files::OutputFiles;
+use super::processor::ProcessorInterface;
 use super::wrap::fields::Transfer;
 use glint_rtl::netlist::{Design, Role};
 use glint_rtl::verilog::text::ascii;
@@ -18,6 +19,8 @@ pub enum Face {
     /// An AXI4-Stream for operands and another for results.
     Stream,
     Registers(&'static Bus),
+    /// The interface of a processor for instructions.
+    Processor(&'static ProcessorInterface),
 }
 
 #[derive(Clone, Debug)]
@@ -85,7 +88,7 @@ impl Top {
     }
 }
 
-/// Returns the core, then its stream wrapper and its bus wrapper, if the configuration asks for them. Fails if streams are
+/// Returns the core, then its wrappers for streams, a bus and a processor, if the configuration asks for them. Fails if streams are
 /// asked for, and the core has no operands or no results.
 pub fn tops(job: &EmitJob, files: &OutputFiles) -> Result<Vec<Top>> {
     let (name, design) = (job.name(), job.design);
@@ -104,12 +107,13 @@ pub fn tops(job: &EmitJob, files: &OutputFiles) -> Result<Vec<Top>> {
     }];
     let mut add =
         |suffix: &'static str, face: Face, what: String, level: u8, ports: Vec<TopPort>| {
-            let kind = match face {
-                Face::Core => FileKind::CoreVerilog,
-                Face::Stream => FileKind::StreamWrapper,
-                Face::Registers(_) => FileKind::BusWrapper,
+            let kinds: &[FileKind] = match face {
+                Face::Core => &[],
+                Face::Stream => &[FileKind::StreamWrapper],
+                Face::Registers(_) => &[FileKind::BusWrapper, FileKind::SingleWrapper],
+                Face::Processor(_) => &[FileKind::ProcessorWrapper, FileKind::SingleWrapper],
             };
-            let mut verilog = files.local_paths(&[kind]);
+            let mut verilog = files.local_paths(kinds);
             verilog.extend(files.local_paths(&[FileKind::CoreVerilog]));
             tops.push(Top {
                 module: format!("{name}_{suffix}"),
@@ -121,7 +125,7 @@ pub fn tops(job: &EmitJob, files: &OutputFiles) -> Result<Vec<Top>> {
                 reset_level: level,
                 ports,
                 protocols: match face {
-                    Face::Core => &[],
+                    Face::Core | Face::Processor(_) => &[],
                     Face::Stream => &STREAMS,
                     Face::Registers(bus) => bus.protocol,
                 },
@@ -135,6 +139,11 @@ pub fn tops(job: &EmitJob, files: &OutputFiles) -> Result<Vec<Top>> {
         let ports = listed(&bus.ports.replace('#', &map.address_bits().to_string()));
         let what = format!("behind registers on {}", bus.title);
         add(bus.suffix, Face::Registers(bus), what, bus.reset_level, ports);
+    }
+    if let Some((interface, _)) = &job.instructions {
+        let what = format!("behind {}", interface.title);
+        let ports = listed(interface.ports);
+        add(interface.key, Face::Processor(interface), what, interface.reset_level, ports);
     }
     Ok(tops)
 }

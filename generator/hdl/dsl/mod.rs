@@ -97,7 +97,7 @@ pub use registers::{Counter, Flag, InputOperand, Register, Select};
 pub use rom::Rom;
 pub use signal::{Mux, Signal};
 
-pub use crate::netlist::{About, NamedValue, Note, Topic};
+pub use crate::netlist::{About, CoreFunction, FunctionPort, Note, OPCODE, Topic};
 use crate::retime::register_held;
 
 use crate::netlist::{
@@ -216,10 +216,10 @@ impl Designer {
         self.inner.borrow_mut().design.about = about;
     }
 
-    /// Gives a value of an operand a name, for which the emitted Verilog and C define a constant. For example, a unit names the
-    /// opcodes of its functions. The name must be in upper case, and no port may have it.
-    pub fn named_value(&self, value: NamedValue) {
-        self.inner.borrow_mut().design.named_values.push(value);
+    /// States the functions among which the operand [`OPCODE`] selects. The emitted Verilog and C define a constant for each, and
+    /// the manifest lists them. They do not change the hardware.
+    pub fn functions(&self, functions: Vec<CoreFunction>) {
+        self.inner.borrow_mut().design.functions = functions;
     }
 
     /// Adds a constant. Reports a mistake if `format` cannot represent `value` exactly: `u0.8` can represent 0.75 but not 0.1.

@@ -18,7 +18,7 @@ impl Design {
             ports: Vec::new(),
             control: Control::none(),
             pipeline: None,
-            named_values: Vec::new(),
+            functions: Vec::new(),
             warnings: Vec::new(),
         }
     }

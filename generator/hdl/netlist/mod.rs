@@ -12,6 +12,7 @@ mod decisions;
 mod delay;
 mod dump;
 pub mod eval;
+mod function;
 mod handshake;
 pub mod interval;
 pub mod microcode;
@@ -26,6 +27,7 @@ pub use control::{Control, Field, FieldKind, Microinstruction, Sequence};
 pub use decisions::{decided_by_data, delay_of_valid};
 pub use delay::{DelayLine, Delayed};
 pub use eval::Interpreter;
+pub use function::{CoreFunction, FunctionPort, OPCODE};
 use glint_base::diagnostic::{Diagnostic, SourceLocation};
 use glint_base::fixed::Format;
 use glint_base::interval::Interval;
@@ -288,18 +290,6 @@ impl<T: Into<String>> From<T> for Note {
     }
 }
 
-/// A value of an operand with a name. The emitted files define a constant for it.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct NamedValue {
-    /// The name of the constant, in upper case: `FUNCTION_RCP`.
-    pub name: String,
-    pub value: u64,
-    /// The width of the operand in bits.
-    pub width: u32,
-    /// What the value means, on one line.
-    pub doc: String,
-}
-
 /// The netlist of a device: datapath, control unit and ports.
 #[derive(Clone, Debug)]
 pub struct Design {
@@ -318,8 +308,8 @@ pub struct Design {
     pub control: Control,
     /// The facts about the stages, if the design is a pipeline.
     pub pipeline: Option<Pipeline>,
-    /// Values of operands with names for users of the core, such as the opcodes of a unit.
-    pub named_values: Vec<NamedValue>,
+    /// The functions that the operand [`OPCODE`] selects, in the order of their opcodes; none for most cores.
+    pub functions: Vec<CoreFunction>,
     /// Logic on which no output depends, muxes that always pass the same input, and choices that no microinstruction makes.
     pub warnings: Vec<Diagnostic>,
 }

@@ -52,7 +52,7 @@ pub fn assemble(
         schedule,
         design: Design {
             about,
-            named_values: sequential.named_values.clone(),
+            functions: sequential.functions.clone(),
             ..Design::empty(&sequential.name)
         },
         pipeline,

@@ -156,13 +156,14 @@ impl<'a> Builder<'a> {
             lines.extend(localparam(name, value as u64, width, ""));
         }
         let is_control = self.partition == Partition::Control;
-        if !is_control && !design.named_values.is_empty() {
+        if let (false, Some(width)) = (is_control, design.opcode_bits()) {
             lines.push(
                 "    // For users of the core; the core itself does not need them.".to_owned(),
             );
             lines.push("    /* verilator lint_off UNUSEDPARAM */".to_owned());
-            for value in &design.named_values {
-                lines.extend(localparam(&value.name, value.value, value.width, &value.doc));
+            for (number, function) in design.functions.iter().enumerate() {
+                let name = function.constant();
+                lines.extend(localparam(&name, number as u64, width, &function.doc));
             }
             lines.push("    /* verilator lint_on UNUSEDPARAM */".to_owned());
         }

@@ -188,8 +188,8 @@ impl VerilogText {
         let files = core.files(&format!("{name}.toml"), core.shipped_vectors()?)?;
         let proofs = [FileKind::WrapperProof, FileKind::WrapperProofScript];
         let read = [FileKind::SIMULATED, &proofs].concat();
-        let wrappers = [FileKind::StreamWrapper, FileKind::BusWrapper];
-        Ok(Self::new(core, &files, &read, &wrappers))
+        let wrappers = FileKind::WRAPPERS;
+        Ok(Self::new(core, &files, &read, wrappers))
     }
 
     fn new(core: &Core, files: &OutputFiles, read: &[FileKind], planted: &[FileKind]) -> Self {

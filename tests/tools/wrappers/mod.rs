@@ -2,6 +2,7 @@
 //! and they work with bus models that Glint did not write.
 
 mod planted;
+mod processors;
 
 use std::fs;
 

@@ -79,7 +79,7 @@ pub fn file(job: &EmitJob, tops: &[Top], files: &mut OutputFiles) -> Result<()> 
     }
     let registers = tops.iter().find_map(|top| match top.face {
         Face::Registers(bus) => Some((top, bus)),
-        Face::Core | Face::Stream => None,
+        Face::Core | Face::Stream | Face::Processor(_) => None,
     });
     let text = fill!("litex.py" {
         name: &'a str,

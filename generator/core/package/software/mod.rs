@@ -3,6 +3,7 @@
 //! The author of a driver can start with these files before there is hardware. Glint generates the C model from the netlist
 //! and its microprogram, which the golden model does not read. Tests compare both models and so find mistakes in either.
 
+mod instructions;
 mod litex;
 mod model;
 mod print;
@@ -35,6 +36,9 @@ pub fn files(job: &EmitJob, tops: &[Top], files: &mut OutputFiles) -> Result<()>
     }
     if let Some((bus, map)) = &job.registers {
         registers::files(job, bus, map, files)?;
+    }
+    if let Some((_, instructions)) = &job.instructions {
+        instructions::file(job, instructions, files)?;
     }
     if job.inputs.around.litex {
         litex::file(job, tops, files)?;

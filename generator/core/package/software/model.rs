@@ -16,7 +16,7 @@ use crate::package::file_kind::FileKind;
 use crate::package::output_files::OutputFiles;
 use glint_base::config_error::ConfigError;
 use glint_base::fixed::{Format, mask};
-use glint_rtl::netlist::{Design, NamedValue, Port, Role, RomId};
+use glint_rtl::netlist::{Design, Port, Role, RomId};
 use glint_rtl::pipeline::{
     Cell, Cycle, Graph, NodeId, StateValues, Unrolled, any_cycle, unroll_in_powers,
 };
@@ -138,11 +138,10 @@ pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<Vec<RomId>> {
     let regenerate = job.regenerate();
     let [title, formula] =
         [&about.title, &about.formula].map(|text| ascii(text).replace("*/", "* /"));
-    let mut named_values = Vec::new();
-    for value in &design.named_values {
-        let doc = ascii(&value.doc).replace("*/", "* /");
-        let constant = format!("{}_{}", constant_name(name), value.name);
-        named_values.push((constant, NamedValue { doc, ..value.clone() }));
+    let mut functions = Vec::new();
+    for function in &design.functions {
+        let doc = ascii(&function.doc).replace("*/", "* /");
+        functions.push((format!("{}_{}", constant_name(name), function.constant()), doc));
     }
     let latency = job.design.pipeline.as_ref().map(|pipeline| pipeline.stages.len());
     let header = fill!("model.h" {
@@ -154,8 +153,8 @@ pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<Vec<RomId>> {
         // Only for a pipeline: the upper-case name of its latency, and the clocks.
         latency: Option<(String, usize)> =
             latency.map(|clocks| (format!("{}_LATENCY", constant_name(name)), clocks)),
-        // Each with the name of a constant and its value.
-        named_values: &'a [(String, NamedValue)] = &named_values,
+        // In the order of the opcodes, each with the name of its constant and its formulas.
+        functions: &'a [(String, String)] = &functions,
         operands: &'a [CField] = &operands,
         results: &'a [CField] = &results,
         line: bool,

@@ -1,4 +1,5 @@
-//! Generates the test benches of a core's wrappers, `<name>_axis_tb.v`, and `<name>_axil_tb.v` or `<name>_wb_tb.v`.
+//! Generates the test benches of a core's wrappers, such as `<name>_axis_tb.v`, `<name>_axil_tb.v` and
+//! `<name>_cfu_tb.v`.
 //!
 //! The benches send the finished computations of the core's own bench through the wrapper, up to 4096 results. A bench of a bus
 //! wrapper leaves some out if there are more than 256 computations.
@@ -8,12 +9,16 @@ use glint_base::fill;
 
 use super::fields::{StreamField, Transfer};
 use super::points::{points, received, sent};
+use super::processor::ids;
 use crate::observation::Vectors;
 use crate::package::emit_job::EmitJob;
 use crate::package::file_kind::FileKind;
+use crate::package::instructions::{Instructions, OPCODE_BITS};
 use crate::package::map::{Access, INTERRUPT_PENDING, Map, PortBits, PortPlacement};
 use crate::package::output_files::OutputFiles;
 use glint_base::fixed::mask;
+use glint_rtl::netlist::OPCODE;
+use glint_rtl::verilog::text::literal;
 
 /// The largest number of points (sets of operands) that a bench of a bus wrapper computes. Of more points it uses every
 /// second, or every third, and so on.
@@ -66,6 +71,27 @@ pub fn files(job: &EmitJob, vectors: &Vectors, files: &mut OutputFiles) -> Resul
         })?;
         files.add_verilog(FileKind::Bench, vec![format!("{name}_axis_tb")], text);
         add_python(job, "axis", &["streams_carry_every_point"], files)?;
+    }
+    if let Some((interface, instructions)) = &job.instructions {
+        let top = format!("{name}_{}", interface.key);
+        let point_operands = &operands.fields;
+        let text = fill!("processor_tb.v" {
+            name: &'a str,
+            top: &'a str = &top,
+            is_cfu: bool = interface.key == "cfu",
+            points: usize = points.len(),
+            every: usize = points.len().div_ceil(ON_A_BUS),
+            limit: usize = clocks + 64,
+            in_high: u32,
+            out_high: u32,
+            words: [String; 2] = [0, 1].map(|word| source_word(instructions, word, point_operands)),
+            // The bits of the opcode in the bench's variable `point`; empty without an opcode.
+            opcode: String = opcode_bits(instructions, point_operands),
+            ids: Vec<String> = ids(instructions),
+            results: Vec<String> =
+                results.fields.iter().map(|field| field_word(field, 0, "result")).collect(),
+        })?;
+        files.add_verilog(FileKind::Bench, vec![format!("{top}_tb")], text);
     }
     if let Some((bus, map)) = &job.registers {
         let top = format!("{name}_{}", bus.suffix);
@@ -146,8 +172,14 @@ fn accesses(ports: &[PortPlacement], fields: &[StreamField], net: &str) -> Vec<B
 /// Returns the bus register that holds `part` of a port. `field` gives the position of the port in the bench's variable `net`,
 /// which is `point` for an operand and `result` for a result.
 fn access(part: &PortBits, field: &StreamField, net: &str) -> BenchRegister {
-    let bits = (field.padded() - part.low).min(32);
-    let low = field.low + part.low;
+    let word = field_word(field, part.low, net);
+    BenchRegister { at: address(part.place), word, mask: format!("32'h{:08x}", mask(part.width)) }
+}
+
+/// Returns a word of 32 bits with the bits of a field from the bit `first` on, in the bench's variable `net`.
+fn field_word(field: &StreamField, first: u32, net: &str) -> String {
+    let bits = (field.padded() - first).min(32);
+    let low = field.low + first;
     let all = format!("{net}[{}:{low}]", low + bits - 1);
     let top = format!("{net}[{}]", low + bits - 1);
     // The bits above an operand may have any value. The bits above a signed result are copies of its sign bit, otherwise 0.
@@ -156,11 +188,40 @@ fn access(part: &PortBits, field: &StreamField, net: &str) -> BenchRegister {
         _ if field.signed => top,
         _ => "1'b0".to_owned(),
     };
-    let word = match 32 - bits {
+    match 32 - bits {
         0 => all,
         more => format!("{{{{{more}{{{above}}}}}, {all}}}"),
-    };
-    BenchRegister { at: address(part.place), word, mask: format!("32'h{:08x}", mask(part.width)) }
+    }
+}
+
+/// Returns the Verilog of a source register of an instruction, with the operands in the bench's variable `point`. The bits beside
+/// them may have any value.
+fn source_word(instructions: &Instructions, word: u32, fields: &[StreamField]) -> String {
+    let mut parts = Vec::new();
+    let mut end = 0;
+    for operand in instructions.operands.iter().filter(|operand| operand.word == word) {
+        let field = fields.iter().find(|field| field.name == operand.port);
+        let field = field.expect("an operand of the core is a field of its points");
+        parts.push(format!("point{}", field.bits()));
+        end = operand.low + field.width;
+    }
+    if end < 32 {
+        parts.push(format!("{{{}{{point[0]}}}}", 32 - end));
+    }
+    parts.reverse();
+    format!("{{{}}}", parts.join(", "))
+}
+
+/// Returns the bits of the opcode in the bench's variable `point`, as four bits; empty if the core has no opcode.
+fn opcode_bits(instructions: &Instructions, fields: &[StreamField]) -> String {
+    let field = fields.iter().find(|field| field.name == OPCODE);
+    match (&instructions.opcode, field) {
+        (Some((_, bits)), Some(field)) => match OPCODE_BITS - bits {
+            0 => format!("point{}", field.bits()),
+            above => format!("{}, point{}", literal(0, above), field.bits()),
+        },
+        _ => String::new(),
+    }
 }
 
 /// Returns the bus registers of the results. If results share one register, the list has one entry, in which they are

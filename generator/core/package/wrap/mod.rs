@@ -1,9 +1,10 @@
-//! Generates Verilog wrappers that connect a core to a system, by AXI4-Streams or by bus registers, and their formal properties.
+//! Generates Verilog wrappers that connect a core to a system, by AXI4-Streams, by bus registers or by instructions, and their formal properties.
 
 mod bench;
 pub(super) mod fields;
 mod pipeline;
 mod points;
+pub(super) mod processor;
 mod registers;
 pub(super) mod single;
 mod stream;
@@ -34,15 +35,18 @@ pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<()> {
     }
     if let Some((bus, map)) = &job.registers {
         registers::modules(job, bus, map, files)?;
-        if let Some(pipeline) = &job.design.pipeline {
-            single::modules(job, pipeline, files)?;
-        }
     }
-    let Some(vectors) = job.inputs.vectors.as_ref().filter(|_| streams || job.registers.is_some())
-    else {
-        return Ok(());
-    };
-    bench::files(job, vectors, files)
+    if let Some((interface, instructions)) = &job.instructions {
+        processor::modules(job, interface, instructions, files)?;
+    }
+    let are_started = job.registers.is_some() || job.instructions.is_some();
+    if let (true, Some(pipeline)) = (are_started, &job.design.pipeline) {
+        single::modules(job, pipeline, files)?;
+    }
+    match &job.inputs.vectors {
+        Some(vectors) if streams || are_started => bench::files(job, vectors, files),
+        _ => Ok(()),
+    }
 }
 
 /// Adds the formal properties `text` of the module `wrapper`, and the Yosys commands that prepare them for a solver. Adds

@@ -131,7 +131,7 @@ pub fn modules(job: &EmitJob, pipeline: &Pipeline, files: &mut OutputFiles) -> R
         results: Vec<SinglePort> = ports_of(Role::Result),
         connections: Vec<String>,
     })?;
-    files.add_verilog(FileKind::BusWrapper, vec![single.name.clone()], verilog);
+    files.add_verilog(FileKind::SingleWrapper, vec![single.name.clone()], verilog);
     let mut inside = vec![("offered".to_owned(), 1), ("arrives".to_owned(), 1)];
     inside.extend(
         ports_of(Role::Point).into_iter().map(|it| (format!("held_{}", it.name), it.width)),

@@ -1,0 +1,5 @@
+    ${ module.core }$ core (
+<%- for line in module.connections %>
+        ${ line }$
+<%- endfor %>
+    );
