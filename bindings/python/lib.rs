@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::sync::Arc;
 
 use anyhow::{Context, Result, bail, ensure};
 use numpy::{PyArray1, PyArray3, PyArrayMethods};
@@ -17,6 +18,8 @@ use arrays::{OperandColumn, ResultColumns};
 use glint::config::{ConfigSource, Problems};
 use glint::core::Core;
 use glint::cosim::batch::{Engine, Golden, Points, RustHdl};
+use glint::golden::Contract;
+use glint::hdl::netlist::CoreFunction;
 use glint::registry::{OpenedConfig, Registry};
 use glint::render::{self, BuiltIn, Light, Material, Object, Scene, Settings, Vector, View};
 use glint::synth::{TARGETS, Target};
@@ -25,7 +28,15 @@ use glint::tune::Cost;
 /// A configuration with everything that is made of it.
 #[pyclass(name = "Core", module = "glint._glint", frozen)]
 struct PyCore {
-    core: Core,
+    core: Arc<Core>,
+}
+
+/// A function of a unit, in its own formats.
+#[pyclass(name = "UnitFunction", module = "glint._glint", frozen)]
+struct PyUnitFunction {
+    unit: Arc<Core>,
+    opcode: usize,
+    contract: Box<dyn Contract>,
 }
 
 /// Returns an error of Python with the causes of one of Rust, a line each.
@@ -98,14 +109,7 @@ impl PyCore {
 
     /// Returns the operands: name, fraction bits, integer bits, sign, domain in raw integers, colour, a sentence.
     fn operands<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
-        let of = |operand: &glint::golden::Operand| {
-            let it = port(py, &operand.name, operand.format)?;
-            it.set_item("domain", operand.domain)?;
-            it.set_item("colour", operand.colour)?;
-            it.set_item("doc", &operand.doc)?;
-            Ok(it)
-        };
-        self.core.contract.operands().iter().map(of).collect()
+        operand_facts(py, self.core.contract.as_ref())
     }
 
     fn outputs<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
@@ -122,18 +126,19 @@ impl PyCore {
     /// Returns the bound of each output in units of the output's last place, whether the bounds are proved, and the terms of the
     /// bound that is nearest to its limit.
     fn bound<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let bounds = self.core.contract.bounds();
-        let bound = bounds.governing();
-        let it = PyDict::new(py);
-        let outputs = PyDict::new(py);
-        for bound in &bounds.outputs {
-            outputs.set_item(&bound.output, bound.units)?;
+        bound_facts(py, self.core.contract.as_ref(), self.core.device().proved)
+    }
+
+    /// Returns the functions of a unit with their names, in the order of their opcodes.
+    fn functions(&self) -> Vec<(String, PyUnitFunction)> {
+        let mut functions = Vec::new();
+        let contracts = self.core.opened.function_contracts();
+        for (opcode, contract) in contracts.into_iter().enumerate() {
+            let name = self.core.design.functions[opcode].name.clone();
+            let unit = self.core.clone();
+            functions.push((name, PyUnitFunction { unit, opcode, contract }));
         }
-        it.set_item("outputs", outputs)?;
-        it.set_item("proved", self.core.device().proved)?;
-        let terms = bound.terms.iter().map(|term| (term.key, term.what, term.units));
-        it.set_item("terms", terms.collect::<Vec<_>>())?;
-        Ok(it)
+        functions
     }
 
     /// Clocks from a start, or a point taken, to its first results, and to the next.
@@ -207,14 +212,7 @@ impl PyCore {
         what: &str,
         raw: bool,
     ) -> PyResult<Vec<Bound<'py, PyAny>>> {
-        let contract = self.core.contract.as_ref();
-        let points = arrays::OperandTable::new(contract, &columns, raw)?;
-        let computed = py.detach(|| match what {
-            "exact" => ResultColumns::exact(contract, &points),
-            "error" => ResultColumns::errors(contract, &points),
-            _ => ResultColumns::golden(contract, &points, raw),
-        });
-        Ok(computed.into_arrays(py))
+        computed(py, self.core.contract.as_ref(), &columns, what, raw)
     }
 
     /// As [`PyCore::compute`], by the simulated netlist, or the golden model: raw outputs, result after result. Of a device
@@ -322,8 +320,159 @@ impl PyCore {
             Ok(problems) => problems.into(),
             Err(error) => error,
         })?;
-        Ok(Self { core })
+        Ok(Self { core: Arc::new(core) })
     }
+}
+
+#[pymethods]
+impl PyUnitFunction {
+    /// As [`PyCore::operands`], with the name of the port of each operand.
+    fn operands<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
+        let operands = operand_facts(py, self.contract.as_ref())?;
+        for (facts, operand) in operands.iter().zip(&self.function().operands) {
+            facts.set_item("port", &operand.port)?;
+        }
+        Ok(operands)
+    }
+
+    /// The results by their names in the function, with the names of their ports.
+    fn outputs<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
+        let mut outputs = Vec::new();
+        for result in &self.function().results {
+            let facts = port(py, &result.name, result.format)?;
+            facts.set_item("port", &result.port)?;
+            outputs.push(facts);
+        }
+        Ok(outputs)
+    }
+
+    #[getter]
+    fn name(&self) -> &str {
+        &self.function().name
+    }
+
+    #[getter]
+    fn opcode(&self) -> usize {
+        self.opcode
+    }
+
+    /// As [`PyCore::bound`], by the names of the results.
+    fn bound<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let facts = bound_facts(py, self.contract.as_ref(), true)?;
+        let outputs = PyDict::new(py);
+        let bounds = self.contract.bounds();
+        for (result, bound) in self.function().results.iter().zip(&bounds.outputs) {
+            outputs.set_item(&result.name, bound.units)?;
+        }
+        facts.set_item("outputs", outputs)?;
+        Ok(facts)
+    }
+
+    /// As [`PyCore::compute`].
+    fn compute<'py>(
+        &self,
+        py: Python<'py>,
+        columns: Vec<OperandColumn<'py>>,
+        what: &str,
+        raw: bool,
+    ) -> PyResult<Vec<Bound<'py, PyAny>>> {
+        computed(py, self.contract.as_ref(), &columns, what, raw)
+    }
+
+    /// Computes the raw results by simulation of the unit's netlist.
+    fn simulate<'py>(
+        &self,
+        py: Python<'py>,
+        columns: Vec<OperandColumn<'py>>,
+        raw: bool,
+    ) -> PyResult<Vec<Bound<'py, PyArray1<i64>>>> {
+        let table = arrays::OperandTable::new(self.contract.as_ref(), &columns, raw)?;
+        let results = py.detach(|| self.simulated(&table)).map_err(wrong)?;
+        Ok(results.into_iter().map(|column| PyArray1::from_vec(py, column)).collect())
+    }
+}
+
+impl PyUnitFunction {
+    fn function(&self) -> &CoreFunction {
+        &self.unit.design.functions[self.opcode]
+    }
+
+    /// Returns a column of raw results for each result.
+    fn simulated(&self, table: &arrays::OperandTable) -> Result<Vec<Vec<i64>>> {
+        let unit = self.unit.contract.as_ref();
+        let function = self.function();
+        let mut rows = Vec::new();
+        table.rows(0..table.len(), &mut rows);
+        let mut points = Points::new(unit.operands().len());
+        for row in rows.chunks_exact(function.operands.len()) {
+            let mut words = vec![0; unit.operands().len()];
+            words[0] = self.opcode as i64;
+            for ((word, operand), raw) in words[1..].iter_mut().zip(&function.operands).zip(row) {
+                *word = operand.format.bits((*raw).into()) as i64;
+            }
+            points.push(words.into_iter(), 1);
+        }
+        let words = RustHdl::new(&self.unit.design, unit)?.compute(&points)?;
+        let mut columns = Vec::new();
+        for (place, result) in function.results.iter().enumerate() {
+            let of_result = words.iter().skip(place).step_by(unit.outputs().len());
+            let raw = of_result.map(|word| result.format.raw(result.format.bits((*word).into())));
+            columns.push(raw.map(|raw| raw as i64).collect());
+        }
+        Ok(columns)
+    }
+}
+
+/// Returns the operands of a contract: name, format, domain in raw integers, colour, a sentence.
+fn operand_facts<'py>(
+    py: Python<'py>,
+    contract: &dyn Contract,
+) -> PyResult<Vec<Bound<'py, PyDict>>> {
+    let of = |operand: &glint::golden::Operand| {
+        let it = port(py, &operand.name, operand.format)?;
+        it.set_item("domain", operand.domain)?;
+        it.set_item("colour", operand.colour)?;
+        it.set_item("doc", &operand.doc)?;
+        Ok(it)
+    };
+    contract.operands().iter().map(of).collect()
+}
+
+/// Returns the bound of each output, whether the bounds are proved, and the terms of the bound that is nearest to its limit.
+fn bound_facts<'py>(
+    py: Python<'py>,
+    contract: &dyn Contract,
+    proved: bool,
+) -> PyResult<Bound<'py, PyDict>> {
+    let bounds = contract.bounds();
+    let bound = bounds.governing();
+    let it = PyDict::new(py);
+    let outputs = PyDict::new(py);
+    for bound in &bounds.outputs {
+        outputs.set_item(&bound.output, bound.units)?;
+    }
+    it.set_item("outputs", outputs)?;
+    it.set_item("proved", proved)?;
+    let terms = bound.terms.iter().map(|term| (term.key, term.what, term.units));
+    it.set_item("terms", terms.collect::<Vec<_>>())?;
+    Ok(it)
+}
+
+/// Computes many points as [`PyCore::compute`] states.
+fn computed<'py>(
+    py: Python<'py>,
+    contract: &dyn Contract,
+    columns: &[OperandColumn<'py>],
+    what: &str,
+    raw: bool,
+) -> PyResult<Vec<Bound<'py, PyAny>>> {
+    let points = arrays::OperandTable::new(contract, columns, raw)?;
+    let computed = py.detach(|| match what {
+        "exact" => ResultColumns::exact(contract, &points),
+        "error" => ResultColumns::errors(contract, &points),
+        _ => ResultColumns::golden(contract, &points, raw),
+    });
+    Ok(computed.into_arrays(py))
 }
 
 /// Name and format of a port.
@@ -357,6 +506,7 @@ fn run_command(py: Python<'_>, arguments: Vec<OsString>) -> Option<u8> {
 fn _glint(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add_class::<PyCore>()?;
+    module.add_class::<PyUnitFunction>()?;
     module.add_function(wrap_pyfunction!(devices, module)?)?;
     module.add_function(wrap_pyfunction!(run_command, module)?)
 }

@@ -25,7 +25,7 @@ import numpy as np
 
 from . import _glint
 
-__all__ = ["Core", "Port", "devices", "expression", "function"]
+__all__ = ["Core", "Port", "UnitFunction", "devices", "expression", "function", "unit"]
 __version__ = _glint.__version__
 
 
@@ -53,40 +53,18 @@ class Port:
         return f"<{self.name}: {'s' if self.signed else 'u'}{integer}.{self.fraction}>"
 
 
-class Core:
-    """A configuration of a device.
+class Computation:
+    """What a core and a function of a unit share: they compute arrays of points with a golden model, and know the proved bound.
 
-    `Core("core.toml")` reads a file; `Core(device="lyon", **{"cosine.fraction": 16})` takes a device with keys, the others at
-    their defaults. A key takes a number of Python, NumPy, `fractions` or `decimal`, exactly as it is, a text, a flag or a list.
-    Raises ValueError with what is wrong and the remedy.
-
-    A core can be copied and pickled: the copy is made of the same configuration.
+    `_core` is the object of the extension module.
     """
 
-    def __init__(self, config=None, *, device=None, **keys):
-        path = None if config is None else os.fspath(config)
-        self._set(_glint.Core(path, device, {key: _plain(key, value) for key, value in keys.items()}))
+    #: The operand that says how many results a computation has; only cores that walk lines have one.
+    length = None
 
-    def _set(self, core):
-        self._core = core
+    def _set_ports(self):
         self.operands = {facts["name"]: Port(facts) for facts in self._core.operands()}
         self.outputs = {facts["name"]: Port(facts) for facts in self._core.outputs()}
-
-    def __getstate__(self):
-        return self.toml()
-
-    def __setstate__(self, toml):
-        self._set(_glint.Core.from_toml(toml))
-
-    @property
-    def name(self):
-        """The name of the Verilog module."""
-        return self._core.name
-
-    @property
-    def device(self):
-        """The device, as `glint.devices()` lists it."""
-        return self._core.device
 
     @property
     def bound(self):
@@ -102,16 +80,6 @@ class Core:
     def terms(self):
         """The terms of the bound that is nearest to its limit: key, what it is, units."""
         return self._core.bound()["terms"]
-
-    @property
-    def latency(self):
-        """Clocks from a start, or from a point that a pipeline takes, to the first results."""
-        return self._core.clocks()[0]
-
-    @property
-    def interval(self):
-        """Clocks from a point to the next."""
-        return self._core.clocks()[1]
 
     def __call__(self, *columns, raw=False, **operands):
         """Computes many points by the golden model.
@@ -135,47 +103,6 @@ class Core:
 
         NaN outside the condition `where` of an expression, where any result may come out."""
         return self._of_points("error", columns, operands, raw)
-
-    def simulate(self, *columns, raw=False, **operands):
-        """Computes as a call does, but by simulation of the netlist, clock by clock."""
-        columns, shape, mask = self._columns(columns, operands, raw)
-        if self.length is not None:
-            return self._line(columns, raw, True)
-        results = self._core.run(columns, True, raw)
-        return self._shaped(results if raw else self._values(results), shape, mask)
-
-    def cosim(self, points=10_000, seed=1):
-        """Golden model against the simulated netlist on every clock of so many results; the first difference, or none."""
-        return self._core.cosim(points, seed)
-
-    def verilog(self):
-        """The Verilog and the contents of the memories, by file name."""
-        return self._core.verilog()
-
-    def schedule(self):
-        """A dictionary for each stage of a pipeline, or for each microinstruction."""
-        return self._core.schedule()
-
-    def estimate(self, target="ecp5"):
-        """An estimate of look-up tables, DSP blocks, block RAMs and MHz on `ice40`, `ecp5` or `xilinx7`."""
-        return self._core.estimate(target)
-
-    def render(self, size=256, exponent=None, samples=2):
-        """A lit sphere as an array of height, width and colour (uint8), its highlights by the golden model."""
-        width, height = (size, size) if np.isscalar(size) else size
-        return self._core.render((width, height), exponent, samples)
-
-    def toml(self):
-        """The configuration with all its keys."""
-        return self._core.toml()
-
-    @property
-    def length(self):
-        """The operand that says how many results a computation has, of a device that walks lines; otherwise none."""
-        return self._core.length
-
-    def __repr__(self):
-        return f"<glint.Core {self.name}: {self.device}>"
 
     def _of_points(self, what, columns, operands, raw):
         if self.length is not None:
@@ -250,11 +177,136 @@ class Core:
             results = [np.ma.array(array, mask=mask) for array in results]
         return results[0] if len(results) == 1 else dict(zip(self.outputs, results))
 
+
+class Core(Computation):
+    """A configuration of a device.
+
+    `Core("core.toml")` reads a file; `Core(device="lyon", **{"cosine.fraction": 16})` takes a device with keys, the others at
+    their defaults. A key takes a number of Python, NumPy, `fractions` or `decimal`, exactly as it is, a text, a flag or a list.
+    Raises ValueError with what is wrong and the remedy.
+
+    A core can be copied and pickled: the copy is made of the same configuration.
+    """
+
+    def __init__(self, config=None, *, device=None, **keys):
+        path = None if config is None else os.fspath(config)
+        self._set(_glint.Core(path, device, {key: _plain(key, value) for key, value in keys.items()}))
+
+    def _set(self, core):
+        self._core = core
+        self._set_ports()
+        #: The functions of a unit by name; none of another device.
+        self.functions = {name: UnitFunction(function) for name, function in self._core.functions()}
+
+    def __getstate__(self):
+        return self.toml()
+
+    def __setstate__(self, toml):
+        self._set(_glint.Core.from_toml(toml))
+
+    @property
+    def name(self):
+        """The name of the Verilog module."""
+        return self._core.name
+
+    @property
+    def device(self):
+        """The device, as `glint.devices()` lists it."""
+        return self._core.device
+
+    @property
+    def latency(self):
+        """Clocks from a start, or from a point that a pipeline takes, to the first results."""
+        return self._core.clocks()[0]
+
+    @property
+    def interval(self):
+        """Clocks from a point to the next."""
+        return self._core.clocks()[1]
+
+    def simulate(self, *columns, raw=False, **operands):
+        """Computes as a call does, but by simulation of the netlist, clock by clock."""
+        columns, shape, mask = self._columns(columns, operands, raw)
+        if self.length is not None:
+            return self._line(columns, raw, True)
+        results = self._core.run(columns, True, raw)
+        return self._shaped(results if raw else self._values(results), shape, mask)
+
+    def cosim(self, points=10_000, seed=1):
+        """Golden model against the simulated netlist on every clock of so many results; the first difference, or none."""
+        return self._core.cosim(points, seed)
+
+    def verilog(self):
+        """The Verilog and the contents of the memories, by file name."""
+        return self._core.verilog()
+
+    def schedule(self):
+        """A dictionary for each stage of a pipeline, or for each microinstruction."""
+        return self._core.schedule()
+
+    def estimate(self, target="ecp5"):
+        """An estimate of look-up tables, DSP blocks, block RAMs and MHz on `ice40`, `ecp5` or `xilinx7`."""
+        return self._core.estimate(target)
+
+    def render(self, size=256, exponent=None, samples=2):
+        """A lit sphere as an array of height, width and colour (uint8), its highlights by the golden model."""
+        width, height = (size, size) if np.isscalar(size) else size
+        return self._core.render((width, height), exponent, samples)
+
+    def toml(self):
+        """The configuration with all its keys."""
+        return self._core.toml()
+
+    @property
+    def length(self):
+        """The operand that says how many results a computation has, of a device that walks lines; otherwise none."""
+        return self._core.length
+
+    def __repr__(self):
+        return f"<glint.Core {self.name}: {self.device}>"
+
+    def __getattr__(self, name):
+        """A function of a unit: `sfu.log2(2.0)`."""
+        functions = self.__dict__.get("functions", {})
+        if name in functions:
+            return functions[name]
+        raise AttributeError(f"{type(self).__name__!r} has no attribute {name!r}")
+
     def _line(self, columns, raw, simulated):
         if not all(np.isscalar(column) for column in columns):
             raise TypeError(f"{self.device} walks a line a call: give numbers")
         results = self._core.run(columns, simulated, raw)
         return self._shaped(results if raw else self._values(results), (-1,))
+
+
+class UnitFunction(Computation):
+    """A function of a unit, `sfu.functions["log2"]` or `sfu.log2`, with its own names and formats of operands and results.
+
+    It computes as a core does. Its results equal those of the unit for its opcode, bit by bit.
+    """
+
+    def __init__(self, function):
+        self._core = function
+        self._set_ports()
+
+    @property
+    def name(self):
+        """The name of the function."""
+        return self._core.name
+
+    @property
+    def opcode(self):
+        """The value of the unit's operand `opcode` that selects the function."""
+        return self._core.opcode
+
+    def simulate(self, *columns, raw=False, **operands):
+        """Computes as a call does, but by simulation of the unit's netlist."""
+        columns, shape, mask = self._columns(columns, operands, raw)
+        results = self._core.simulate(columns, raw)
+        return self._shaped(results if raw else self._values(results), shape, mask)
+
+    def __repr__(self):
+        return f"<glint.UnitFunction {self.name}: opcode {self.opcode}>"
 
 
 def _array(name, operand, raw):
@@ -347,12 +399,52 @@ def expression(
     `error` or `error_relative` are for the results that do not state them. `let` has named parts, and `keys` any other keys, `{"architecture": "pipelined"}`.
     An operand whose name is a parameter of this function, such as `error`, goes into the dictionary `operands`: `operands={"error": (-1, 1, 15)}`.
     """
+    tables = _statement(results, let, fraction, error, error_relative, where, operands, named_operands)
+    lines = ['device = "expression"', 'name = "expression"']
+    lines += [f"{key} = {_toml(key, value)}" for key, value in (keys or {}).items()]
+    core = Core.__new__(Core)
+    core._set(_glint.Core.from_toml("\n".join(lines + tables) + "\n"))
+    return core
+
+
+def unit(functions, *, keys=None):
+    """A core of several functions, one at a time by an opcode: `glint.unit({"rcp": {"results": "1 / x", "x": (0.5, 1, 16), "fraction": 15}})`.
+
+    A function is a dictionary of the parameters of `glint.expression`, or the path of a configuration of the device `expression`. The
+    order of the dictionary is the order of the opcodes. `keys` has any other keys, `{"architecture": "pipelined"}`. Each function is an
+    attribute of the core: `sfu.rcp(0.75)`, `sfu.rcp.bound`.
+    """
+    lines = ['device = "unit"', 'name = "unit"']
+    lines += [f"{key} = {_toml(key, value)}" for key, value in (keys or {}).items()]
+    for name, function in functions.items():
+        if isinstance(function, (str, os.PathLike)):
+            path = os.path.abspath(os.fspath(function))
+            lines.append(f"functions.{name}.file = {_toml(f'functions.{name}.file', path)}")
+            continue
+        lines += [f"functions.{name}.{line}" for line in _statement_of(name, function)]
+    core = Core.__new__(Core)
+    core._set(_glint.Core.from_toml("\n".join(lines) + "\n"))
+    return core
+
+
+def _statement_of(name, function):
+    """The tables of a function of a unit, from a dictionary of the parameters of `expression`."""
+    shared = ("let", "fraction", "error", "error_relative", "where", "operands")
+    given = dict(function)
+    if "results" not in given:
+        raise TypeError(f"function {name!r} has no results: give a formula, {{'results': '1 / x', 'x': (0.5, 1, 16)}}")
+    results = given.pop("results")
+    parameters = [given.pop(parameter, None) for parameter in shared]
+    return _statement(results, *parameters, given)
+
+
+def _statement(results, let, fraction, error, error_relative, where, operands, named_operands):
+    """The tables `operands`, `let` and `results` of an expression, a line each entry."""
     if isinstance(results, str):
         results = {"r": results}
     shared = {"fraction": fraction, "error": error, "error_relative": error_relative, "where": where}
     shared = {field: value for field, value in shared.items() if value is not None}
-    lines = ['device = "expression"', 'name = "expression"']
-    lines += [f"{key} = {_toml(key, value)}" for key, value in (keys or {}).items()]
+    lines = []
     both = [name for name in operands or {} if name in named_operands]
     if both:
         raise TypeError(f"operand {both[0]!r} is given twice")
@@ -374,9 +466,7 @@ def expression(
         left_out = ("error", "error_relative") if states_error else ()
         given = {field: value for field, value in shared.items() if field not in left_out}
         lines.append(f"results.{name} = {_table(f'results.{name}', {**given, **fields})}")
-    core = Core.__new__(Core)
-    core._set(_glint.Core.from_toml("\n".join(lines) + "\n"))
-    return core
+    return lines
 
 
 def _table(key, fields):

@@ -316,3 +316,56 @@ def test_a_value_half_a_place_beyond_the_format_is_refused():
     for beyond in [255.5, -0.5000001, 1e300, float("nan")]:
         with pytest.raises(ValueError, match="red"):
             core(red=beyond, **rest)
+
+
+def small_unit(**keys):
+    """A unit with a function of each kind: a quotient, two results, and signed operands."""
+    functions = {
+        "rcp": {"results": "1 / x", "x": (0.5, 1, 12), "fraction": 11},
+        "turn": {
+            "results": {"sine": "sin(2 * pi * a)", "cosine": "cos(2 * pi * a)"},
+            "a": {"bits": 10, "fraction": 10},
+            "fraction": 9,
+        },
+        "mean": {
+            "results": {"m": {"formula": "(p + q) / 2", "fraction": 5}},
+            "operands": {"p": {"bits": 8, "fraction": 4, "signed": True}, "q": {"bits": 8, "fraction": 4, "signed": True}},
+        },
+    }
+    return glint.unit(functions, keys=keys)
+
+
+@pytest.mark.parametrize("architecture", ["sequential", "pipelined"])
+def test_functions_of_a_unit_compute_in_their_own_formats(architecture):
+    sfu = small_unit(architecture=architecture)
+    assert list(sfu.functions) == ["rcp", "turn", "mean"]
+    assert [function.opcode for function in sfu.functions.values()] == [0, 1, 2]
+    x = np.linspace(0.5, 0.9997, 50)
+    reciprocal = sfu.rcp(x)
+    nearest = np.floor(x * 4096 + 0.5) / 4096
+    assert np.all(np.abs(reciprocal - 1 / nearest) * 2048 <= sfu.rcp.bound)
+    assert np.array_equal(sfu.rcp.simulate(x), reciprocal)
+    turns = sfu.turn(a=np.arange(8) / 8)
+    assert turns["sine"].tolist()[::2] == [0.0, 1.0, 0.0, -1.0]
+    assert turns["cosine"].tolist()[::2] == [1.0, 0.0, -1.0, 0.0]
+    assert sfu.mean(-3.5, 1.0) == -1.25
+    assert sfu.mean(p=-3.5, q=1.0, raw=False) == sfu.mean.simulate(-3.5, 1.0)
+    # The same at the ports of the unit: words without a sign.
+    words = sfu(opcode=2, a=-56 & 0xFF, b=16, raw=True)["r_out"]
+    assert words == -40 & (1 << sfu.outputs["r_out"].width) - 1
+    assert sfu.functions["mean"](-56, 16, raw=True) == -40
+    assert np.all(np.abs(sfu.turn.error(a=np.arange(1024) / 1024)["sine"]) <= sfu.turn.bounds["sine"])
+    assert sfu.cosim(300) is None
+    assert copy.copy(sfu).rcp(0.5) == 2.0
+
+
+def test_units_say_what_is_wrong(tmp_path):
+    with pytest.raises(AttributeError, match="no attribute 'rsqrt'"):
+        small_unit().rsqrt
+    with pytest.raises(TypeError, match="function 'rcp' has no results"):
+        glint.unit({"rcp": {"x": (0.5, 1, 12)}})
+    with pytest.raises(ValueError, match="2 is outside|2.0|is 2"):
+        small_unit().rcp(2.0)
+    path = tmp_path / "mean.toml"
+    path.write_text(glint.expression("(p + q) / 2", p=(-1, 1, 7), q=(-1, 1, 7), fraction=8).toml())
+    assert glint.unit({"mean": path, "rcp": {"results": "1 / x", "x": (0.5, 1, 8), "fraction": 8}}).mean(0.5, 0.25) == 0.375

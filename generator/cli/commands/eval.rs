@@ -2,6 +2,7 @@
 //! formula in f64.
 
 mod batch;
+mod function;
 mod operands;
 
 use std::path::PathBuf;
@@ -11,6 +12,7 @@ use clap::Args;
 use serde::Serialize;
 use serde_json::{Value, json};
 
+use self::function::NamedFunction;
 use super::{Loaded, load_one};
 use crate::failure::Failure;
 use crate::report::CommandReport;
@@ -26,6 +28,7 @@ use glint_golden::{self as golden, ANY_VALUE, Contract, Model, Operand};
 Examples:
   glint eval my_core.toml cos_gamma=0.99 exponent=20 red=255
   glint eval my_core.toml cos_gamma=#1038090     a raw integer, as the port takes it
+  glint eval sfu.toml opcode=log2 x=2            a function of a unit, by its own names and formats
   glint eval softmax4.toml v=0.5,0,0,-1          the numbers of a list; `v[0]=0.5` gives one of them
   glint eval my_core.toml --batch points.csv     a row of results for each row of operands
   glint setup my_core.toml --batch lines.csv | glint eval my_core.toml --batch -
@@ -54,8 +57,12 @@ const LIMIT: u64 = 1 << 16;
 /// Fails if the configuration has problems, if an operand is unknown or has no valid value, or if the CSV file cannot be read.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let one = load_one(registry, &arguments.config)?;
-    let given = operands::given(one.core.contract.operands(), &arguments.operands)
-        .map_err(Failure::WrongUsage)?;
+    let function =
+        function::named_function(&one.core, &arguments.operands).map_err(Failure::WrongUsage)?;
+    let at_ports = function.as_ref().map(NamedFunction::settings);
+    let settings = at_ports.as_ref().unwrap_or(&arguments.operands);
+    let given =
+        operands::given(one.core.contract.operands(), settings).map_err(Failure::WrongUsage)?;
     match &arguments.batch {
         Some(path) if *path == arguments.config => {
             wrong_usage!(
@@ -63,7 +70,7 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
             )
         }
         Some(path) => batch::batch(output, &one, &given, path),
-        None => point(output, &one, &given, arguments.typical),
+        None => point(output, &one, function.as_ref(), &given, arguments.typical),
     }
 }
 
@@ -83,10 +90,11 @@ fn outside(operands: &[Operand], raw: &[i64]) -> Vec<String> {
 }
 
 /// Reports one point with every signal of the golden model. `given` has the raw operands that the user gave, in the order of
-/// the contract.
+/// the contract. The operands and results of a `function` that the user named are reported in its own formats, too.
 fn point(
     output: OutputOptions,
     one: &Loaded,
+    function: Option<&NamedFunction>,
     given: &[Option<i64>],
     typical: bool,
 ) -> Result<bool> {
@@ -103,8 +111,10 @@ fn point(
     for (operand, &raw) in operands.iter().zip(&raw) {
         operand_values.push(SignalValue::new(operand.name.clone(), operand.format, raw.into()));
     }
+    let of_function = function.map(|function| (function.operands(), function.results()));
     output.report(&EvaluatedPoint {
         one,
+        of_function,
         operands: operand_values,
         missing,
         outside,
@@ -116,6 +126,8 @@ fn point(
 
 struct EvaluatedPoint<'a> {
     one: &'a Loaded,
+    /// The operands and results of the function that the user named, in its own formats.
+    of_function: Option<(Vec<SignalValue>, Vec<ResultComparison>)>,
     operands: Vec<SignalValue>,
     /// The operands that were not given, with the values that the command chose.
     missing: Vec<String>,
@@ -126,14 +138,24 @@ struct EvaluatedPoint<'a> {
 
 impl CommandReport for EvaluatedPoint<'_> {
     fn json(&self) -> Result<Value> {
-        Ok(json!({
+        let mut point = json!({
             "config": self.one.path,
             "operands": self.operands,
             "not_given": self.missing,
             "inside_the_domain": self.outside.is_empty(),
             "signals": self.signals,
             "formula": as_json(&self.results),
-        }))
+        });
+        if let Some((operands, results)) = &self.of_function {
+            let mut values = serde_json::Map::new();
+            for result in results {
+                values.insert(result.name.clone(), json!(result.value));
+            }
+            let formula = as_json(results);
+            point["function"] =
+                json!({ "operands": operands, "results": values, "formula": formula });
+        }
+        Ok(point)
     }
 
     fn print(&self) -> Result<()> {
@@ -146,18 +168,26 @@ impl CommandReport for EvaluatedPoint<'_> {
         }
         print_values("operand", &self.operands);
         print_values("golden, when valid", &self.signals);
-        let mut rows = Vec::new();
-        for result in &self.results {
-            rows.push(vec![
-                result.label(),
-                result.value.to_string(),
-                result.exact.map_or("no value".to_owned(), |exact| format!("{exact:.9}")),
-                result.error.map_or("outside where".to_owned(), |error| format!("{error:.3}")),
-            ]);
+        print_results(&self.results);
+        if let Some((operands, results)) = &self.of_function {
+            print_values("operand of the function", operands);
+            print_results(results);
         }
-        tables::print("result | value: | formula in f64: | error in last places:", rows);
         Ok(())
     }
+}
+
+fn print_results(results: &[ResultComparison]) {
+    let mut rows = Vec::new();
+    for result in results {
+        rows.push(vec![
+            result.label(),
+            result.value.to_string(),
+            result.exact.map_or("no value".to_owned(), |exact| format!("{exact:.9}")),
+            result.error.map_or("outside where".to_owned(), |error| format!("{error:.3}")),
+        ]);
+    }
+    tables::print("result | value: | formula in f64: | error in last places:", rows);
 }
 
 /// Returns the signals of the golden model in the clock of the first result. The golden model of a pipeline is the model of

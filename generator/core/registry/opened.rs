@@ -38,6 +38,12 @@ pub trait DeviceParts: Send + Sync {
     fn model(&self, config: &Config) -> Box<dyn Model>;
 
     fn contract(&self, config: &Config) -> Box<dyn Contract>;
+
+    /// Returns the contract of each function that an opcode selects, in the order of [`Design::functions`]. Its operands and results
+    /// have the formats of the function.
+    fn function_contracts(&self, _config: &Config) -> Vec<Box<dyn Contract>> {
+        Vec::new()
+    }
 }
 
 /// The parts of a device whose functions read all that they need from the configuration.
@@ -98,6 +104,11 @@ impl OpenedConfig {
 
     pub fn contract(&self) -> Box<dyn Contract> {
         self.parts.contract(&self.config)
+    }
+
+    /// Returns the contract of each function that an opcode selects; none for most devices.
+    pub fn function_contracts(&self) -> Vec<Box<dyn Contract>> {
+        self.parts.function_contracts(&self.config)
     }
 
     /// Returns the netlist: with a microprogram, or as a pipeline.

@@ -71,6 +71,11 @@ impl DeviceParts for UnitParts {
     fn contract(&self, config: &Config) -> Box<dyn Contract> {
         golden::unit::contract(config, &self.0)
     }
+
+    fn function_contracts(&self, config: &Config) -> Vec<Box<dyn Contract>> {
+        let functions = self.0.functions.iter();
+        functions.map(|it| golden::expression::contract(config, &it.planned)).collect()
+    }
 }
 
 /// Plans the functions, proves their errors, and merges the plans. The error of a function without a plan names the function.

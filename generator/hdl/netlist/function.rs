@@ -8,7 +8,7 @@ use super::Design;
 ///
 /// A function has names and formats of its own for the bits at the ports. For example, the function `atan2` of a unit reads its
 /// operand `y` in the low 16 bits of the port `b`.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct CoreFunction {
     /// A legal Verilog identifier. The emitted files define a constant `FUNCTION_<NAME>` with the opcode.
     pub name: String,
@@ -29,7 +29,7 @@ impl CoreFunction {
 pub const OPCODE: &str = "opcode";
 
 /// An operand or a result of a function, in the low bits of a port.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct FunctionPort {
     /// The name of the port of the core.
     pub port: String,
