@@ -410,7 +410,7 @@ impl PyUnitFunction {
             for ((word, operand), raw) in words[1..].iter_mut().zip(&function.operands).zip(row) {
                 *word = operand.format.bits((*raw).into()) as i64;
             }
-            points.push(words.into_iter(), 1);
+            points.push(words, 1);
         }
         let words = RustHdl::new(&self.unit.design, unit)?.compute(&points)?;
         let mut columns = Vec::new();

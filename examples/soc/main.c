@@ -1,14 +1,15 @@
 /* A ball, pixel by pixel, once with the highlights of each device: what `glint render` draws with the options that `run` gives.
  *
  * The highlights of every pixel in the light are computed in all ways, whose clocks are counted. A third series of points has
- * roughness, which a ball without a height map does not.
+ * roughness, which a ball without a height map does not. At the end, the processor computes three functions by instructions.
  */
 #include "ball.h"
+#include "functions.h"
 #include "system.h"
 #include "ways.h"
 
 /* ROWS are worked on together, as many as there is memory for. */
-enum { ROWS = 8, PIXELS = ROWS * WIDTH };
+enum { ROWS = 6, PIXELS = ROWS * WIDTH };
 
 static pixel pixels[PIXELS];
 static span spans[PIXELS / 2];
@@ -141,6 +142,16 @@ int main(void)
         number(all[at]->pixels);
         for (unsigned way = 0; way < WAYS; way++) {
             number(all[at]->spent[way]);
+        }
+    }
+    uint32_t spent[FUNCTIONS][FUNCTION_WAYS];
+    if (!compute_functions(spent)) {
+        return 3;
+    }
+    number(VALUES);
+    for (unsigned function = 0; function < FUNCTIONS; function++) {
+        for (unsigned way = 0; way < FUNCTION_WAYS; way++) {
+            number(spent[function][way]);
         }
     }
     return 0;

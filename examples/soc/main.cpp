@@ -37,6 +37,20 @@ void report(const char* series, const uint32_t* numbers) {
     }
 }
 
+constexpr unsigned FUNCTIONS = 3, FUNCTION_WAYS = 3;
+const char* const FUNCTION_NAMES[FUNCTIONS] = {"rcp", "rsqrt", "atan2"};
+
+// The clocks of each way to a function of the unit: an instruction, C by hand, the model in C.
+void report_functions(const uint32_t* numbers) {
+    const double values = numbers[0];
+    for (unsigned function = 0; function < FUNCTIONS; function++) {
+        const uint32_t* const clocks = numbers + 1 + function * FUNCTION_WAYS;
+        std::printf("%s, %u values: an instruction %.1f clocks, C by hand %.1f, %.1f times as many, model in C %.1f\n",
+                    FUNCTION_NAMES[function], numbers[0], clocks[0] / values, clocks[1] / values,
+                    (double)clocks[1] / clocks[0], clocks[2] / values);
+    }
+}
+
 }  // namespace
 
 int main() {
@@ -58,7 +72,7 @@ int main() {
         if (soc.failed) fail("the processor trapped, or a core refused an access");
         if (soc.end_write) {
             if (std::fclose(shade) != 0 || std::fclose(grain) != 0) fail("the pictures cannot be written");
-            if (soc.written != 0 || numbers.size() != SERIES * (1 + WAYS)) {
+            if (soc.written != 0 || numbers.size() != SERIES * (1 + WAYS) + 1 + FUNCTIONS * FUNCTION_WAYS) {
                 std::fprintf(stderr, "the program ended with exit code %u\n", soc.written);
                 return 1;
             }
@@ -66,6 +80,7 @@ int main() {
             report("cosine-power", numbers.data());
             report("rough, where it is smooth", numbers.data() + 1 + WAYS);
             report("rough, where it is not", numbers.data() + 2 * (1 + WAYS));
+            report_functions(numbers.data() + SERIES * (1 + WAYS));
             return 0;
         }
     }

@@ -1,5 +1,6 @@
 // A system on a chip that shades: PicoRV32, 64 kB of RAM, and two devices of Glint. Each is there twice, so that both ways can
 // be compared: a sequential core behind registers on Wishbone, and a pipeline between AXI4-Streams with a span engine, span.v.
+// The processor calls the functions of a unit, sfu, by instructions.
 //
 //  0x0000_0000  RAM, with the program, the operands and the frame buffer
 //  0x1000_0000  the registers of `shade`, cosine-power
@@ -34,11 +35,20 @@ module soc (
     wire [31:0] mem_la_wdata;
     wire [3:0]  mem_la_wstrb;
     wire        trap;
+    wire        pcpi_valid;
+    wire [31:0] pcpi_insn;
+    wire [31:0] pcpi_rs1;
+    wire [31:0] pcpi_rs2;
+    wire        pcpi_wr;
+    wire [31:0] pcpi_rd;
+    wire        pcpi_wait;
+    wire        pcpi_ready;
 
     picorv32 #(
         .BARREL_SHIFTER(1),
         .ENABLE_FAST_MUL(1),
         .ENABLE_DIV(1),
+        .ENABLE_PCPI(1),
         .STACKADDR(32'h0001_0000)
     ) processor (
         .clk(clk),
@@ -56,18 +66,32 @@ module soc (
         .mem_la_addr(mem_la_addr),
         .mem_la_wdata(mem_la_wdata),
         .mem_la_wstrb(mem_la_wstrb),
-        .pcpi_valid(),
-        .pcpi_insn(),
-        .pcpi_rs1(),
-        .pcpi_rs2(),
-        .pcpi_wr(1'b0),
-        .pcpi_rd(32'd0),
-        .pcpi_wait(1'b0),
-        .pcpi_ready(1'b0),
+        .pcpi_valid(pcpi_valid),
+        .pcpi_insn(pcpi_insn),
+        .pcpi_rs1(pcpi_rs1),
+        .pcpi_rs2(pcpi_rs2),
+        .pcpi_wr(pcpi_wr),
+        .pcpi_rd(pcpi_rd),
+        .pcpi_wait(pcpi_wait),
+        .pcpi_ready(pcpi_ready),
         .irq(32'd0),
         .eoi(),
         .trace_valid(),
         .trace_data()
+    );
+
+    // The unit of functions, which the processor calls by instructions.
+    sfu_pcpi sfu (
+        .clk(clk),
+        .resetn(rst_n),
+        .pcpi_valid(pcpi_valid),
+        .pcpi_insn(pcpi_insn),
+        .pcpi_rs1(pcpi_rs1),
+        .pcpi_rs2(pcpi_rs2),
+        .pcpi_wr(pcpi_wr),
+        .pcpi_rd(pcpi_rd),
+        .pcpi_wait(pcpi_wait),
+        .pcpi_ready(pcpi_ready)
     );
 
     // RAM answers in the first clock of a request: it is asked a clock ahead. It has one port. The processor's requests go
