@@ -43,7 +43,7 @@ pub fn describe<'d>(
     let ratios = keys.ratio(of).expect("a configuration that is checked");
     let powers = keys.power().expect("a configuration that is checked");
 
-    let tables = Tables { split: true, synchronous: false };
+    let tables = Tables { split: true, synchronous: false, holds_highest: false };
     let fraction = keys.operands.cosine.fraction as i32;
     let bits = u.format().width() as i32;
     let sums = ["ratio", "ratio_sum1", "ratio_sum2"];

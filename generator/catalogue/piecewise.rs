@@ -83,6 +83,8 @@ pub struct Tables {
     pub split: bool,
     /// Whether the table is read at the rising clock edge, so that the coefficients arrive one clock after the address.
     pub synchronous: bool,
+    /// Whether a register holds the highest coefficient, which a microinstruction before the first sum loads.
+    pub holds_highest: bool,
 }
 
 /// The size of a table, in bits, from which on some family of FPGAs uses a block memory.
@@ -92,7 +94,8 @@ impl Tables {
     /// In a pipeline, each coefficient of a small table has its own table, because registers then delay the address instead of
     /// the wider coefficient. Otherwise, one block memory has all coefficients.
     pub fn of(it: &Piecewise, is_pipelined: bool) -> Self {
-        Self { split: is_pipelined && it.rom_bits() < SMALLEST_BLOCK, synchronous: true }
+        let split = is_pipelined && it.rom_bits() < SMALLEST_BLOCK;
+        Self { split, synchronous: true, holds_highest: false }
     }
 }
 
@@ -131,6 +134,8 @@ pub struct PolynomialDatapath<'d, 'p> {
     /// The partial sums. Register k has the sum of the terms from coefficient k on, so that the first register has the whole
     /// polynomial.
     registers: Vec<Register<'d>>,
+    /// The register of the highest coefficient, if it has one.
+    highest: Option<Register<'d>>,
 }
 
 impl<'d, 'p> PolynomialDatapath<'d, 'p> {
@@ -157,7 +162,13 @@ impl<'d, 'p> PolynomialDatapath<'d, 'p> {
         let offsets = it.steps.iter().map(cut).collect();
         let registers = registers.iter().zip(&it.sums).take(it.degree().max(1));
         let registers = registers.map(|(name, format)| d.register(name, *format)).collect();
-        Self { d, it, prefix: prefix.to_owned(), coefficients, offsets, registers }
+        let highest = tables.holds_highest.then(|| {
+            let last = it.degree();
+            let register = d.register(&format!("{prefix}highest"), it.coefficients[last]);
+            register.takes(coefficients[last]);
+            register
+        });
+        Self { d, it, prefix: prefix.to_owned(), coefficients, offsets, registers, highest }
     }
 
     /// Returns the numbers of Horner's steps in the order of execution; the last is 0.
@@ -169,7 +180,8 @@ impl<'d, 'p> PolynomialDatapath<'d, 'p> {
     /// constant polynomial has no product.
     fn factors(&self, step: usize) -> Option<[Signal<'d>; 2]> {
         let offset = *self.offsets.get(step)?;
-        let above = self.registers.get(step + 1).map(|register| register.q());
+        let above = self.registers.get(step + 1).or(self.highest.as_ref());
+        let above = above.map(|register| register.q());
         Some([above.unwrap_or(self.coefficients[step + 1]), offset])
     }
 
@@ -189,6 +201,14 @@ impl<'d, 'p> PolynomialDatapath<'d, 'p> {
         let register = self.registers[step];
         register.takes(d.narrow(&name, sum, it.sums[step], Rounding::Truncate, Overflow::Wrap));
         register.load()
+    }
+
+    /// Returns the setting that loads the register of the highest coefficient.
+    ///
+    /// # Panics
+    /// Panics if there is no such register.
+    pub fn load_highest(&self) -> StepSetting {
+        self.highest.expect("a register of the highest coefficient").load()
     }
 
     /// Returns the value of the polynomial, which is valid after all steps.

@@ -7,10 +7,10 @@
 use glint_approximate::{Outside, Piecewise};
 use glint_base::fixed::{Format, Overflow, Rounding};
 use glint_plan::{
-    ExpressionPlan, NodeId, Operation, PlanNode, PlanSchedule, PlanStep, StatedOperand,
+    ExpressionPlan, NodeId, Operation, PlanNode, PlanSchedule, PlanStep, StatedOperand, StepWork,
 };
 use glint_rtl::blocks::shift::{left_justified, normalise, normalise_by_pairs, right_by};
-use glint_rtl::dsl::{Designer, Register, Signal, Step, end, step, valid};
+use glint_rtl::dsl::{Designer, Register, Signal, Step, StepSetting, end, step, valid};
 
 use crate::mirror::MirrorChain;
 use crate::piecewise::{PolynomialDatapath, StepMultiplier, Tables, number};
@@ -294,7 +294,8 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
         let number = number(self.d, &format!("{prefix}number"), operand, it);
         let registers = self.plan.sum_names(id);
         let registers: Vec<&str> = registers.iter().map(String::as_str).collect();
-        let tables = Tables::of(it, self.is_pipelined);
+        let holds_highest = self.schedule.is_coefficient_held[id.0];
+        let tables = Tables { holds_highest, ..Tables::of(it, self.is_pipelined) };
         let datapath = PolynomialDatapath::new(self.d, &prefix, &registers, number, it, tables);
         let q = datapath.q();
         self.polynomials[id.0] = Some(datapath);
@@ -315,7 +316,10 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
         let names = names.map(|name| self.beside_operands(name));
         let names = names.each_ref().map(String::as_str);
         let multiplier = StepMultiplier::new(self.d, names, &polynomials, &others);
-        let addresses_table = matches!(self.schedule.steps.first(), Some(PlanStep::Sum { .. }));
+        let first = self.schedule.steps.first();
+        let addresses_table = first.is_some_and(|first| {
+            matches!(first.work, Some(StepWork::Sum { .. })) || !first.coefficients.is_empty()
+        });
         let first = match addresses_table {
             true => format!("{}; table addressed", noun(self.operands.len(), "operand")),
             false => noun(self.operands.len(), "operand"),
@@ -342,28 +346,54 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
     }
 
     fn microinstruction(&self, plan_step: &PlanStep, multiplier: &StepMultiplier<'d>) -> Step {
+        let PlanStep { work, loads, coefficients } = plan_step;
+        let mut names = Vec::new();
+        let mut settings = Vec::new();
+        if let Some(work) = work {
+            let (name, of_work) = self.work(work, multiplier);
+            names.push(name);
+            settings.extend(of_work);
+        }
+        let mut loaded = Vec::new();
+        for polynomial in coefficients {
+            settings.push(self.polynomial_datapath(*polynomial).load_highest());
+            loaded.push(self.plan.highest_name(*polynomial));
+        }
+        for node in loads {
+            settings.push(self.register(*node).load());
+            loaded.push(self.plan.node(*node).name.clone());
+        }
+        if !loaded.is_empty() {
+            names.push(format!("{} loaded", loaded.join(", ")));
+        }
+        step(&names.join("; "), settings)
+    }
+
+    fn register(&self, node: NodeId) -> Register<'d> {
+        self.registers[node.0].expect("a register of a node that is held")
+    }
+
+    fn polynomial_datapath(&self, node: NodeId) -> &PolynomialDatapath<'d, 'p> {
+        self.polynomials[node.0].as_ref().expect("a polynomial")
+    }
+
+    /// Returns the name and the settings of what the multiplier or a table does.
+    fn work(&self, work: &StepWork, multiplier: &StepMultiplier<'d>) -> (String, Vec<StepSetting>) {
         let name_of = |id: NodeId| self.plan.node(id).name.as_str();
-        let register =
-            |id: NodeId| self.registers[id.0].expect("a register of a node that is held");
-        match plan_step {
-            PlanStep::Product { product, held } => {
+        match work {
+            StepWork::Product { product, held } => {
                 let factors = self.factors[product.0].expect("the factors of a product");
-                let register = register(*held);
+                let register = self.register(*held);
                 register.takes(self.following(multiplier.product(factors), *product, *held));
                 let mut settings = vec![register.load()];
                 settings.extend(multiplier.pick(factors));
-                step(&format!("{} <- a product", name_of(*held)), settings)
+                (format!("{} <- a product", name_of(*held)), settings)
             }
-            PlanStep::Hold(nodes) => {
-                let names: Vec<&str> = nodes.iter().map(|node| name_of(*node)).collect();
-                let loads: Vec<_> = nodes.iter().map(|node| register(*node).load()).collect();
-                step(&format!("{} loaded", names.join(", ")), loads)
+            StepWork::Address(polynomial) => {
+                (format!("{}: table addressed", name_of(*polynomial)), Vec::new())
             }
-            PlanStep::Address(polynomial) => {
-                step(&format!("{}: table addressed", name_of(*polynomial)), [])
-            }
-            PlanStep::Sum { polynomial, coefficient } => {
-                let datapath = self.polynomials[polynomial.0].as_ref().expect("a polynomial");
+            StepWork::Sum { polynomial, coefficient } => {
+                let datapath = self.polynomial_datapath(*polynomial);
                 let settings = multiplier.step(datapath, *coefficient);
                 let register = &self.plan.sum_names(*polynomial)[*coefficient];
                 let sum = match coefficient {
@@ -371,7 +401,7 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
                     0 => "all coefficients".to_owned(),
                     _ => format!("coefficients from {coefficient} on"),
                 };
-                step(&format!("{register} <- {sum}"), settings)
+                (format!("{register} <- {sum}"), settings)
             }
         }
     }

@@ -10,7 +10,7 @@ use super::frame::{Frame, FrameStep, Slot, State, idle, step_by};
 use super::polynomial::Polynomial;
 use glint_approximate::Outside;
 use glint_config::{Config, Shared};
-use glint_plan::{ExpressionPlan, NodeId, Operation, PlanStep, StatedOperand};
+use glint_plan::{ExpressionPlan, NodeId, Operation, PlanStep, StatedOperand, StepWork};
 
 struct PlanModel {
     plan: ExpressionPlan,
@@ -100,7 +100,10 @@ pub(super) fn plan_device(
                 let it = approximation.polynomials.as_ref().expect("polynomials that are found");
                 let names = plan.sum_names(NodeId(at));
                 let names: Vec<&str> = names.iter().map(String::as_str).collect();
-                let sums = Polynomial::new(&mut frame, &names, it);
+                let mut sums = Polynomial::new(&mut frame, &names, it);
+                if schedule.is_coefficient_held[at] {
+                    sums = sums.with_highest(&mut frame, &plan.highest_name(NodeId(at)));
+                }
                 let q = sums.q();
                 polynomial = Some(sums);
                 Some(q)
@@ -117,15 +120,7 @@ pub(super) fn plan_device(
     let model = Arc::new(PlanModel { plan: plan.clone(), operands: slots, registers });
     let mut program = vec![idle()];
     for plan_step in &schedule.steps {
-        match plan_step {
-            PlanStep::Product { held, .. } => program.push(loads(&model, vec![*held])),
-            PlanStep::Hold(nodes) => program.push(loads(&model, nodes.clone())),
-            PlanStep::Address(_) => program.push(idle()),
-            PlanStep::Sum { polynomial, coefficient } => {
-                let sums = polynomials[polynomial.0].as_ref().expect("a polynomial");
-                program.push(sum_step(&model, *polynomial, sums, *coefficient));
-            }
-        }
+        program.push(microinstruction(&model, &polynomials, plan_step));
     }
     program.push(idle().valid().end());
     let mut device = frame.device(program);
@@ -138,10 +133,39 @@ pub(super) fn plan_device(
     device
 }
 
-fn loads(model: &Arc<PlanModel>, nodes: Vec<NodeId>) -> FrameStep {
+/// Loads a register of a polynomial: a partial sum, or the highest coefficient.
+type TableLoad = Box<dyn Fn(&mut State) + Send + Sync>;
+
+/// Returns a microinstruction. Its registers load what their nodes have before the edge.
+fn microinstruction(
+    model: &Arc<PlanModel>,
+    polynomials: &[Option<Polynomial>],
+    plan_step: &PlanStep,
+) -> FrameStep {
+    let mut nodes = plan_step.loads.clone();
+    let mut of_tables: Vec<TableLoad> = Vec::new();
+    let sums_of = |id: NodeId| polynomials[id.0].as_ref().expect("a polynomial");
+    match &plan_step.work {
+        Some(StepWork::Product { held, .. }) => nodes.push(*held),
+        Some(StepWork::Sum { polynomial, coefficient }) => {
+            let operand = operand_of(model, *polynomial);
+            of_tables.push(Box::new(sums_of(*polynomial).step(*coefficient, operand)));
+        }
+        Some(StepWork::Address(_)) | None => {}
+    }
+    for polynomial in &plan_step.coefficients {
+        let operand = operand_of(model, *polynomial);
+        of_tables.push(Box::new(sums_of(*polynomial).load_highest(operand)));
+    }
+    if nodes.is_empty() && of_tables.is_empty() {
+        return idle();
+    }
     let cone = ClockCone::new(model, &nodes);
     step_by(model, move |model, state| {
         let values = cone.values(model, &nodes, state);
+        for load in &of_tables {
+            load(state);
+        }
         for (node, value) in nodes.iter().zip(values) {
             let slot = model.registers[node.0].expect("a register of a node that is held");
             state[slot] = value;
@@ -149,19 +173,13 @@ fn loads(model: &Arc<PlanModel>, nodes: Vec<NodeId>) -> FrameStep {
     })
 }
 
-/// Adds coefficient number `coefficient` of the polynomial at node `id`, by Horner's rule.
-fn sum_step(
-    model: &Arc<PlanModel>,
-    id: NodeId,
-    sums: &Polynomial,
-    coefficient: usize,
-) -> FrameStep {
+/// Returns a function that computes the operand of the polynomial at node `id`.
+fn operand_of(model: &Arc<PlanModel>, id: NodeId) -> impl Fn(&State) -> i64 + Send + Sync + use<> {
     let input = model.plan.node(id).operation.inputs()[0];
     let cone = ClockCone::new(model, &[input]);
     let reader = model.clone();
-    let operand = move |state: &State| match reader.registers[input.0] {
+    move |state: &State| match reader.registers[input.0] {
         Some(slot) => state[slot],
         None => cone.values(&reader, &[input], state)[0],
-    };
-    super::frame::step(sums.step(coefficient, operand))
+    }
 }

@@ -12,6 +12,8 @@ pub struct Polynomial {
     it: Arc<Piecewise>,
     /// Sum number k contains the coefficients from number k on, so sum 0 is the whole polynomial.
     sums: Vec<Slot>,
+    /// The register of the highest coefficient, if it has one.
+    highest: Option<Slot>,
 }
 
 impl Polynomial {
@@ -20,7 +22,25 @@ impl Polynomial {
     pub fn new(frame: &mut Frame, names: &[&str], it: &Arc<Piecewise>) -> Self {
         let registers = names.iter().zip(&it.sums).take(it.degree().max(1));
         let sums = registers.map(|(name, format)| frame.register(name, *format)).collect();
-        Self { it: it.clone(), sums }
+        Self { it: it.clone(), sums, highest: None }
+    }
+
+    /// Adds a register for the highest coefficient, which [`Polynomial::load_highest`] loads before the first sum.
+    pub fn with_highest(self, frame: &mut Frame, name: &str) -> Self {
+        let format = self.it.coefficients[self.it.degree()];
+        Self { highest: Some(frame.register(name, format)), ..self }
+    }
+
+    /// Returns the operation that loads the register of the highest coefficient from the table.
+    ///
+    /// # Panics
+    /// The operation panics if there is no such register.
+    pub fn load_highest<R>(&self, raw: R) -> impl Fn(&mut State) + use<R>
+    where
+        R: Fn(&State) -> i64 + Send + Sync + 'static,
+    {
+        let (it, highest) = (self.it.clone(), self.highest.expect("a register"));
+        move |s: &mut State| s[highest] = it.words[it.place(raw(s)).word][it.degree()]
     }
 
     /// Returns the slot with the value of the polynomial.
@@ -35,10 +55,11 @@ impl Polynomial {
         R: Fn(&State) -> i64 + Send + Sync + 'static,
     {
         let it = self.it.clone();
-        let (own, above) = (self.sums[coefficient], self.sums.get(coefficient + 1).copied());
+        let own = self.sums[coefficient];
+        let above = self.sums.get(coefficient + 1).copied().or(self.highest);
         move |s: &mut State| {
             let place = it.place(raw(s));
-            // The highest coefficient is read from the table and has no register.
+            // Without a register, the highest coefficient is read from the table.
             let sum_above = above.map_or(it.words[place.word][it.degree()], |above| s[above]);
             let sum = it.sum(coefficient, place, sum_above);
             let shortened = sum >> if coefficient == 0 { it.guard() } else { 0 };

@@ -17,12 +17,34 @@ pub(super) const LONGEST_TO_TABLE: f64 = 6.0;
 /// The longest time of the logic in front of a register.
 pub(super) const LONGEST_TO_REGISTER: f64 = 12.5;
 
-/// Returns the time of an operation's own logic. Products and tables have microinstructions of their own, and count as 0.
-pub(super) fn time_of(plan: &ExpressionPlan, id: NodeId) -> f64 {
+/// The time of a choice, or of a look-up table behind which there is another one.
+const CHOICE: f64 = 2.5;
+
+/// The time of a choice that takes part in a look-up table with its neighbours.
+const MERGED_CHOICE: f64 = 0.7;
+
+/// Returns the time of each node's own logic. Products and tables have microinstructions of their own, and count as 0.
+pub(super) fn own_times(plan: &ExpressionPlan) -> Vec<f64> {
+    let mut readers: Vec<Vec<NodeId>> = vec![Vec::new(); plan.nodes.len()];
+    for (at, node) in plan.nodes.iter().enumerate() {
+        for input in node.operation.inputs() {
+            readers[input.0].push(NodeId(at));
+        }
+    }
+    let mut times = Vec::with_capacity(plan.nodes.len());
+    for at in 0..plan.nodes.len() {
+        times.push(time_of(plan, NodeId(at), &readers));
+    }
+    times
+}
+
+fn time_of(plan: &ExpressionPlan, id: NodeId, readers: &[Vec<NodeId>]) -> f64 {
     let node = plan.node(id);
     let width_of = |id: NodeId| f64::from(plan.node(id).format.width());
     let carry = |width: f64| 2.0 + 0.1 * width;
     match &node.operation {
+        Operation::Subtract(..) if is_chained_mirror(plan, id, readers) => 0.0,
+        Operation::Add(a, b) if are_joined(plan, *a, *b) => 0.0,
         Operation::Add(..) | Operation::Subtract(..) => carry(width_of(id)),
         Operation::Absolute(a) => carry(width_of(*a)),
         Operation::Less(a, b) => carry(width_of(*a).max(width_of(*b))),
@@ -37,7 +59,14 @@ pub(super) fn time_of(plan: &ExpressionPlan, id: NodeId) -> f64 {
         Operation::Narrow(a, Rounding::Nearest) if plan.node(*a).format.frac > node.format.frac => {
             carry(width_of(id))
         }
-        Operation::NonZero(_) | Operation::Choose { .. } | Operation::Lookup { .. } => 2.5,
+        // The opcode does not change, so that several such choices become one look-up table a bit.
+        Operation::Choose { condition, .. } if selects_by_opcode(plan, *condition) => MERGED_CHOICE,
+        Operation::Choose { cases, .. }
+            if cases.iter().any(|case| is_chained_mirror(plan, *case, readers)) =>
+        {
+            MERGED_CHOICE
+        }
+        Operation::NonZero(_) | Operation::Choose { .. } | Operation::Lookup { .. } => CHOICE,
         // Each stage finds whether half of the bits are 0, and shifts.
         Operation::Normalise { word, .. } => 1.8 * width_of(*word).log2(),
         Operation::ShiftLeft(a, _) | Operation::ShiftRight(a, _) => 1.4 * width_of(*a).log2(),
@@ -53,6 +82,43 @@ pub(super) fn time_of(plan: &ExpressionPlan, id: NodeId) -> f64 {
         | Operation::FractionPart(..)
         | Operation::Places(_) => 0.0,
     }
+}
+
+/// Returns whether a sum needs no adder, because all bits of its first summand have larger weights than the second one, which has no
+/// sign.
+fn are_joined(plan: &ExpressionPlan, first: NodeId, second: NodeId) -> bool {
+    let [upper, lower] = [first, second].map(|summand| plan.node(summand).format);
+    !lower.signed && lower.int <= -upper.frac
+}
+
+/// Returns whether `id` is the difference c − v of a mirror, a choice between v and c − v, with another mirror or a rounding
+/// behind it. One adder computes all of them.
+fn is_chained_mirror(plan: &ExpressionPlan, id: NodeId, readers: &[Vec<NodeId>]) -> bool {
+    let Operation::Subtract(constant, value) = plan.node(id).operation else { return false };
+    let is_constant = matches!(plan.node(constant).operation, Operation::Constant { .. });
+    let [mirror] = readers[id.0][..] else { return false };
+    let is_mirror = match plan.node(mirror).operation {
+        Operation::Choose { cases, .. } => cases.contains(&value),
+        _ => false,
+    };
+    let is_rounded = |reader: &NodeId| match plan.node(*reader).operation {
+        Operation::Narrow(_, Rounding::Nearest) => true,
+        Operation::Subtract(constant, _) => {
+            matches!(plan.node(constant).operation, Operation::Constant { .. })
+        }
+        _ => false,
+    };
+    is_constant && is_mirror && readers[mirror.0].iter().any(is_rounded)
+}
+
+/// Returns whether a condition is a bit of the opcode of a unit, which is operand 0.
+fn selects_by_opcode(plan: &ExpressionPlan, condition: NodeId) -> bool {
+    let operation = &plan.node(condition).operation;
+    let source = match operation {
+        Operation::Bit(source, _) => &plan.node(*source).operation,
+        _ => operation,
+    };
+    plan.is_shared && matches!(source, Operation::Operand(0))
 }
 
 /// Returns the longest time that the logic in front of a node may take.

@@ -48,9 +48,11 @@ mod facts;
 mod find;
 mod frontier;
 mod guarded;
+mod hold;
 mod lower;
 mod node;
 mod order;
+mod placement;
 mod plan;
 mod polynomial;
 mod range;
@@ -62,10 +64,10 @@ mod uses;
 
 pub use find::{ProofKind, ProvedPlan, find};
 pub use node::{Approximation, NodeId, Operation, PlanNode};
+pub use placement::{PlanSchedule, PlanStep, StepWork};
 pub use plan::ExpressionPlan;
 pub use range::least_size;
 pub use refusal::{PartToLimit, PlanRefusal};
-pub use schedule::{PlanSchedule, PlanStep};
 pub use statement::{
     ExpressionStatement, StatedOperand, StatedOverflow, StatedResult, StatedWidth,
 };

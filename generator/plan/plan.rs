@@ -119,6 +119,11 @@ impl ExpressionPlan {
         [self.node(id).name.clone(), format!("{prefix}sum1"), format!("{prefix}sum2")]
     }
 
+    /// Returns the name of the register for the highest coefficient of a node's polynomial.
+    pub fn highest_name(&self, id: NodeId) -> String {
+        format!("{}highest", self.table_prefix(id))
+    }
+
     /// Returns for each node how often operations read it. A square counts its input twice.
     pub fn readers(&self) -> Vec<usize> {
         let mut readers = vec![0; self.nodes.len()];

@@ -1,207 +1,76 @@
 //! Turns a plan into a microprogram for one multiplier, with registers for the values that later microinstructions read.
 //!
-//! Each product, each step of Horner's rule and each normalised word has its own microinstruction, and a register for its
-//! value. So has a result that other operations read, and in a sequential core a value whose logic would otherwise take too long
-//! ([`super::depth`]). All other operations are combinational logic between these registers, and the last microinstruction loads the
-//! registers of the other results.
+//! Each product, each step of Horner's rule and each normalised word has a register for its value. So has a result that other
+//! operations read, and in a sequential core a value whose logic would otherwise take too long ([`super::hold`]). All other
+//! operations are combinational logic between these registers.
+//!
+//! A microinstruction computes at most one product. In a sequential core it also loads all registers whose values are there.
 
-use super::depth::{longest_to, time_of};
+use super::hold::held_nodes;
 use super::node::{NodeId, Operation};
+use super::placement::{PlanSchedule, StepPlacement};
 use super::plan::ExpressionPlan;
 
-/// One microinstruction of a plan's microprogram.
-#[derive(Clone, Debug, PartialEq)]
-pub enum PlanStep {
-    /// The multiplier computes a product, and a register loads the product or a value that follows from it.
-    Product {
-        /// The node of the product.
-        product: NodeId,
-        /// The node whose register is loaded: the product itself, or the product after it was scaled or shortened.
-        held: NodeId,
-    },
-    /// The registers of these nodes load their values.
-    Hold(Vec<NodeId>),
-    /// The table of this node's polynomial gets its address. No register is loaded.
-    Address(NodeId),
-    /// The multiplier and an adder compute one partial sum of Horner's rule.
-    Sum {
-        /// The node of the polynomial.
-        polynomial: NodeId,
-        /// The index of the coefficient that is added; 0 is the constant coefficient.
-        coefficient: usize,
-    },
-}
-
-/// The microprogram of a plan, with the nodes that have registers.
-#[derive(Clone, Debug, PartialEq)]
-pub struct PlanSchedule {
-    /// For each node, whether it has a register.
-    pub held: Vec<bool>,
-    /// The microinstructions in the order of execution.
-    pub steps: Vec<PlanStep>,
-}
+/// The size of a table, in bits, from which on it is in a block memory.
+const SMALLEST_BLOCK: u64 = 2048;
 
 impl ExpressionPlan {
     /// Returns the microprogram of the plan, with the nodes that have registers. It computes no node that no result reads
     /// ([`ExpressionPlan::read_nodes`]). A sequential core has further registers where logic would take too long. A pipeline has none
-    /// of these, because its own schedule places the registers. Neither has a plan of several functions: the selection of factors and
-    /// tables takes longer than other logic, and each function would take more clocks.
+    /// of these, because its own schedule places the registers, and loads each register in a microinstruction of its own.
     ///
     /// # Panics
     /// Panics if the plan has a function whose polynomials are not known yet.
     pub fn schedule(&self, is_pipelined: bool) -> PlanSchedule {
-        let mut schedule = PlanSchedule { held: vec![false; self.nodes.len()], steps: Vec::new() };
+        let computed = self.computed_nodes();
+        let mut is_coefficient_held = vec![false; self.nodes.len()];
+        for &NodeId(at) in computed.iter().filter(|_| !is_pipelined) {
+            if let Operation::Polynomial(_, approximation) = &self.nodes[at].operation {
+                let it = approximation.polynomials.as_ref().expect("polynomials that are found");
+                is_coefficient_held[at] = it.degree() > 0 && it.rom_bits() >= SMALLEST_BLOCK;
+            }
+        }
+        let targets = self.register_targets();
+        let held = vec![false; self.nodes.len()];
+        let empty = PlanSchedule { held, is_coefficient_held, steps: Vec::new() };
+        let start = StepPlacement::new(self, &targets, empty, is_pipelined);
+        let held = held_nodes(&start, &computed);
+        let mut placement = start;
+        placement.schedule.held = held;
+        for node in computed {
+            placement.place(node);
+        }
+        placement.place_results();
+        placement.schedule
+    }
+
+    /// Returns for each node the node whose register stores its value: for most nodes the node itself.
+    fn register_targets(&self) -> Vec<NodeId> {
+        let mut targets = Vec::with_capacity(self.nodes.len());
+        for (at, node) in self.nodes.iter().enumerate() {
+            let node_id = NodeId(at);
+            let is_stored =
+                matches!(node.operation, Operation::Multiply(..) | Operation::Normalise { .. });
+            targets.push(if is_stored { self.held_for(node_id) } else { node_id });
+        }
+        targets
+    }
+
+    /// Returns the nodes that a result reads, in their order. One microinstruction computes a normalised word and its shift, so that
+    /// the shift is computed with every word that is read.
+    fn computed_nodes(&self) -> Vec<NodeId> {
         let is_read = self.read_nodes();
-        for at in 0..self.nodes.len() {
-            let node = NodeId(at);
-            let operation = &self.nodes[at].operation;
-            let is_computed = match operation {
-                // One microinstruction computes a normalised word and its shift.
+        let mut computed = Vec::new();
+        for (at, node) in self.nodes.iter().enumerate() {
+            let is_computed = match node.operation {
                 Operation::Places(word) => is_read[word.0],
                 _ => is_read[at],
             };
-            if !is_computed {
-                continue;
-            }
-            if !is_pipelined && !self.is_shared {
-                self.store_late_inputs(node, &mut schedule);
-            }
-            match operation {
-                Operation::Multiply(..) => {
-                    let held = self.held_for(node);
-                    schedule.held[held.0] = true;
-                    schedule.steps.push(PlanStep::Product { product: node, held });
-                }
-                Operation::Places(normalised) => {
-                    let mut held = vec![self.held_for(*normalised)];
-                    // The results of a function that covers one octave need no shift back.
-                    if is_read[at] {
-                        held.push(node);
-                    }
-                    for node in &held {
-                        schedule.held[node.0] = true;
-                    }
-                    schedule.steps.push(PlanStep::Hold(held));
-                }
-                Operation::Polynomial(_, approximation) => {
-                    let polynomials = approximation.polynomials.as_ref();
-                    let degree = polynomials.expect("a plan whose polynomials are known").degree();
-                    schedule.held[at] = true;
-                    // In the first clock, the operands already address the tables.
-                    if !schedule.steps.is_empty() {
-                        schedule.steps.push(PlanStep::Address(node));
-                    }
-                    for coefficient in (0..degree.max(1)).rev() {
-                        schedule.steps.push(PlanStep::Sum { polynomial: node, coefficient });
-                    }
-                }
-                _ => {}
-            }
-            // Later microinstructions read the register of a result, so it is loaded before them.
-            let has_reader =
-                self.nodes.iter().any(|other| other.operation.inputs().contains(&node));
-            if self.results.contains(&node) && !schedule.held[at] && has_reader {
-                schedule.held[at] = true;
-                schedule.steps.push(PlanStep::Hold(vec![node]));
+            if is_computed {
+                computed.push(NodeId(at));
             }
         }
-        let mut last = Vec::new();
-        for result in &self.results {
-            if !schedule.held[result.0] {
-                schedule.held[result.0] = true;
-                last.push(*result);
-            }
-        }
-        if !last.is_empty() {
-            schedule.steps.push(PlanStep::Hold(last));
-        }
-        schedule
-    }
-
-    /// Adds registers for the inputs of `node` if the logic in front of it would take too long. Each is loaded as soon as its value is
-    /// there, before any microinstruction that reads it.
-    fn store_late_inputs(&self, node: NodeId, schedule: &mut PlanSchedule) {
-        let operation = &self.node(node).operation;
-        if matches!(operation, Operation::Places(_)) {
-            // It is computed together with the normalised word.
-            return;
-        }
-        let arrivals = self.arrivals(node, schedule);
-        let inputs = operation.hardware_inputs();
-        let latest = inputs.iter().map(|input| arrivals[input.0].time).fold(0.0, f64::max);
-        if latest + time_of(self, node) <= longest_to(operation) {
-            return;
-        }
-        for input in inputs {
-            if !schedule.held[input.0] && arrivals[input.0].time > 0.0 {
-                self.store(input, node, schedule);
-            }
-        }
-    }
-
-    /// Adds a register for the value of `late`, a node before `end`.
-    fn store(&self, late: NodeId, end: NodeId, schedule: &mut PlanSchedule) {
-        let place = self.arrivals(end, schedule)[late.0].step;
-        let reads_late = |node: &NodeId| self.reads_unheld(*node, late, schedule);
-        let joins = match schedule.steps.get(place) {
-            Some(PlanStep::Hold(others)) => !others.iter().any(reads_late),
-            _ => false,
-        };
-        let addressed = self.addressed_by_operands(schedule);
-        let addressed = addressed.filter(|table| self.reads_unheld(*table, late, schedule));
-        match (joins, schedule.steps.get_mut(place)) {
-            (true, Some(PlanStep::Hold(others))) => others.push(late),
-            _ => schedule.steps.insert(place, PlanStep::Hold(vec![late])),
-        }
-        if let Some(table) = addressed {
-            // The operands no longer address the table in the first clock; the register does, one clock later.
-            schedule.steps.insert(place + 1, PlanStep::Address(table));
-        }
-        schedule.held[late.0] = true;
-    }
-
-    /// Returns the polynomial whose table the operands address in the first clock, without a microinstruction of its own.
-    fn addressed_by_operands(&self, schedule: &PlanSchedule) -> Option<NodeId> {
-        let mut polynomials = schedule.steps.iter().filter_map(|step| match step {
-            PlanStep::Sum { polynomial, .. } => Some(*polynomial),
-            _ => None,
-        });
-        let first = polynomials.next()?;
-        (!schedule.steps.contains(&PlanStep::Address(first))).then_some(first)
-    }
-
-    /// Returns whether the logic in front of `node`'s register reads `late`.
-    fn reads_unheld(&self, node: NodeId, late: NodeId, schedule: &PlanSchedule) -> bool {
-        let inputs = self.node(node).operation.hardware_inputs();
-        inputs.into_iter().any(|input| {
-            input == late || !schedule.held[input.0] && self.reads_unheld(input, late, schedule)
-        })
-    }
-
-    /// Returns the arrivals of all nodes before `end`.
-    fn arrivals(&self, end: NodeId, schedule: &PlanSchedule) -> Vec<Arrival> {
-        let mut loaded = vec![0; self.nodes.len()];
-        for (at, step) in schedule.steps.iter().enumerate() {
-            match step {
-                PlanStep::Product { held, .. } => loaded[held.0] = at + 1,
-                PlanStep::Hold(nodes) => nodes.iter().for_each(|node| loaded[node.0] = at + 1),
-                PlanStep::Sum { polynomial, .. } => loaded[polynomial.0] = at + 1,
-                PlanStep::Address(_) => {}
-            }
-        }
-        let mut arrivals: Vec<Arrival> = Vec::with_capacity(end.0);
-        for (at, step) in loaded.into_iter().enumerate().take(end.0) {
-            let mut arrival = Arrival { time: 0.0, step };
-            if !schedule.held[at] {
-                for input in self.nodes[at].operation.hardware_inputs() {
-                    arrival.time = arrivals[input.0].time.max(arrival.time);
-                    arrival.step = arrivals[input.0].step.max(arrival.step);
-                }
-                arrival.time += time_of(self, NodeId(at));
-            }
-            arrivals.push(arrival);
-        }
-        arrivals
+        computed
     }
 
     /// Returns the node whose register stores the value of `node`: `node` itself, or a later node that only scales or shortens it.
@@ -233,15 +102,6 @@ impl ExpressionPlan {
     }
 }
 
-/// When the value of a node arrives.
-#[derive(Clone, Copy)]
-struct Arrival {
-    /// The time of the logic between the registers before the node and its value, in nanoseconds; 0 for a node with a register.
-    time: f64,
-    /// The number of microinstructions after which the registers before the node have their values.
-    step: usize,
-}
-
 #[cfg(test)]
 mod tests {
     use glint_approximate::Outside;
@@ -250,6 +110,7 @@ mod tests {
 
     use super::*;
     use crate::find::find;
+    use crate::placement::{PlanStep, StepWork};
     use crate::statement::{ExpressionStatement, StatedOperand, StatedResult};
 
     /// Returns the plan of a formula of a, b, c and d, which have 16 bits and are from −1 to below 1.
@@ -306,41 +167,70 @@ mod tests {
         ] {
             let plan = plan_of(formula);
             let schedule = plan.schedule(false);
-            let mut is_loaded = vec![false; plan.nodes.len()];
-            for step in &schedule.steps {
-                let loaded = match step {
-                    PlanStep::Product { held, .. } => vec![*held],
-                    PlanStep::Hold(nodes) => nodes.clone(),
-                    PlanStep::Sum { polynomial, coefficient: 0 } => vec![*polynomial],
-                    PlanStep::Sum { .. } | PlanStep::Address(_) => Vec::new(),
+            assert_reads_loaded_registers(&plan, &schedule, formula);
+        }
+    }
+
+    /// Asserts that each microinstruction reads only registers that earlier ones have loaded, and tables that had their address one
+    /// clock before.
+    fn assert_reads_loaded_registers(plan: &ExpressionPlan, schedule: &PlanSchedule, what: &str) {
+        // For each node, the number of the microinstruction that loads its register.
+        let mut loaded: Vec<Option<usize>> = vec![None; plan.nodes.len()];
+        for (at, step) in schedule.steps.iter().enumerate() {
+            let from_tables = match step.work {
+                Some(StepWork::Sum { polynomial, .. }) => Some(polynomial),
+                _ => None,
+            };
+            for table in from_tables.iter().chain(&step.coefficients) {
+                let Operation::Polynomial(operand, _) = plan.node(*table).operation else {
+                    panic!("{what}: no polynomial");
                 };
-                // A table gets its address in a microinstruction, or from the operands in the first clock.
-                let addressed = match step {
-                    PlanStep::Address(table) => Some(*table),
-                    PlanStep::Sum { polynomial, .. } => {
-                        let address = PlanStep::Address(*polynomial);
-                        (!schedule.steps.contains(&address)).then_some(*polynomial)
-                    }
-                    _ => None,
-                };
-                if let (Some(table), PlanStep::Sum { .. }) = (addressed, step) {
-                    assert!(registers_before(&plan, &schedule, table).is_empty(), "{formula}");
-                }
-                for node in loaded.iter().chain(&addressed) {
-                    // The same microinstruction loads a normalised word and its shift.
-                    let node = match plan.node(*node).operation {
-                        Operation::Places(word) => word,
-                        _ => *node,
-                    };
-                    for register in registers_before(&plan, &schedule, node) {
-                        let name = &plan.node(register).name;
-                        assert!(is_loaded[register.0], "{formula}: {name} is read too early");
-                    }
-                }
-                for node in loaded {
-                    is_loaded[node.0] = true;
+                for register in registers_of(plan, schedule, operand) {
+                    let when = loaded[register.0].unwrap_or(usize::MAX);
+                    assert!(
+                        when < at.saturating_sub(1),
+                        "{what}: a table gets its address too late"
+                    );
                 }
             }
+            let mut ends = step.loads.clone();
+            match step.work {
+                Some(StepWork::Product { product, .. }) => ends.push(product),
+                Some(StepWork::Sum { .. } | StepWork::Address(_)) | None => {}
+            }
+            for end in ends {
+                // The same microinstruction loads a normalised word and its shift.
+                let end = match plan.node(end).operation {
+                    Operation::Places(word) => word,
+                    _ => end,
+                };
+                for register in registers_before(plan, schedule, end) {
+                    let name = &plan.node(register).name;
+                    let when = loaded[register.0].unwrap_or(usize::MAX);
+                    assert!(when < at, "{what}: {name} is read too early");
+                }
+            }
+            for node in &step.loads {
+                assert_eq!(loaded[node.0].replace(at), None, "{what}: a register is loaded twice");
+            }
+            match step.work {
+                Some(StepWork::Product { held, .. }) => loaded[held.0] = Some(at),
+                Some(StepWork::Sum { polynomial, coefficient: 0 }) => {
+                    loaded[polynomial.0] = Some(at)
+                }
+                _ => {}
+            }
+        }
+        for result in &plan.results {
+            assert!(loaded[result.0].is_some(), "{what}: a result is not loaded");
+        }
+    }
+
+    /// Returns the registers from which the value of `node` comes: its own, or those in front of it.
+    fn registers_of(plan: &ExpressionPlan, schedule: &PlanSchedule, node: NodeId) -> Vec<NodeId> {
+        match schedule.held[node.0] {
+            true => vec![node],
+            false => registers_before(plan, schedule, node),
         }
     }
 
@@ -349,16 +239,20 @@ mod tests {
         let plan = plan_of("max(max(a, b), max(c, d))");
         let counts = |is_pipelined: bool| -> Vec<usize> {
             let steps = plan.schedule(is_pipelined).steps;
-            steps
-                .iter()
-                .map(|step| match step {
-                    PlanStep::Hold(nodes) => nodes.len(),
-                    other => panic!("a maximum needs no {other:?}"),
-                })
-                .collect()
+            assert!(steps.iter().all(|step| step.work.is_none()), "a maximum needs no product");
+            steps.iter().map(|step| step.loads.len()).collect()
         };
         assert_eq!(counts(true), [1]);
         // Both maxima of two operands are stored in the same clock.
         assert_eq!(counts(false), [2, 1]);
+    }
+
+    #[test]
+    fn registers_load_beside_products() {
+        // The quotient takes several microinstructions, in which the sum and its absolute value are stored.
+        let plan = plan_of("(a / (1.25 + b / 8) + 1) * abs(c + d)");
+        let schedule = plan.schedule(false);
+        let is_beside = |step: &PlanStep| step.work.is_some() && !step.loads.is_empty();
+        assert!(schedule.steps.iter().any(is_beside), "{:?}", schedule.steps);
     }
 }

@@ -1,0 +1,192 @@
+//! Places the operations of a plan in the microinstructions of a microprogram.
+
+use super::node::{NodeId, Operation};
+use super::plan::ExpressionPlan;
+
+/// What the multiplier or a table does in a microinstruction.
+#[derive(Clone, Debug, PartialEq)]
+pub enum StepWork {
+    /// The multiplier computes a product, and a register loads the product or a value that follows from it.
+    Product {
+        /// The node of the product.
+        product: NodeId,
+        /// The node whose register is loaded: the product itself, or the product after it was scaled or shortened.
+        held: NodeId,
+    },
+    /// The table of this node's polynomial gets its address, and there is nothing else to do.
+    Address(NodeId),
+    /// The multiplier and an adder compute one partial sum of Horner's rule.
+    Sum {
+        /// The node of the polynomial.
+        polynomial: NodeId,
+        /// The index of the coefficient that is added; 0 is the constant coefficient.
+        coefficient: usize,
+    },
+}
+
+/// One microinstruction of a plan's microprogram.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PlanStep {
+    pub work: Option<StepWork>,
+    /// The nodes whose registers load their values, besides those of `work`.
+    pub loads: Vec<NodeId>,
+    /// The polynomials whose highest coefficient a register loads from the table.
+    pub coefficients: Vec<NodeId>,
+}
+
+/// The microprogram of a plan, with the nodes that have registers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlanSchedule {
+    /// For each node, whether it has a register.
+    pub held: Vec<bool>,
+    /// For each node, whether it is a polynomial with a register for the highest coefficient. A block memory gives a coefficient too
+    /// late in the clock for the multiplier.
+    pub is_coefficient_held: Vec<bool>,
+    /// The microinstructions in the order of execution.
+    pub steps: Vec<PlanStep>,
+}
+
+/// Places the operations of a plan in microinstructions, one operation after the other.
+#[derive(Clone)]
+pub(super) struct StepPlacement<'p> {
+    pub(super) plan: &'p ExpressionPlan,
+    /// For each node, the node whose register stores its value.
+    pub(super) targets: &'p [NodeId],
+    pub(super) is_pipelined: bool,
+    /// For each node, the first microinstruction that can read its value. Operands are there before the first one.
+    pub(super) ready: Vec<usize>,
+    /// For each node, whether a microinstruction loads its register.
+    is_placed: Vec<bool>,
+    /// The first microinstruction in which the multiplier is free.
+    next_work: usize,
+    pub(super) schedule: PlanSchedule,
+}
+
+impl<'p> StepPlacement<'p> {
+    pub(super) fn new(
+        plan: &'p ExpressionPlan,
+        targets: &'p [NodeId],
+        schedule: PlanSchedule,
+        is_pipelined: bool,
+    ) -> Self {
+        let count = plan.nodes.len();
+        let (ready, is_placed) = (vec![0; count], vec![false; count]);
+        Self { plan, targets, is_pipelined, ready, is_placed, next_work: 0, schedule }
+    }
+
+    /// Places the operation of `node`. All nodes before it must be placed.
+    pub(super) fn place(&mut self, node: NodeId) {
+        let plan = self.plan;
+        match plan.node(node).operation {
+            Operation::Multiply(..) => {
+                let held = self.targets[node.0];
+                let at = self.free_work(self.inputs_ready(node));
+                self.step(at).work = Some(StepWork::Product { product: node, held });
+                self.loaded(held, at);
+            }
+            Operation::Places(normalised) => {
+                let at = self.free(self.inputs_ready(normalised));
+                let word = self.targets[normalised.0];
+                self.load(word, at);
+                if self.schedule.held[node.0] {
+                    self.load(node, at);
+                }
+            }
+            Operation::Polynomial(operand, _) => self.place_polynomial(node, operand),
+            _ if self.is_placed[node.0] => {}
+            // The node with the shift places the normalised word, too.
+            Operation::Normalise { .. } => {}
+            _ if self.schedule.held[node.0] && !self.is_last(node) => {
+                let at = self.free(self.inputs_ready(node));
+                self.load(node, at);
+            }
+            _ => self.ready[node.0] = self.inputs_ready(node),
+        }
+    }
+
+    /// Returns whether only the outputs read the node. A pipeline loads all such nodes in its last microinstruction.
+    fn is_last(&self, node: NodeId) -> bool {
+        let mut others = self.plan.nodes.iter();
+        let has_reader = others.any(|other| other.operation.inputs().contains(&node));
+        self.is_pipelined && !has_reader
+    }
+
+    /// Loads the results that have no register yet.
+    pub(super) fn place_results(&mut self) {
+        let results = self.plan.results.clone();
+        let end = self.schedule.steps.len();
+        for result in results {
+            if !self.is_placed[result.0] {
+                self.load(result, end);
+            }
+        }
+    }
+
+    fn place_polynomial(&mut self, node: NodeId, operand: NodeId) {
+        let Operation::Polynomial(_, approximation) = &self.plan.node(node).operation else {
+            return;
+        };
+        let degree = approximation.polynomials.as_ref().expect("polynomials").degree();
+        // The operands address a table in the clock before the first microinstruction, and a register one clock after it is loaded.
+        let address = self.ready[operand.0];
+        let mut at = match address {
+            _ if self.is_pipelined => self.schedule.steps.len() + usize::from(self.has_steps()),
+            0 => 0,
+            _ => address + 1,
+        };
+        for gap in self.schedule.steps.len()..at {
+            self.step(gap).work = Some(StepWork::Address(node));
+        }
+        if self.schedule.is_coefficient_held[node.0] {
+            self.step(at).coefficients.push(node);
+            at += 1;
+        }
+        for coefficient in (0..degree.max(1)).rev() {
+            at = self.free_work(at);
+            self.step(at).work = Some(StepWork::Sum { polynomial: node, coefficient });
+        }
+        self.loaded(node, at);
+    }
+
+    fn has_steps(&self) -> bool {
+        !self.schedule.steps.is_empty()
+    }
+
+    /// Returns the first microinstruction that can read all inputs of a node.
+    fn inputs_ready(&self, node: NodeId) -> usize {
+        let inputs = self.plan.node(node).operation.hardware_inputs();
+        inputs.into_iter().map(|input| self.ready[input.0]).max().unwrap_or(0)
+    }
+
+    /// Returns the microinstruction for registers whose values are there from microinstruction `ready` on.
+    fn free(&self, ready: usize) -> usize {
+        if self.is_pipelined { self.schedule.steps.len() } else { ready }
+    }
+
+    /// Returns the microinstruction for a product whose factors are there from microinstruction `ready` on.
+    fn free_work(&mut self, ready: usize) -> usize {
+        let at = self.free(ready).max(self.next_work);
+        self.next_work = at + 1;
+        at
+    }
+
+    /// Returns a microinstruction, after adding those that do not exist yet.
+    fn step(&mut self, at: usize) -> &mut PlanStep {
+        let steps = &mut self.schedule.steps;
+        if steps.len() <= at {
+            steps.resize(at + 1, PlanStep::default());
+        }
+        &mut steps[at]
+    }
+
+    fn load(&mut self, node: NodeId, at: usize) {
+        self.step(at).loads.push(node);
+        self.loaded(node, at);
+    }
+
+    /// Notes that microinstruction `at` loads the register of a node.
+    fn loaded(&mut self, node: NodeId, at: usize) {
+        self.is_placed[node.0] = true;
+        self.ready[node.0] = at + 1;
+    }
+}
