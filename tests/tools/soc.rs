@@ -1,5 +1,5 @@
 //! Tests the system of `examples/soc`: its pictures equal the pictures of `glint render`, the span engine makes it at least six
-//! times as fast, and the proof of the span engine holds and notices faults.
+//! times as fast, the processor computes functions by instructions, and the proof of the span engine holds and notices faults.
 
 use std::path::Path;
 
@@ -30,6 +30,13 @@ fn a_processor_renders_through_its_cores() {
         .collect();
     assert_eq!(times.len(), 3, "{output}");
     assert!(times.iter().all(|&times| times >= 6.0), "{output}");
+    for (function, least) in [("rcp", 1.4), ("rsqrt", 5.0), ("atan2", 6.0)] {
+        let line = output.lines().find(|line| line.starts_with(&format!("{function}, 100 values")));
+        let line = line.unwrap_or_else(|| panic!("no {function}: {output}"));
+        let (_, ratio) = line.split_once("C by hand ").expect("C by hand");
+        let ratio = ratio.split([',', ' ']).nth(2).expect("a ratio");
+        assert!(ratio.parse::<f64>().expect("a number") >= least, "{line}");
+    }
 }
 
 #[test]
