@@ -39,7 +39,9 @@ use super::statement::{
 use super::uses::{PartUses, reads_always};
 use errors::ErrorMemo;
 use nearest::has_no_function;
-use rational::{QuotientParts, ceiling_of, floor_of_quotient, rational_quotient};
+use rational::{
+    QuotientParts, ceiling_of, floor_of_quotient, rational_quotient, with_single_division,
+};
 use shape::{
     core_of, dominators, dyadic, floor_of, is_limit_of, is_logarithm_of_multiple, is_size_of,
     modulus_exponent, number, power_of_two, products_of,
@@ -503,6 +505,11 @@ impl<'s> Lowering<'s> {
     fn new_part(&mut self, part: &Expression) -> Result<NodeId, PlanRefusal> {
         if !part.varies() {
             return self.number(part);
+        }
+        if let Some(single) = with_single_division(part)
+            && let Ok(node) = self.part(&single)
+        {
+            return Ok(node);
         }
         let core = core_of(part);
         if products_of(part, core).is_some_and(|products| products <= MOST_PRODUCTS) || core == part

@@ -28,7 +28,7 @@ const TINY: &str =
 operands.c = { bits = 3, fraction = 40 }\noperands.d = { bits = 3, fraction = 40 }";
 
 /// Operands, and results that other results read or that need no operation.
-const CASES: [(&str, &str); 49] = [
+const CASES: [(&str, &str); 50] = [
     (
         // A choice with a hole, divided by a constant; the root of a sum of integers; digits of a number of seconds.
         "operands.x = { bits = 6, fraction = 3, signed = true }\noperands.y = { bits = 5, fraction = 0 }",
@@ -293,6 +293,12 @@ results.z = { formula = \"sqrt(max(0, 1 - x^2 - y^2))\", fraction = 5 }
 results.r = { formula = \"1 / (1 + sqrt(x^2 + y^2))\", fraction = 6 }",
     ),
     (UNSIGNED, "results.p = { formula = \"x^y\", fraction = 6 }"),
+    (
+        // Three resistors in parallel: one division in place of four.
+        "operands.a = { bits = 3, fraction = 0 }\noperands.b = { bits = 3, fraction = 0 }\noperands.c = { bits = 3, fraction = 1 }",
+        "results.r = { formula = \"1 / (1/a + 1/b + 1/c)\", fraction = 4, where = \"a > 0 and b > 0 and c > 0\" }
+results.d = { formula = \"2 / (1/a - 1/(b + 8))\", fraction = 2, where = \"a > 0\" }",
+    ),
 ];
 
 #[test]

@@ -103,7 +103,7 @@ pub(super) fn rational_quotient(formula: &Expression) -> Option<QuotientParts> {
     let Some(QuotientParts { dividend, divisor }) = quotient_of(formula) else {
         let OverNumber { dividend, divisor } = over_number(formula)?;
         let is_divided = divisor != RBig::ONE;
-        return is_divided.then(|| QuotientParts { dividend, divisor: constant(&divisor) });
+        return is_divided.then(|| without_binary_places(dividend, divisor));
     };
     let (Some(above), Some(below)) = (over_number(&dividend), over_number(&divisor)) else {
         return Some(QuotientParts { dividend, divisor });
@@ -111,6 +111,46 @@ pub(super) fn rational_quotient(formula: &Expression) -> Option<QuotientParts> {
     let dividend = times(&above.dividend, &below.divisor);
     let divisor = times(&below.dividend, &above.divisor);
     Some(QuotientParts { dividend, divisor })
+}
+
+/// Writes a quotient whose divisor is a sum of quotients with a single division: `1 / (1 / x + 1 / y)` is `x * y / (y + x)`. Returns
+/// `None` for any other formula.
+pub(super) fn with_single_division(formula: &Expression) -> Option<Expression> {
+    let Kind::Binary(Operator::Div, a, b) = &formula.kind else { return None };
+    let QuotientParts { dividend, divisor } = sum_of_quotients(b)?;
+    let above = joined(Operator::Mul, a, &divisor);
+    Some(joined(Operator::Div, &above, &dividend))
+}
+
+/// Writes a sum of at least two quotients with divisors that vary as a single quotient. Returns `None` for any other formula.
+fn sum_of_quotients(formula: &Expression) -> Option<QuotientParts> {
+    let Kind::Binary(operator @ (Operator::Add | Operator::Sub), a, b) = &formula.kind else {
+        return None;
+    };
+    let parts = |part: &Expression| sum_of_quotients(part).or_else(|| quotient_of(part));
+    let (first, second) = (parts(a)?, parts(b)?);
+    let left = joined(Operator::Mul, &first.dividend, &second.divisor);
+    let right = joined(Operator::Mul, &second.dividend, &first.divisor);
+    let divisor = joined(Operator::Mul, &first.divisor, &second.divisor);
+    Some(QuotientParts { dividend: joined(*operator, &left, &right), divisor })
+}
+
+fn joined(operator: Operator, a: &Expression, b: &Expression) -> Expression {
+    let kind = Kind::Binary(operator, Arc::new(a.clone()), Arc::new(b.clone()));
+    Expression::new(kind, a.span.clone())
+}
+
+/// Returns a quotient by a number. A dividend such as `x / 2` gives its power of two to the divisor: `(x / 2) / 5` is `x / 10`, whose
+/// product with the reciprocal then serves `x % 10` too.
+fn without_binary_places(dividend: Expression, divisor: RBig) -> QuotientParts {
+    if let Kind::Binary(Operator::Mul, factor, rest) = &dividend.kind
+        && let Some(value) = factor.rational()
+    {
+        let divisor = divisor * RBig::from(value.denominator().clone());
+        let dividend = times(rest, &RBig::from(value.numerator().clone()));
+        return QuotientParts { dividend, divisor: constant(&divisor) };
+    }
+    QuotientParts { dividend, divisor: constant(&divisor) }
 }
 
 /// Returns an equal comparison without divisions by odd numbers: `x / 3 > y` becomes `x > 3 * y`. Returns `None` for a comparison
@@ -227,4 +267,25 @@ fn times(formula: &Expression, factor: &RBig) -> Expression {
 /// Returns the formula of a rational number.
 fn constant(value: &RBig) -> Expression {
     number(&value.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_divisor_of_quotients_becomes_a_single_division() {
+        let single = |formula: &str| with_single_division(&number(formula)).map(|it| it.python());
+        assert_eq!(single("1 / (1 / x + 2 / y)").unwrap(), "1.0 * (x * y) / (1.0 * y + 2.0 * x)");
+        for other in ["1 / (x + y)", "1 / (1 / x + y)", "1 / x + 1 / y", "1 / (1 / x)"] {
+            assert_eq!(single(other), None, "{other}");
+        }
+    }
+
+    #[test]
+    fn a_quotient_and_a_remainder_by_a_constant_have_the_same_divisor() {
+        let parts = rational_quotient(&number("x / 10")).unwrap();
+        assert_eq!(parts.divisor.rational(), Some(RBig::from(10)));
+        assert_eq!(parts.dividend, Expression::operand("x"));
+    }
 }

@@ -1,5 +1,7 @@
 //! Aligns the operations of several plans: operations of the same kind get the same slot, in an order that suits every plan.
 
+use glint_base::fixed::Rounding;
+
 use crate::node::{NodeId, Operation};
 use crate::plan::ExpressionPlan;
 
@@ -12,6 +14,8 @@ pub(super) enum SharedKind {
     Product,
     LeftShift,
     RightShift,
+    /// The rounding of a result.
+    Rounding,
 }
 
 /// An operation of the merged plan: for each function, the node of its plan that this operation computes, if it has one.
@@ -52,6 +56,9 @@ pub(super) fn shared_operations(
             Operation::Multiply(..) => SharedKind::Product,
             Operation::ShiftLeft(..) => SharedKind::LeftShift,
             Operation::ShiftRight(..) => SharedKind::RightShift,
+            Operation::Narrow(value, _) if is_rounded_result(plan, id, value) => {
+                SharedKind::Rounding
+            }
             _ => continue,
         };
         let is_needed = is_read[at] || kind == SharedKind::Normaliser && is_read[at + 1];
@@ -60,6 +67,15 @@ pub(super) fn shared_operations(
         }
     }
     sequence
+}
+
+/// Returns whether `id` is a result that is `value`, rounded to the nearest. A rounding after a choice is left out, because one adder
+/// computes a choice of differences and its rounding.
+fn is_rounded_result(plan: &ExpressionPlan, id: NodeId, value: NodeId) -> bool {
+    let is_nearest = matches!(plan.node(id).operation, Operation::Narrow(_, Rounding::Nearest));
+    let drops_bits = plan.node(value).format.frac > plan.node(id).format.frac;
+    let is_choice = matches!(plan.node(value).operation, Operation::Choose { .. });
+    is_nearest && drops_bits && !is_choice && plan.results.contains(&id)
 }
 
 /// Adds the operations of a function to the slots: to slots of the same kind as far as possible, and otherwise to new slots.

@@ -259,6 +259,7 @@ impl Merger<'_> {
             SharedKind::Product => self.add_product(&members),
             SharedKind::LeftShift => self.add_shift(&members, true),
             SharedKind::RightShift => self.add_shift(&members, false),
+            SharedKind::Rounding => self.add_rounding(&members),
         }
     }
 
@@ -302,6 +303,30 @@ impl Merger<'_> {
         };
         for (function, node) in members {
             self.give(*function, *node, shifted)?;
+        }
+        Ok(())
+    }
+
+    /// Adds an adder that rounds results. The opcode selects the value with the highest bit that its function drops.
+    fn add_rounding(&mut self, members: &[(usize, NodeId)]) -> Result<(), PlanRefusal> {
+        let mut cases = vec![None; self.functions.len()];
+        let mut formats = Vec::new();
+        for (function, node) in members {
+            let own = self.own(*function);
+            let result = own.node(*node).format;
+            let value = own.node(*node).operation.inputs()[0];
+            let value = self.nodes[*function][value.0];
+            let name = format!("{}_to_round", self.functions[*function].name);
+            let scaled = self.plan.scale(&name, value, result.frac)?;
+            let with_half = Format { frac: 1, ..self.plan.node(scaled).format };
+            cases[*function] = Some(self.narrow(&name, scaled, with_half)?);
+            formats.push(Format { int: result.int + result.frac, frac: 0, ..result });
+        }
+        let value = self.selected("to_round", &cases)?;
+        let format = formats.into_iter().reduce(wide_enough).expect("a member");
+        let rounded = self.plan.narrow("rounded", value, format, Rounding::Nearest)?;
+        for (function, node) in members {
+            self.give(*function, *node, rounded)?;
         }
         Ok(())
     }
