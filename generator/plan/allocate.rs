@@ -57,9 +57,13 @@ fn allocated_with(
     divisions: usize,
 ) -> Result<Allocation, PlanRefusal> {
     let mut searches = undivided(search.statement);
-    let (mut guards, mut plan) = match grown(search, none, divisions, &mut searches) {
+    let by_known = grown(search, none, divisions, &mut searches, BitOrder::KnownShares);
+    let (mut guards, mut plan) = match by_known {
         Ok(enough) => enough,
-        Err(refusal) => equally_many(search, none, divisions, &mut searches).ok_or(refusal)?,
+        Err(refusal) => grown(search, none, divisions, &mut searches, BitOrder::UnknownShares)
+            .ok()
+            .or_else(|| equally_many(search, none, divisions, &mut searches))
+            .ok_or(refusal)?,
     };
     for source in 0..guards.bits.len() {
         let siblings = siblings_of(search.statement, &plan, source);
@@ -82,6 +86,16 @@ fn allocated_with(
     Ok(Allocation { guards, plan, divisions, searches })
 }
 
+/// Which rounding operation gets the next bit if the shares of some operations in the error are not known.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum BitOrder {
+    /// The operation with the largest share. Others get bits when it and all others with a known share have the most bits.
+    KnownShares,
+    /// An operation with an unknown share, while the known shares together are less than half of the error. For example, the quotient in
+    /// `(ln(s / k) + v) / v` needs its bits first.
+    UnknownShares,
+}
+
 /// Returns guard bits with which every result keeps its allowed error, and the plan with them. The function begins with few
 /// bits, and adds one at a time to the operation with the largest share of the error. Fails if a formula has no plan, or if no
 /// number of bits is enough.
@@ -90,11 +104,12 @@ fn grown(
     none: &Guards,
     divisions: usize,
     searches: &mut ErrorSearches,
+    order: BitOrder,
 ) -> Result<(Guards, ExpressionPlan), PlanRefusal> {
     let (mut guards, mut plan) = first_plan(search, none)?;
     let statement = search.statement;
     while let Some(excess) = largest_excess(statement, &plan, divisions, searches) {
-        let source = excess.source(statement, &plan, &guards)?;
+        let source = excess.source(statement, &plan, &guards, order)?;
         for sibling in siblings_of(statement, &plan, source) {
             guards.add_bit(sibling);
         }
@@ -213,13 +228,14 @@ pub(super) fn largest_excess(
 
 impl ExcessiveResult {
     /// Returns the number of the rounding operation with the largest share of the error. An operation with the largest number
-    /// of guard bits does not count. If the error has a limit, a share without a limit is not known; such an operation counts if the
-    /// other shares together are less than half of the error. Fails if no operation is left.
+    /// of guard bits does not count. If the error has a limit, a share without a limit is not known, and `order` says when its
+    /// operation counts. Fails if no operation is left.
     pub(super) fn source(
         &self,
         statement: &ExpressionStatement,
         plan: &ExpressionPlan,
         guards: &Guards,
+        order: BitOrder,
     ) -> Result<usize, PlanRefusal> {
         let proof = ResultProof::new(statement, plan, self.result);
         let mut largest = (0.0, None);
@@ -242,7 +258,7 @@ impl ExcessiveResult {
                 largest = (share, Some(source));
             }
         }
-        let is_known = known >= self.worst.units / 2.0;
+        let is_known = order == BitOrder::KnownShares || known >= self.worst.units / 2.0;
         let unknown = fewest_unknown.map(|(_, source)| source);
         let source = match is_known {
             true => largest.1.or(unknown),

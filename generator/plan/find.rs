@@ -12,7 +12,7 @@ use glint_approximate::{
 };
 use glint_base::fixed::MAX_WIDTH;
 
-use super::allocate::{Allocation, allocated, largest_excess};
+use super::allocate::{Allocation, BitOrder, allocated, largest_excess};
 use super::boxes::ResultProof;
 use super::cost::cells_of_function;
 use super::exhaust::{largest_errors, sampled_errors};
@@ -338,7 +338,7 @@ fn candidate_with(search: &PlanSearch<'_>, style: PlanStyle) -> Result<PlanCandi
     for _ in 0..MOST_CORRECTIONS {
         let excess = largest_excess(statement, &plan, divisions, &mut searches);
         let Some(excess) = excess else { return Ok(PlanCandidate { plan, divisions }) };
-        let source = excess.source(statement, &plan, &guards)?;
+        let source = excess.source(statement, &plan, &guards, BitOrder::UnknownShares)?;
         guards.add_bit(source);
         let estimate = lowered(search, &guards, 0, &FoundPolynomials::default())?.0;
         plan = with_polynomials(search, &guards, estimate)?;

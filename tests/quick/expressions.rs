@@ -421,3 +421,22 @@ fn a_configuration_is_planned_once() {
     Core::build(core.opened.with_config(sequential).expect("the same keys")).expect("a core");
     assert_eq!(OPENED.load(Ordering::Relaxed), 1);
 }
+
+/// The error of a quotient by a product of lengths has shares that are not known for all roundings. The longer operands need the
+/// known shares to decide which rounding gets bits, and the shorter ones the unknown shares.
+#[test]
+fn similarities_of_directions_are_proved() {
+    for (axes, bits, fraction) in [("xyz", 14, 10), ("xy", 12, 8)] {
+        let operand = format!(
+            "{{ axes = \"{axes}\", bits = {bits}, fraction = {}, signed = true }}",
+            bits - 2
+        );
+        let text = format!(
+            "device = \"expression\"\noperands.a = {operand}\noperands.b = {operand}\n\
+             results.c = {{ formula = \"dot(a, b) / (length(a) * length(b))\", fraction = {fraction}, error = 2.0, \
+             where = \"length(a) > 0.5 and length(b) > 0.5\" }}\n"
+        );
+        let core = parsed("similarity.toml", &text);
+        assert!(core.contract.bounds().governing_units() < 2.0, "{axes}");
+    }
+}
