@@ -11,7 +11,7 @@
 
 `default_nettype none
 
-<% include "processor_stub.sv" %>
+<% include "core_stub.sv" %>
 
 module ${ proof.name }$_cfu_formal (
     input wire clk,

@@ -12,7 +12,7 @@
 
 `default_nettype none
 
-<% include "processor_stub.sv" %>
+<% include "core_stub.sv" %>
 
 module ${ proof.name }$_pcpi_formal (
     input wire clk,

@@ -11,29 +11,7 @@
 
 `default_nettype none
 
-module ${ core }$ (
-<%- for line in stub_ports %>
-    ${ line }$
-<%- endfor %>
-);
-    (* anyseq *) reg ends;
-<%- for line in stub_free %>
-    ${ line }$
-<%- endfor %>
-    reg run;
-    assign busy = run;
-    assign valid = done;
-    assign done = run & ends;
-    always @(posedge clk) run <= rst_n & (run ? ~done : start);
-
-    // A computation starts only after the computation before it has ended, and loads all operands.
-    always @* if (!$initstate && start) begin
-        assert (!run);
-<%- for operand in operands %>
-        assert (${ operand.strobe }$);
-<%- endfor %>
-    end
-endmodule
+<% include "core_stub.sv" %>
 
 module ${ name }$_registers_formal (
     input wire clk,

@@ -5,6 +5,7 @@
 use anyhow::Result;
 use glint_base::fill;
 
+use super::wrap::CoreStub;
 use super::wrap::processor::{ProcessorModule, ProcessorProof};
 
 /// An interface of a processor for instructions that its user defines.
@@ -36,7 +37,7 @@ pub static PROCESSORS: [ProcessorInterface; 2] = [
                 in cmd_payload_inputs_0 32, in cmd_payload_inputs_1 32, out rsp_valid, in rsp_ready, \
                 out rsp_payload_outputs_0 32",
         module: |module| fill!("cfu.v" { module: &'a ProcessorModule }),
-        proof: |proof| fill!("cfu_formal.sv" { proof: &'a ProcessorProof }),
+        proof: |proof| fill!("cfu_formal.sv" { proof: &'a ProcessorProof, stub: &'a CoreStub = &proof.stub }),
     },
     ProcessorInterface {
         key: "pcpi",
@@ -45,6 +46,6 @@ pub static PROCESSORS: [ProcessorInterface; 2] = [
         ports: "in clk, in resetn, in pcpi_valid, in pcpi_insn 32, in pcpi_rs1 32, in pcpi_rs2 32, out pcpi_wr, \
                 out pcpi_rd 32, out pcpi_wait, out pcpi_ready",
         module: |module| fill!("pcpi.v" { module: &'a ProcessorModule }),
-        proof: |proof| fill!("pcpi_formal.sv" { proof: &'a ProcessorProof }),
+        proof: |proof| fill!("pcpi_formal.sv" { proof: &'a ProcessorProof, stub: &'a CoreStub = &proof.stub }),
     },
 ];

@@ -93,6 +93,29 @@ fn core_wire(design: &Design, port: &Port) -> String {
     format!("wire {} core_{};", range(net.format.width()), net.name).replace("  ", " ")
 }
 
+/// A module with the ports and the handshake of a core, which replaces it in a proof. Its results are arbitrary.
+pub struct CoreStub {
+    pub core: String,
+    pub ports: Vec<String>,
+    /// The lines that let the solver choose results and status bits.
+    pub free: Vec<String>,
+    /// The strobes of the operands. A start must raise them all.
+    pub strobes: Vec<String>,
+}
+
+impl CoreStub {
+    fn new(design: &Design) -> Self {
+        let mut strobes = Vec::new();
+        for port in design.inputs() {
+            if let Role::Operand { strobe } = port.role {
+                strobes.push(design.net(strobe).name.clone());
+            }
+        }
+        let core = design.name.clone();
+        Self { core, ports: stub_ports(design), free: stub_free(design), strobes }
+    }
+}
+
 /// Returns the part of a stub, which replaces the core in a proof, that lets the solver choose results and status bits in each
 /// clock.
 fn stub_free(design: &Design) -> Vec<String> {

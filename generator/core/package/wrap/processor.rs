@@ -5,7 +5,7 @@ use anyhow::Result;
 
 use super::fields::sink;
 use super::single::started;
-use super::{add_proof, connected, core_wire, seen_inside, stub_free, stub_ports};
+use super::{CoreStub, add_proof, connected, core_wire, seen_inside};
 use crate::package::emit_job::EmitJob;
 use crate::package::file_kind::FileKind;
 use crate::package::instructions::{InstructionOperand, Instructions, OPCODE_BITS};
@@ -41,15 +41,13 @@ pub struct ResultAnswer {
 /// What the templates of a proof print.
 pub struct ProcessorProof {
     pub name: String,
-    pub core: String,
+    /// The module in place of the core.
+    pub stub: CoreStub,
     /// The declaration of a wire that says whether there is an instruction with the function id `asked`.
     pub known: Vec<String>,
     pub answers: Vec<ResultAnswer>,
     /// The operands of the core, each with the bits of the instruction that it must get.
     pub operands: Vec<(String, String)>,
-    pub strobes: Vec<String>,
-    pub stub_ports: Vec<String>,
-    pub stub_free: Vec<String>,
     pub inside: Vec<String>,
 }
 
@@ -113,7 +111,6 @@ fn processor_proof(job: &EmitJob, instructions: &Instructions) -> ProcessorProof
     let started = started(job.design);
     let design = started.as_ref();
     let mut operands = Vec::new();
-    let mut strobes = Vec::new();
     let mut inside: Vec<(String, u32)> =
         ["computing", "start", "core.run", "core.ends", "core.rst_n"]
             .map(|net| (net.to_owned(), 1))
@@ -122,8 +119,7 @@ fn processor_proof(job: &EmitJob, instructions: &Instructions) -> ProcessorProof
         let net = design.net(port.net);
         let path = format!("core.{}", net.name);
         match port.role {
-            Role::Operand { strobe } => {
-                strobes.push(design.net(strobe).name.clone());
+            Role::Operand { .. } => {
                 operands.push((net.name.clone(), source(instructions, &net.name, "offered")));
                 inside.push((path, net.format.width()));
             }
@@ -133,13 +129,10 @@ fn processor_proof(job: &EmitJob, instructions: &Instructions) -> ProcessorProof
     }
     ProcessorProof {
         name: job.name().to_owned(),
-        core: design.name.clone(),
+        stub: CoreStub::new(design),
         known: known_one_by_one(instructions),
         answers: answers(instructions, "dut.core."),
         operands,
-        strobes,
-        stub_ports: stub_ports(design),
-        stub_free: stub_free(design),
         inside: inside.into_iter().map(seen_inside).collect(),
     }
 }

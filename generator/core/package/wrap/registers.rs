@@ -9,7 +9,7 @@ use glint_base::fill;
 use super::fields::sink;
 use super::single::started;
 use super::words::{Word, constants, select, within, words};
-use super::{add_proof, connected, core_wire, seen_inside, stub_free, stub_ports};
+use super::{CoreStub, add_proof, connected, core_wire, seen_inside};
 use crate::package::bus::Bus;
 use crate::package::emit_job::EmitJob;
 use crate::package::file_kind::FileKind;
@@ -21,7 +21,6 @@ use glint_rtl::verilog::text::{comment, literal, range, statement};
 /// An operand, with the byte lanes through which bus registers write it.
 struct OperandWords {
     name: String,
-    strobe: String,
     range: String,
     zero: String,
     lanes: Vec<ByteLane>,
@@ -144,7 +143,6 @@ fn operands(map: &Map) -> Vec<OperandWords> {
         }
         words.push(OperandWords {
             name: operand.name.clone(),
-            strobe: operand.strobe.clone(),
             range: range(width),
             zero: literal(0, width),
             lanes,
@@ -239,7 +237,6 @@ fn proof(job: &EmitJob, map: &Map) -> Result<String> {
     let reads = map.registers.iter().map(|register| (register.place, read(map, register)));
     fill!("registers_formal.sv" {
         name: &'a str = job.name(),
-        core: &'a str = &started.name,
         address_high: u32 = map.address_bits() - 1,
         word_high: u32 = word_bits - 1,
         word_count: u32 = map.last() + 1,
@@ -250,8 +247,7 @@ fn proof(job: &EmitJob, map: &Map) -> Result<String> {
         operands: Vec<OperandWords> = operands(map),
         // The place of each register, and the word that a read of it gives.
         reads: Vec<(u32, Vec<String>)> = reads.collect(),
-        stub_ports: Vec<String> = stub_ports(&started),
-        stub_free: Vec<String> = stub_free(&started),
+        stub: &'a CoreStub = &CoreStub::new(&started),
         inside: Vec<String> = inside.into_iter().map(seen_inside).collect(),
     })
 }

@@ -1,10 +1,10 @@
-module ${ proof.core }$ (
-<%- for line in proof.stub_ports %>
+module ${ stub.core }$ (
+<%- for line in stub.ports %>
     ${ line }$
 <%- endfor %>
 );
     (* anyseq *) reg ends;
-<%- for line in proof.stub_free %>
+<%- for line in stub.free %>
     ${ line }$
 <%- endfor %>
     reg run;
@@ -16,7 +16,7 @@ module ${ proof.core }$ (
     // A computation starts only after the computation before it has ended, and loads all operands.
     always @* if (!$initstate && start) begin
         assert (!run);
-<%- for strobe in proof.strobes %>
+<%- for strobe in stub.strobes %>
         assert (${ strobe }$);
 <%- endfor %>
     end
