@@ -8,6 +8,7 @@ use std::ops::Range;
 
 use glint_approximate::{HornerStep, Layout, Piecewise};
 use glint_base::fixed::{Format, MAX_WIDTH, Overflow, Rounding};
+use glint_plan::SMALLEST_BLOCK;
 use glint_rtl::dsl::{Designer, OperandMux, Register, SharedProduct, Signal, StepSetting};
 
 /// One multiplier for all steps of all polynomials, and for other products, each in its own microinstruction.
@@ -86,9 +87,6 @@ pub struct Tables {
     /// Whether a register holds the highest coefficient, which a microinstruction before the first sum loads.
     pub holds_highest: bool,
 }
-
-/// The size of a table, in bits, from which on some family of FPGAs uses a block memory.
-const SMALLEST_BLOCK: u64 = 2048;
 
 impl Tables {
     /// In a pipeline, each coefficient of a small table has its own table, because registers then delay the address instead of

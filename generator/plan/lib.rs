@@ -68,6 +68,7 @@ pub use placement::{PlanSchedule, PlanStep, StepWork};
 pub use plan::ExpressionPlan;
 pub use range::least_size;
 pub use refusal::{PartToLimit, PlanRefusal};
+pub use schedule::SMALLEST_BLOCK;
 pub use statement::{
     ExpressionStatement, StatedOperand, StatedOverflow, StatedResult, StatedWidth,
 };

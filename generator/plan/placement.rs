@@ -3,7 +3,7 @@
 use super::node::{NodeId, Operation};
 use super::plan::ExpressionPlan;
 
-/// What the multiplier or a table does in a microinstruction.
+/// The operation of the multiplier or of a table in a microinstruction.
 #[derive(Clone, Debug, PartialEq)]
 pub enum StepWork {
     /// The multiplier computes a product, and a register loads the product or a value that follows from it.

@@ -11,8 +11,8 @@ use super::node::{NodeId, Operation};
 use super::placement::{PlanSchedule, StepPlacement};
 use super::plan::ExpressionPlan;
 
-/// The size of a table, in bits, from which on it is in a block memory.
-const SMALLEST_BLOCK: u64 = 2048;
+/// The size of a table, in bits, from which on some family of FPGAs uses a block memory.
+pub const SMALLEST_BLOCK: u64 = 2048;
 
 impl ExpressionPlan {
     /// Returns the microprogram of the plan, with the nodes that have registers. It computes no node that no result reads

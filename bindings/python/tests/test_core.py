@@ -364,7 +364,7 @@ def test_units_say_what_is_wrong(tmp_path):
         small_unit().rsqrt
     with pytest.raises(TypeError, match="function 'rcp' has no results"):
         glint.unit({"rcp": {"x": (0.5, 1, 12)}})
-    with pytest.raises(ValueError, match="2 is outside|2.0|is 2"):
+    with pytest.raises(ValueError, match=r"`x` is 2, and u0\.12 has"):
         small_unit().rcp(2.0)
     path = tmp_path / "mean.toml"
     path.write_text(glint.expression("(p + q) / 2", p=(-1, 1, 7), q=(-1, 1, 7), fraction=8).toml())

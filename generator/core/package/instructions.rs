@@ -10,7 +10,7 @@ use super::inputs::EmitInputs;
 use super::wrap::single::{colliding_port, started};
 use glint_base::config_error::ConfigError;
 use glint_base::fixed::Format;
-use glint_rtl::netlist::{Design, FunctionPort, OPCODE, Port, Role};
+use glint_rtl::netlist::{CoreFunction, Design, FunctionPort, OPCODE, Port, Role};
 
 /// The key that asks for instructions.
 pub const KEY: &str = "interface.processor";
@@ -24,7 +24,7 @@ const WORD: u32 = 32;
 /// The most results of a core, as six bits can number them.
 const MOST_RESULTS: usize = 64;
 
-/// Where an operand of the core is in the two source registers.
+/// The position of an operand of the core in the two source registers.
 pub struct OperandBits {
     pub port: String,
     /// The port that writes the operand.
@@ -59,7 +59,7 @@ pub struct CoreInstruction {
     pub result: String,
     /// Whether the function has further results.
     pub is_one_of_several: bool,
-    /// What the instruction computes, on one line; may be empty.
+    /// The formula and its error on one line; may be empty.
     pub doc: String,
     pub operands: Vec<InstructionOperand>,
     /// The format of the result in the low bits of the answer.
@@ -135,7 +135,7 @@ impl Instructions {
         let results = results(design)?;
         let list = match core.functions.as_slice() {
             [] => of_core(&operands, &results),
-            _ => of_functions(core, &operands, &results),
+            _ => of_functions(core, &operands, &results)?,
         };
         Ok(Self { operands, opcode, results, list })
     }
@@ -224,39 +224,46 @@ fn of_core(operands: &[OperandBits], results: &[ResultPort]) -> Vec<CoreInstruct
     list
 }
 
-/// Returns an instruction for each result of each function of a unit.
+/// Returns an instruction for each result of each function of a unit. Fails if a function names a port that the core lacks.
 fn of_functions(
     core: &Design,
     operands: &[OperandBits],
     results: &[ResultPort],
-) -> Vec<CoreInstruction> {
+) -> Result<Vec<CoreInstruction>> {
+    let no_port = |function: &CoreFunction, port: &str| {
+        let message =
+            format!("the function `{}` names a port `{port}`, which the core lacks", function.name);
+        refused(message, "name ports of the core in the functions of the description")
+    };
     let mut list = Vec::new();
     for (opcode, function) in core.functions.iter().enumerate() {
         for result in &function.results {
             let number = results.iter().position(|it| it.port == result.port);
-            let number = number.expect("a result of a function has a port");
-            let operand = |it: &FunctionPort| InstructionOperand {
-                name: it.name.clone(),
-                format: it.format,
-                place: operands
-                    .iter()
-                    .position(|port| port.port == it.port)
-                    .expect("an operand of a function has a port"),
-            };
+            let number = number.ok_or_else(|| no_port(function, &result.port))?;
+            let mut own_operands = Vec::new();
+            for FunctionPort { port, name, format, .. } in &function.operands {
+                let place = operands.iter().position(|operand| operand.port == *port);
+                let place = place.ok_or_else(|| no_port(function, port))?;
+                own_operands.push(InstructionOperand {
+                    name: name.clone(),
+                    format: *format,
+                    place,
+                });
+            }
             list.push(CoreInstruction {
                 id: (number as u32) << OPCODE_BITS | opcode as u32,
                 function: function.name.clone(),
                 result: result.name.clone(),
                 is_one_of_several: function.results.len() > 1,
                 doc: result.doc.clone(),
-                operands: function.operands.iter().map(operand).collect(),
+                operands: own_operands,
                 format: result.format,
                 is_extended: results[number].format.signed,
             });
         }
     }
     list.sort_by_key(|instruction| instruction.id);
-    list
+    Ok(list)
 }
 
 fn without_suffix(port: &str) -> String {

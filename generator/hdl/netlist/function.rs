@@ -12,7 +12,7 @@ use super::Design;
 pub struct CoreFunction {
     /// A legal Verilog identifier. The emitted files define a constant `FUNCTION_<NAME>` with the opcode.
     pub name: String,
-    /// What the function computes, on one line.
+    /// The formulas on one line.
     pub doc: String,
     pub operands: Vec<FunctionPort>,
     pub results: Vec<FunctionPort>,
@@ -37,7 +37,7 @@ pub struct FunctionPort {
     pub name: String,
     /// The format of the value, which has at most as many bits as the port.
     pub format: Format,
-    /// What is known about the value, on one line; empty if nothing is.
+    /// A remark on one line, such as the error of a result; may be empty.
     pub doc: String,
 }
 

@@ -15,8 +15,8 @@ pub(super) struct NamedFunction<'d> {
     given: Vec<Option<i64>>,
 }
 
-/// Returns the function that the setting `opcode=<name>` names. The other settings are those of its operands. Returns `None` if the
-/// core has no functions, or if the opcode is a number or is not given.
+/// Returns the function that the setting `opcode=<name>` names. The other settings are those of its operands. For an opcode
+/// that is a number or is not given, and for a core without functions, the function returns `None`.
 ///
 /// # Errors
 /// Fails if no function has the name, if it has no such operand, or if a value does not fit its format.
@@ -34,8 +34,10 @@ pub(super) fn named_function<'d>(
         let names: Vec<&str> = functions.iter().map(|it| it.name.as_str()).collect();
         return Err(format!("there is no function `{name}`{}", none_of(name, "functions", &names)));
     };
-    let mut contracts = core.opened.function_contracts();
-    let contract = contracts.swap_remove(opcode);
+    let Some(contract) = core.opened.function_contracts().into_iter().nth(opcode) else {
+        // A device of one's own can have functions without contracts of their own.
+        return Ok(None);
+    };
     let mut own = settings.to_vec();
     own.retain(|setting| !setting.starts_with(&prefix));
     let given =

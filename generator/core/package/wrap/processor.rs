@@ -14,7 +14,7 @@ use crate::package::processor::ProcessorInterface;
 use glint_rtl::netlist::{OPCODE, Role};
 use glint_rtl::verilog::text::{comment, literal, statement};
 
-/// What the templates of a module print.
+/// The variables of a module's templates.
 pub struct ProcessorModule {
     pub name: String,
     pub regenerate: String,
@@ -38,7 +38,7 @@ pub struct ResultAnswer {
     pub word: String,
 }
 
-/// What the templates of a proof print.
+/// The variables of a proof's templates.
 pub struct ProcessorProof {
     pub name: String,
     /// The module in place of the core.
