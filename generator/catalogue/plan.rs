@@ -10,7 +10,7 @@ use glint_plan::{
     ExpressionPlan, NodeId, Operation, PlanNode, PlanSchedule, PlanStep, StatedOperand, StepWork,
 };
 use glint_rtl::blocks::shift::{left_justified, normalise, normalise_by_pairs, right_by};
-use glint_rtl::dsl::{Designer, Register, Signal, Step, StepSetting, end, step, valid};
+use glint_rtl::dsl::{Designer, Register, Signal, Step, StepSetting, dispatch, end, step, valid};
 
 use crate::mirror::MirrorChain;
 use crate::piecewise::{PolynomialDatapath, StepMultiplier, Tables, number};
@@ -329,6 +329,24 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
             steps.push(self.microinstruction(plan_step, &multiplier));
         }
         steps.push(step(&noun(self.plan.results.len(), "result"), [valid(), end()]));
+        self.with_dispatches(steps)
+    }
+
+    /// Lets the microinstructions of a unit continue with the next one that the opcode needs.
+    fn with_dispatches(&self, mut steps: Vec<Step>) -> Vec<Step> {
+        let names: Vec<String> = steps.iter().map(|step| step.name().to_owned()).collect();
+        for (at, step) in steps.iter_mut().enumerate() {
+            if let Some(targets) = self.schedule.dispatch(at) {
+                let targets: Vec<&str> = targets.iter().map(|&to| names[to].as_str()).collect();
+                let opcode = self
+                    .plan
+                    .nodes
+                    .iter()
+                    .position(|node| matches!(node.operation, Operation::Operand(0)));
+                let opcode = self.signal(NodeId(opcode.expect("the opcode of a unit")));
+                step.add(dispatch(opcode, &targets));
+            }
+        }
         steps
     }
 

@@ -123,6 +123,12 @@ pub(super) fn plan_device(
         program.push(microinstruction(&model, &polynomials, plan_step));
     }
     program.push(idle().valid().end());
+    for (at, microinstruction) in program.iter_mut().enumerate() {
+        if let Some(targets) = schedule.dispatch(at) {
+            // Operand 0 of a unit is the opcode.
+            *microinstruction = microinstruction.clone().dispatch(model.operands[0], targets);
+        }
+    }
     let mut device = frame.device(program);
     for operand in operands {
         device = device.domain(&operand.name, operand.domain.0, operand.domain.1);

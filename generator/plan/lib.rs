@@ -42,6 +42,7 @@ mod cost;
 mod curve;
 mod depth;
 mod describe;
+mod dispatch;
 mod evaluate;
 mod exhaust;
 mod facts;

@@ -44,6 +44,17 @@ pub struct PlanSchedule {
     pub is_coefficient_held: Vec<bool>,
     /// The microinstructions in the order of execution.
     pub steps: Vec<PlanStep>,
+    /// For a sequential unit, the microinstructions that follow each microinstruction: `None` if the next one follows for every
+    /// opcode, or a number for each value of the opcode. Number 0 waits for `start`, number k executes `steps[k - 1]`, and the last
+    /// number, `steps.len() + 1`, shows the results. The list is empty if the plan is no unit.
+    pub dispatches: Vec<Option<Vec<usize>>>,
+}
+
+impl PlanSchedule {
+    /// Returns the numbers of the microinstructions that follow microinstruction `at`, for each opcode, if they differ.
+    pub fn dispatch(&self, at: usize) -> Option<&[usize]> {
+        self.dispatches.get(at)?.as_deref()
+    }
 }
 
 /// Places the operations of a plan in microinstructions, one operation after the other.

@@ -4,8 +4,10 @@
 //! operations read, and in a sequential core a value whose logic would otherwise take too long ([`super::hold`]). All other
 //! operations are combinational logic between these registers.
 //!
-//! A microinstruction computes at most one product. In a sequential core it also loads all registers whose values are there.
+//! A microinstruction computes at most one product. In a sequential core it also loads all registers whose values are there. In a
+//! sequential unit, each function skips the microinstructions that it does not need ([`super::dispatch`]).
 
+use super::dispatch::dispatches;
 use super::hold::held_nodes;
 use super::node::{NodeId, Operation};
 use super::placement::{PlanSchedule, StepPlacement};
@@ -32,7 +34,8 @@ impl ExpressionPlan {
         }
         let targets = self.register_targets();
         let held = vec![false; self.nodes.len()];
-        let empty = PlanSchedule { held, is_coefficient_held, steps: Vec::new() };
+        let empty =
+            PlanSchedule { held, is_coefficient_held, steps: Vec::new(), dispatches: Vec::new() };
         let start = StepPlacement::new(self, &targets, empty, is_pipelined);
         let held = held_nodes(&start, &computed);
         let mut placement = start;
@@ -41,7 +44,11 @@ impl ExpressionPlan {
             placement.place(node);
         }
         placement.place_results();
-        placement.schedule
+        let mut schedule = placement.schedule;
+        if self.is_shared && !is_pipelined {
+            schedule.dispatches = dispatches(self, &schedule);
+        }
+        schedule
     }
 
     /// Returns for each node the node whose register stores its value: for most nodes the node itself.

@@ -45,6 +45,27 @@ fn every_opcode_gives_the_results_of_its_function() {
     }
 }
 
+/// A function skips the microinstructions that it does not need.
+#[test]
+fn each_function_of_the_preset_takes_its_own_clocks() {
+    let core = preset("unit", "sequential");
+    let functions = core.design.functions.iter().enumerate();
+    let clocks: Vec<(&str, Option<u32>)> = functions
+        .map(|(opcode, it)| (it.name.as_str(), core.design.clocks_of_function(opcode)))
+        .collect();
+    let expected = [
+        ("rcp", 10),
+        ("rsqrt", 10),
+        ("sqrt", 10),
+        ("exp2", 9),
+        ("log2", 11),
+        ("sincos", 12),
+        ("atan2", 16),
+        ("divide", 12),
+    ];
+    assert_eq!(clocks, expected.map(|(name, clocks)| (name, Some(clocks))));
+}
+
 #[test]
 fn an_opcode_without_a_function_gives_0() {
     let core = parsed("few.toml", SMALL);

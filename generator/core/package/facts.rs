@@ -74,6 +74,13 @@ pub enum SequenceFacts<'a> {
         #[serde(rename = "while")]
         condition: &'a str,
     },
+    /// A jump ahead to one of several microinstructions.
+    Dispatch {
+        /// An address for each value of the selector.
+        dispatch_to: &'a [usize],
+        /// The register of the operand that selects the address.
+        by: &'a str,
+    },
     /// A jump ahead, over some microinstructions.
     Jump {
         jump_to: usize,
@@ -211,6 +218,9 @@ pub fn microprogram(design: &Design) -> Vec<MicroinstructionFacts<'_>> {
             netlist::Sequence::Next => SequenceFacts::Plain("next"),
             netlist::Sequence::WaitStart => SequenceFacts::Plain("wait for start"),
             netlist::Sequence::End => SequenceFacts::Plain("end"),
+            netlist::Sequence::Dispatch { selector, to } => {
+                SequenceFacts::Dispatch { dispatch_to: to, by: name(design, *selector) }
+            }
             netlist::Sequence::LoopWhile { condition, to } => {
                 let condition = name(design, *condition);
                 if *to > address {

@@ -124,7 +124,7 @@ pub fn contents(job: &EmitJob, others: &OutputFiles) -> Result<String> {
         regenerate: inputs.regenerate.clone(),
         scale: "value = raw * 2^-fraction_bits",
         ports: facts::ports(design),
-        functions: design.functions.iter().map(function).collect(),
+        functions: functions(design),
         timing: &inputs.timing,
         control: design.pipeline.is_none().then(|| control(design)),
         pipeline: design.pipeline.as_ref().map(pipeline),
@@ -155,8 +155,14 @@ pub fn contents(job: &EmitJob, others: &OutputFiles) -> Result<String> {
     Ok(serde_json::to_string_pretty(&manifest)? + "\n")
 }
 
-/// Returns the names and formats of a function's values at the ports. The place in the list is the opcode.
-fn function(function: &CoreFunction) -> Value {
+/// Returns the functions of a core that computes several. The place in the list is the opcode.
+fn functions(design: &Design) -> Vec<Value> {
+    let functions = design.functions.iter().enumerate();
+    functions.map(|(opcode, it)| function(it, design.clocks_of_function(opcode))).collect()
+}
+
+/// Returns the names and formats of a function's values at the ports, and the number of clocks from `start` to `done`.
+fn function(function: &CoreFunction, clocks: Option<u32>) -> Value {
     let values = |ports: &[FunctionPort]| -> Vec<Value> {
         let entry = |it: &FunctionPort| {
             json!({
@@ -172,6 +178,7 @@ fn function(function: &CoreFunction) -> Value {
     };
     json!({
         "name": function.name,
+        "start_to_done": clocks,
         "operands": values(&function.operands),
         "results": values(&function.results),
     })

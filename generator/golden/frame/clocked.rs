@@ -206,6 +206,7 @@ impl Model for ClockedModel {
         let next = match &here.next {
             Next::RepeatWhile(holds) if holds(state) => self.address,
             Next::SkipIf(count, holds) if holds(state) => self.address + 1 + *count as usize,
+            Next::Dispatch(selector, to) => to[state[*selector] as usize],
             Next::End => 0,
             _ => self.address + 1,
         };
@@ -268,17 +269,22 @@ impl Model for ClockedModel {
 /// added one after it raises `valid`. Returns `None` if a microinstruction with `valid` decides by a condition what follows.
 fn taking(program: &[FrameStep]) -> Option<Vec<FrameStep>> {
     let mut longer = Vec::new();
+    // The number of microinstructions in front of `at`, with the added ones.
+    let moved = |at: usize| at + program[..at].iter().filter(|it| it.valid).count();
     for (at, step) in program.iter().enumerate() {
         let mut here = step.clone();
         if let Next::SkipIf(count, _) = &mut here.next {
             let skipped = program.iter().skip(at + 1).take(*count as usize);
             *count += skipped.filter(|it| it.valid).count() as u32;
         }
+        if let Next::Dispatch(_, to) = &mut here.next {
+            *to = to.iter().map(|&at| moved(at)).collect();
+        }
         if !here.valid {
             longer.push(here);
             continue;
         }
-        if matches!(here.next, Next::RepeatWhile(_) | Next::SkipIf(..)) {
+        if matches!(here.next, Next::RepeatWhile(_) | Next::SkipIf(..) | Next::Dispatch(..)) {
             return None;
         }
         let next = mem::replace(&mut here.next, Next::Following);

@@ -78,6 +78,8 @@ enum Next {
     Following,
     RepeatWhile(Condition),
     SkipIf(u32, Condition),
+    /// The value of a slot selects the number of the next microinstruction.
+    Dispatch(Slot, Arc<[usize]>),
     End,
 }
 
@@ -140,6 +142,11 @@ impl FrameStep {
         holds: impl Fn(&State) -> bool + Send + Sync + 'static,
     ) -> Self {
         Self { next: Next::SkipIf(count, Arc::new(holds)), ..self }
+    }
+
+    /// Continues with microinstruction number `to[value]`, where `value` is the value of `selector` before the rising edge.
+    pub fn dispatch(self, selector: Slot, to: &[usize]) -> Self {
+        Self { next: Next::Dispatch(selector, to.into()), ..self }
     }
 
     /// Makes a flag that [`Frame::flag`] declared 1.

@@ -107,6 +107,7 @@ impl Frame {
         }
         let before = self.parts.pop().unwrap_or_else(idle);
         self.parts.push(FrameStep { does: Some(then(load, before.does.clone())), ..before });
+        let first = self.parts.len();
         for here in &it.program {
             let own = here.does.as_ref().map(|does| within(base, does));
             let does = match here.takes_results {
@@ -116,6 +117,10 @@ impl Frame {
             let next = match &here.next {
                 Next::RepeatWhile(holds) => Next::RepeatWhile(condition_within(base, holds)),
                 Next::SkipIf(count, holds) => Next::SkipIf(*count, condition_within(base, holds)),
+                Next::Dispatch(selector, to) => {
+                    let to = to.iter().map(|at| first + at).collect();
+                    Next::Dispatch(selector.after(base), to)
+                }
                 Next::Following | Next::End => Next::Following,
             };
             self.parts.push(FrameStep { does, next, ..idle() });

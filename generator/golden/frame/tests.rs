@@ -194,3 +194,35 @@ fn operands_in_buffers() {
         assert_eq!(names.map(|name| model.value(name).unwrap()), expected, "{inputs:?}");
     }
 }
+
+/// The operand selects microinstruction 2 or 3. An added microinstruction for a result register moves the numbers behind it.
+#[test]
+fn an_operand_selects_the_next_microinstruction() {
+    let mut frame = Frame::default();
+    let x = frame.operand("x", Format::unsigned(1, 0));
+    let sum = frame.register("sum", Format::unsigned(4, 0));
+    frame.output("sum_out", Format::unsigned(4, 0), move |s| s[sum]);
+    let program = [
+        idle(),
+        step(move |s| s[sum] = 1).dispatch(x, &[2, 3]),
+        step(move |s| s[sum] += 2),
+        step(move |s| s[sum] += 4).dispatch(x, &[5, 4]),
+        step(move |s| s[sum] += 8),
+        idle().valid().end(),
+    ];
+    let frame_model = frame.model(program);
+    let addresses = |model: &mut dyn Model, x: u64| {
+        let mut addresses = Vec::new();
+        model.clock(&[1, 1, x, 1]);
+        while model.value("busy") == Some(1) {
+            addresses.push(model.value("word_address").unwrap());
+            model.clock(&[1, 0, 0, 0]);
+        }
+        (addresses, model.value("sum_out").unwrap())
+    };
+    let mut model = frame_model.clone();
+    assert_eq!(addresses(&mut model, 0), (vec![0, 1, 2, 3, 5], 7));
+    assert_eq!(addresses(&mut model, 1), (vec![0, 1, 3, 4, 5], 13));
+    let mut model = frame_model.with_output_registers().expect("one result");
+    assert_eq!(addresses(&mut *model, 0), (vec![0, 1, 2, 3, 5, 6], 7));
+}

@@ -231,6 +231,7 @@ fn unfit(design: &Design) -> Option<String> {
         shown |= it.values[valid] == 1;
         let why = match it.sequence {
             Sequence::WaitStart => "waits for `start`",
+            Sequence::Dispatch { .. } => "dispatches, which parts cannot",
             Sequence::LoopWhile { to, .. } if shown && to <= at => {
                 "goes back to compute another result"
             }

@@ -90,8 +90,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 pub use instance::Instance;
 pub use operand_mux::{OperandMux, SharedProduct};
 pub use program::{
-    MicroprogramSource, Step, StepSetting, end, hold, jump_if, loop_while, next, step, valid,
-    wait_for_start,
+    MicroprogramSource, Step, StepSetting, dispatch, end, hold, jump_if, loop_while, next, step,
+    valid, wait_for_start,
 };
 pub use registers::{Counter, Flag, InputOperand, Register, Select};
 pub use rom::Rom;

@@ -74,7 +74,10 @@ fn loaded(d: &Designer, steps: &mut Vec<Step>, load: &StepSetting) {
     let mut at = 0;
     while at < steps.len() {
         if steps[at].sets(|kind| matches!(kind, SettingKind::Valid)) {
-            if steps[at].sets(|kind| matches!(kind, SettingKind::LoopWhile { .. })) {
+            let decides = |kind: &SettingKind| {
+                matches!(kind, SettingKind::LoopWhile { .. } | SettingKind::Dispatch { .. })
+            };
+            if steps[at].sets(decides) {
                 let message = format!(
                     "microinstruction `{}` sets `valid` and decides on a condition, so there is no clock in \
                      which output registers can load the results: let another microinstruction decide",

@@ -3,10 +3,10 @@
 use std::collections::{BTreeSet, HashSet};
 use std::panic::Location;
 
-use super::sequencer::{SequenceFields, Sequencer};
+use super::sequencer::{Dispatches, SequenceFields, Sequencer};
 use super::{Designer, Signal};
 use crate::netlist::{
-    Driver, FieldId, FieldKind, Microinstruction, NetId, Op, Partition, Sequence,
+    Driver, FieldId, FieldKind, Microinstruction, NetId, Op, Partition, RegisterKind, Sequence,
 };
 use glint_base::codes;
 use glint_base::diagnostic::{Diagnostic, SourceLocation};
@@ -41,6 +41,10 @@ pub(super) enum SettingKind {
     LoopWhile {
         condition: NetId,
         to: String,
+    },
+    Dispatch {
+        selector: NetId,
+        to: Vec<String>,
     },
     End,
     /// A setting whose mistake has already been reported.
@@ -147,6 +151,18 @@ pub fn jump_if(condition: Signal<'_>, to: &str) -> StepSetting {
     loop_while(condition, to)
 }
 
+/// Jumps ahead to the microinstruction that the operand `selector` selects by its bits: number 0 of `to`, number 1, and so on. For
+/// example, the opcode of a unit selects the microprogram of a function: `dispatch(opcode.q(), &["add", "multiply"])`.
+///
+/// `selector` must be the output of an operand's register, and `to` must have a name for each value of its bits. All dispatches of
+/// a microprogram have the same selector. [`Designer::finish`] reports a mistake otherwise.
+#[track_caller]
+pub fn dispatch(selector: Signal<'_>, to: &[&str]) -> StepSetting {
+    let to = to.iter().map(|name| (*name).to_owned()).collect();
+    let kind = SettingKind::Dispatch { selector: selector.id(), to };
+    StepSetting { of: Some(origin(selector.designer())), ..StepSetting::sequence(kind) }
+}
+
 /// Ends the computation: the device raises `done` in this microinstruction, and is idle after it. If the operands have buffers
 /// and `start` is high in this clock, the next computation begins at once.
 #[track_caller]
@@ -160,6 +176,17 @@ pub struct Step {
     pub(super) name: String,
     pub(super) settings: Vec<StepSetting>,
     pub(super) location: SourceLocation,
+}
+
+impl Step {
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Adds a setting.
+    pub fn add(&mut self, setting: StepSetting) {
+        self.settings.push(setting);
+    }
 }
 
 /// Makes a microinstruction: `step("load", [y.load()])` loads the register `y`. Muxes without a setting pass their first input,
@@ -213,6 +240,11 @@ pub(crate) fn assemble(d: &Designer, program: &MicroprogramSource) {
         }
     }
     let (conditions, targets) = (Vec::from_iter(conditions), Vec::from_iter(targets));
+    let dispatches = Dispatches::of(&sequences);
+    let tables = dispatches.as_ref().map_or(0, |it| it.tables.len());
+    if let Some(dispatches) = &dispatches {
+        check_selectors(d, steps, &sequences, dispatches.selector);
+    }
     let waits = sequences.contains(&Sequence::WaitStart);
     d.with(|inner| inner.partition = Partition::Control);
     let address_width = usize::BITS - (steps.len() - 1).leading_zeros();
@@ -227,6 +259,11 @@ pub(crate) fn assemble(d: &Designer, program: &MicroprogramSource) {
             sequence_field("loop_condition", bits)
         }),
         target: (targets.len() > 1).then(|| sequence_field("loop_target", address_width)),
+        dispatch: (tables > 0).then(|| sequence_field("dispatch_word", 1)),
+        table: (tables > 1).then(|| {
+            let bits = usize::BITS - (tables - 1).leading_zeros();
+            sequence_field("dispatch_table", bits)
+        }),
         go_on: sequence_field("go_on", 1),
     };
     let lines = d.with(|inner| inner.sequencer_lines);
@@ -241,8 +278,11 @@ pub(crate) fn assemble(d: &Designer, program: &MicroprogramSource) {
     }
     let line = lines.map(|[_, go_on]| go_on);
     describe(fields.go_on, "0 in the last microinstruction, else 1", line);
-    let microinstructions = microinstructions(d, steps, &sequences, &fields, &conditions);
-    let sequencer = Sequencer { fields, conditions, targets, address_width };
+    if let Some(dispatch) = fields.dispatch {
+        describe(dispatch, "1 if an operand selects the next microinstruction", None);
+    }
+    let sequencer = Sequencer { fields, conditions, targets, dispatches, address_width };
+    let microinstructions = microinstructions(d, steps, &sequences, &sequencer);
     sequencer.build(d, microinstructions, program.location);
 }
 
@@ -305,9 +345,15 @@ fn sequence(d: &Designer, steps: &[Step], step: &Step) -> Sequence {
                 match steps.iter().position(|step| step.name == *to) {
                     Some(to) => Sequence::LoopWhile { condition: *condition, to },
                     None => {
-                        let message = format!(
-                            "microinstruction `{own}` goes to `{to}`, but no microinstruction has this name"
-                        );
+                        d.report(wrong(codes::SUCCESSOR, unknown_successor(own, to)));
+                        Sequence::Next
+                    }
+                }
+            }
+            SettingKind::Dispatch { selector, to } => {
+                match dispatched(d, steps, own, *selector, to) {
+                    Ok(to) => Sequence::Dispatch { selector: *selector, to },
+                    Err(message) => {
                         d.report(wrong(codes::SUCCESSOR, message));
                         Sequence::Next
                     }
@@ -327,14 +373,80 @@ fn sequence(d: &Designer, steps: &[Step], step: &Step) -> Sequence {
     found.map_or(Sequence::Next, |(sequence, _)| sequence)
 }
 
+/// Reports each microinstruction that dispatches by another operand than `selector`.
+fn check_selectors(d: &Designer, steps: &[Step], sequences: &[Sequence], selector: NetId) {
+    for (step, sequence) in steps.iter().zip(sequences) {
+        let Sequence::Dispatch { selector: other, .. } = sequence else { continue };
+        if *other != selector {
+            let [first, other] = [selector, *other].map(|net| d.net(net).name);
+            let message = format!(
+                "microinstruction `{}` dispatches by `{other}`, but an earlier one by `{first}`: all \
+                 dispatches must have the same selector",
+                step.name
+            );
+            d.report(Diagnostic::new(codes::SUCCESSOR, message, step.location));
+        }
+    }
+}
+
+fn unknown_successor(own: &str, to: &str) -> String {
+    format!("microinstruction `{own}` goes to `{to}`, but no microinstruction has this name")
+}
+
+/// Returns the addresses to which the microinstruction named `own` dispatches. The error is a message.
+fn dispatched(
+    d: &Designer,
+    steps: &[Step],
+    own: &str,
+    selector: NetId,
+    to: &[String],
+) -> Result<Vec<usize>, String> {
+    let net = d.net(selector);
+    let is_operand = match net.driver {
+        Driver::Register(id) => {
+            d.with(|inner| inner.design.register(id).kind == RegisterKind::Operand)
+        }
+        _ => false,
+    };
+    if !is_operand {
+        return Err(format!(
+            "microinstruction `{own}` dispatches by `{}`, which is not the register of an operand",
+            net.name
+        ));
+    }
+    let (values, stated) = (1u64 << net.format.width().min(32), to.len());
+    if stated as u64 != values {
+        return Err(format!(
+            "microinstruction `{own}` dispatches to {stated} microinstructions, but `{}` has {values} values: \
+             state a microinstruction for each value",
+            net.name
+        ));
+    }
+    let here = steps.iter().position(|step| step.name == own).unwrap_or(0);
+    let mut addresses = Vec::new();
+    for name in to {
+        match steps.iter().position(|step| step.name == *name) {
+            Some(at) if at > here => addresses.push(at),
+            Some(_) => {
+                return Err(format!(
+                    "microinstruction `{own}` dispatches to `{name}`, which does not come after it: a \
+                     dispatch jumps ahead"
+                ));
+            }
+            None => return Err(unknown_successor(own, name)),
+        }
+    }
+    Ok(addresses)
+}
+
 /// Gives each field of each microinstruction its value. Reports two microinstructions of one name, and two values for a field.
 fn microinstructions(
     d: &Designer,
     steps: &[Step],
     sequences: &[Sequence],
-    fields: &SequenceFields,
-    conditions: &[NetId],
+    sequencer: &Sequencer,
 ) -> Vec<Microinstruction> {
+    let Sequencer { fields, conditions, dispatches, .. } = sequencer;
     let fields_of_word = d.with(|inner| inner.design.control.fields.clone());
     let kinds: Vec<FieldKind> = fields_of_word.into_iter().map(|field| field.kind).collect();
     let mut microinstructions: Vec<Microinstruction> = Vec::new();
@@ -404,6 +516,13 @@ fn microinstructions(
                 let number = conditions.iter().position(|other| other == condition);
                 assign(fields.condition, number.unwrap_or(0) as u64);
                 assign(fields.target, *to as u64);
+            }
+            Sequence::Dispatch { to, .. } => {
+                assign(Some(fields.go_on), 1);
+                assign(fields.dispatch, 1);
+                let tables = dispatches.iter().flat_map(|it| &it.tables);
+                let number = tables.into_iter().position(|table| table == to);
+                assign(fields.table, number.unwrap_or(0) as u64);
             }
         }
         microinstructions.push(Microinstruction {

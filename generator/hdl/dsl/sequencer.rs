@@ -7,7 +7,7 @@ use super::Designer;
 use crate::netlist::microcode;
 use crate::netlist::{
     Control, Driver, Field, FieldId, FieldKind, Microinstruction, NetId, NetlistRom as NetRom, Op,
-    Partition, RegisterKind, Role,
+    Partition, RegisterKind, Role, RomId, Sequence,
 };
 use glint_base::diagnostic::SourceLocation;
 use glint_base::fixed::{Format, MAX_WIDTH};
@@ -20,7 +20,32 @@ pub struct SequenceFields {
     pub again: Option<FieldId>,
     pub condition: Option<FieldId>,
     pub target: Option<FieldId>,
+    pub dispatch: Option<FieldId>,
+    pub table: Option<FieldId>,
     pub go_on: FieldId,
+}
+
+/// The dispatches of a microprogram.
+pub struct Dispatches {
+    /// The register of the operand that selects the next microinstruction.
+    pub selector: NetId,
+    /// The lists of addresses, each once. A list has an address for each value of the selector.
+    pub tables: Vec<Vec<usize>>,
+}
+
+impl Dispatches {
+    /// Returns the dispatches among the rules for the next microinstruction; `None` if there are none.
+    pub fn of(sequences: &[Sequence]) -> Option<Self> {
+        let mut found: Option<Self> = None;
+        for sequence in sequences {
+            let Sequence::Dispatch { selector, to } = sequence else { continue };
+            let dispatches = found.get_or_insert(Self { selector: *selector, tables: Vec::new() });
+            if !dispatches.tables.contains(to) {
+                dispatches.tables.push(to.clone());
+            }
+        }
+        found
+    }
 }
 
 pub struct Sequencer {
@@ -29,6 +54,7 @@ pub struct Sequencer {
     pub conditions: Vec<NetId>,
     /// The addresses to which loops and jumps lead, each once.
     pub targets: Vec<usize>,
+    pub dispatches: Option<Dispatches>,
     pub address_width: u32,
 }
 
@@ -39,7 +65,7 @@ impl Sequencer {
         microinstructions: Vec<Microinstruction>,
         location: SourceLocation,
     ) {
-        let Self { fields, conditions, targets, address_width } = self;
+        let Self { fields, conditions, targets, dispatches, address_width } = self;
         let op = |name: &str, format: Format, op: Op| d.add_named(name, format, Driver::Op(op));
         let bit = |name: &str, cell: Op| op(name, Format::BIT, cell);
         let wide = Format::unsigned(*address_width as i32, 0);
@@ -73,6 +99,14 @@ impl Sequencer {
             };
             let inputs = vec![following, target.id()];
             onward = op("onward_word", wide, Op::Mux { select: again, inputs });
+        }
+        let mut dispatch = None;
+        if let (Some(dispatches), Some(field)) = (dispatches, fields.dispatch) {
+            let rom = dispatch_rom(d, dispatches, fields.table, wide, location);
+            let target = d.with(|inner| inner.design.rom(rom).data);
+            let (select, inputs) = (d.field_net(field).id(), vec![onward, target]);
+            onward = op("dispatched_word", wide, Op::Mux { select, inputs });
+            dispatch = Some(rom);
         }
         let next = op("next_word", wide, Op::Mux { select: go_on, inputs: vec![zero, onward] });
         // The address changes while a program runs and does not wait.
@@ -112,6 +146,7 @@ impl Sequencer {
         let valid = bit("valid", Op::Relabel(source));
         d.set_doc(valid, "the results are on the outputs");
         control_rom(d, location, microinstructions, address);
+        d.with(|inner| inner.design.control.dispatch = dispatch);
 
         d.port(valid, Role::Valid);
         d.port(busy, Role::Busy);
@@ -126,6 +161,39 @@ impl Sequencer {
             });
         });
     }
+}
+
+/// Builds the ROM with the addresses to which the microprogram dispatches. The address of the ROM is the number of the list, in the
+/// field `table`, and below it the selector.
+fn dispatch_rom(
+    d: &Designer,
+    dispatches: &Dispatches,
+    table: Option<FieldId>,
+    word: Format,
+    location: SourceLocation,
+) -> RomId {
+    let Dispatches { selector, tables } = dispatches;
+    let (address, address_width) = match table {
+        None => (*selector, d.net(*selector).format.width()),
+        Some(field) => {
+            let number = d.field_net(field).id();
+            let width = d.net(number).format.width() + d.net(*selector).format.width();
+            let parts = Op::Concat(vec![number, *selector]);
+            let format = Format::unsigned(width as i32, 0);
+            (d.add_named("dispatch_address", format, Driver::Op(parts)), width)
+        }
+    };
+    let mut words: Vec<u64> = tables.iter().flatten().map(|&to| to as u64).collect();
+    words.resize(1 << address_width, 0);
+    let data = d.add_named("dispatch_target", word, Driver::Undriven);
+    let doc = vec![format!(
+        "the addresses of the microinstructions that {} selects",
+        d.net(*selector).name
+    )];
+    d.with(|inner| {
+        let rom = NetRom::new("dispatch", address, data, words, location);
+        inner.design.add_rom(NetRom { doc, ..rom })
+    })
 }
 
 /// Returns the net that drives `valid`: the signal of [`Designer::valid_after`] behind its registers. A reset clears them, and
@@ -259,7 +327,14 @@ fn control_rom(
         };
         let (address, run) = (register(address), register(d.run));
         let overlaps = inner.taken.is_some();
-        inner.design.control =
-            Control { fields, microprogram: microinstructions, rom, address, run, overlaps };
+        inner.design.control = Control {
+            fields,
+            microprogram: microinstructions,
+            rom,
+            dispatch: None,
+            address,
+            run,
+            overlaps,
+        };
     });
 }

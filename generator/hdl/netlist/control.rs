@@ -14,6 +14,8 @@ pub struct Control {
     /// The microinstructions, in the order of their addresses.
     pub microprogram: Vec<Microinstruction>,
     pub rom: RomId,
+    /// The ROM with the addresses to which the microprogram dispatches; `None` if it does not dispatch.
+    pub dispatch: Option<RomId>,
     /// The counter that addresses the control ROM.
     pub address: RegId,
     /// The run flag, which is 1 during a computation.
@@ -71,6 +73,14 @@ pub enum Sequence {
         condition: NetId,
         to: usize,
     },
+    /// The value of an operand register selects the next microinstruction, `to[value]`. All of them have higher addresses. For
+    /// example, the opcode of a unit selects the microprogram of a function.
+    Dispatch {
+        /// The output of an operand register, which does not change during a computation.
+        selector: NetId,
+        /// An address for each value of the selector.
+        to: Vec<usize>,
+    },
     /// The computation ends, and the device is idle.
     End,
 }
@@ -82,21 +92,27 @@ impl Control {
             fields: Vec::new(),
             microprogram: Vec::new(),
             rom: RomId(u32::MAX),
+            dispatch: None,
             address: RegId(u32::MAX),
             run: RegId(u32::MAX),
             overlaps: false,
         }
     }
 
-    /// Returns the addresses that can follow address `at`, in ascending order. An idle device stays at address 0, so that 0 has
-    /// the successors 0 and 1. A last microinstruction that does not end the computation has an invalid successor, the number of
+    /// Returns the addresses that can follow address `at`, in ascending order. An idle device stays at address 0, so that 0 is
+    /// among the successors of 0. A last microinstruction that does not end the computation has an invalid successor, the number of
     /// microinstructions.
     pub fn successors(&self, at: usize) -> Vec<usize> {
         let next = at + 1;
-        let mut successors = match self.microprogram[at].sequence {
+        let mut successors = match &self.microprogram[at].sequence {
             Sequence::Next => vec![next],
             Sequence::WaitStart => vec![at, next],
-            Sequence::LoopWhile { to, .. } => vec![to.min(next), to.max(next)],
+            Sequence::LoopWhile { to, .. } => vec![next.min(*to), next.max(*to)],
+            Sequence::Dispatch { to, .. } => {
+                let mut targets = to.clone();
+                targets.sort_unstable();
+                targets
+            }
             Sequence::End => vec![0],
         };
         if at == 0 && successors[0] != 0 {

@@ -9,14 +9,16 @@ use std::collections::HashSet;
 use super::{Design, Driver, NetId, Role, Sequence};
 use glint_base::cone;
 
-/// Returns the addresses of the loops and jumps whose condition an operand or an undriven net may affect, in ascending order.
+/// Returns the addresses of the dispatches, and of the loops and jumps whose condition an operand or an undriven net may affect, in
+/// ascending order.
 /// For example, the condition may be that a value computed from an operand is not 0.
 pub fn decided_by_data(design: &Design) -> Vec<usize> {
     let microprogram = design.control.microprogram.iter().enumerate();
-    let decided = microprogram.filter(|(_, microinstruction)| match microinstruction.sequence {
+    let decided = microprogram.filter(|(_, microinstruction)| match &microinstruction.sequence {
         Sequence::LoopWhile { condition, .. } => {
-            registers_from_control(design, condition).is_none()
+            registers_from_control(design, *condition).is_none()
         }
+        Sequence::Dispatch { .. } => true,
         Sequence::Next | Sequence::WaitStart | Sequence::End => false,
     });
     decided.map(|(at, _)| at).collect()

@@ -3,6 +3,7 @@
 use glint_base::fixed::Format;
 
 use super::Design;
+use super::termination::done_after_dispatch;
 
 /// One of several functions that a core computes. The operand [`OPCODE`] selects the function.
 ///
@@ -42,6 +43,12 @@ pub struct FunctionPort {
 }
 
 impl Design {
+    /// Returns the clock after `start` in which `done` is high for the function with this opcode. Returns `None` for a pipeline,
+    /// whose latency is the same for all functions, and if other operands than the opcode influence the clock.
+    pub fn clocks_of_function(&self, opcode: usize) -> Option<u32> {
+        done_after_dispatch(self, opcode)
+    }
+
     /// Returns the number of bits of an opcode; `None` if the core computes a single function.
     pub fn opcode_bits(&self) -> Option<u32> {
         let last = self.functions.len().checked_sub(1)?;

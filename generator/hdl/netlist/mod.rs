@@ -328,10 +328,13 @@ impl Design {
         &self.registers[id.index()]
     }
 
-    /// Returns whether `rom` stores control words: the control ROM, or another ROM at the same address for the fields that do not
-    /// fit into it.
+    /// Returns whether `rom` belongs to the sequencer: the control ROM, another ROM at the same address for the fields that do not
+    /// fit into it, or the ROM with the targets of dispatches.
     pub fn is_control_memory(&self, rom: &NetlistRom) -> bool {
-        self.roms.get(self.control.rom.index()).is_some_and(|it| it.address == rom.address)
+        let control = &self.control;
+        let has_data = |id: RomId| self.rom(id).data == rom.data;
+        self.roms.get(control.rom.index()).is_some_and(|it| it.address == rom.address)
+            || control.dispatch.is_some_and(has_data)
     }
 
     pub fn rom(&self, id: RomId) -> &NetlistRom {

@@ -31,14 +31,21 @@ pub fn remaining(design: &Design) -> Option<Vec<Left>> {
             let most = counter.map_or(0, |counter| largest(design, counter));
             Some(1 + clocks + most)
         };
-        let (clocks, counter) = match microinstruction.sequence {
+        let (clocks, counter) = match &microinstruction.sequence {
             Sequence::End => (0, None),
             Sequence::Next => (entering(at + 1)?, None),
-            Sequence::LoopWhile { to, condition } if to == at => {
-                (entering(at + 1)?, Some(decides(design, condition)?))
+            Sequence::LoopWhile { to, condition } if *to == at => {
+                (entering(at + 1)?, Some(decides(design, *condition)?))
             }
-            Sequence::LoopWhile { to, .. } if to > at => {
-                (entering(at + 1)?.max(entering(to)?), None)
+            Sequence::LoopWhile { to, .. } if *to > at => {
+                (entering(at + 1)?.max(entering(*to)?), None)
+            }
+            Sequence::Dispatch { to, .. } => {
+                let mut most = 0;
+                for &target in to {
+                    most = most.max(entering(target)?);
+                }
+                (most, None)
             }
             Sequence::LoopWhile { .. } | Sequence::WaitStart => return None,
         };
@@ -55,6 +62,22 @@ pub fn latest_done(design: &Design) -> Option<u32> {
     let first = *remaining(design)?.first()?;
     let most = first.counter.map_or(0, |counter| largest(design, counter));
     u32::try_from(1 + first.clocks + most).ok()
+}
+
+/// Returns the clock in which `done` is high if the operand by which the microprogram dispatches has the value `selected`. Clock 0
+/// accepts `start`. Returns `None` if another condition influences the clock, or if the design has no microprogram.
+pub fn done_after_dispatch(design: &Design, selected: usize) -> Option<u32> {
+    let mut address = 0;
+    let mut clock = 1;
+    loop {
+        address = match &design.control.microprogram.get(address)?.sequence {
+            Sequence::End => return Some(clock),
+            Sequence::Next => address + 1,
+            Sequence::Dispatch { to, .. } => *to.get(selected)?,
+            Sequence::LoopWhile { .. } | Sequence::WaitStart => return None,
+        };
+        clock += 1;
+    }
 }
 
 /// Returns the largest value of the register's width.
@@ -79,7 +102,7 @@ fn decides(design: &Design, net: NetId) -> Option<RegId> {
 mod tests {
     use super::*;
     use crate::dsl::fixture::design;
-    use crate::dsl::{Designer, Signal, loop_while, step};
+    use crate::dsl::{Designer, Signal, dispatch, loop_while, step};
     use glint_base::fixed::Format;
 
     type Condition = for<'d> fn(&'d Designer, Signal<'d>, Signal<'d>) -> Signal<'d>;
@@ -107,6 +130,27 @@ mod tests {
         assert_eq!(counted, [false, false, true, false]);
         // Words 0 and 1 in clocks 1 and 2, eight iterations, the result.
         assert_eq!(latest_done(&design), Some(11));
+    }
+
+    #[test]
+    fn each_value_of_a_selector_has_its_own_clock() {
+        let design = design(|d| {
+            let x = d.operand("x", Format::unsigned(1, 0));
+            let result = d.register("result", Format::unsigned(1, 0));
+            result.takes(x.q());
+            d.output("result_out", result.q());
+            vec![
+                step("choose", [dispatch(x.q(), &["load", "wait"])]),
+                step("wait", []),
+                step("wait more", []),
+                step("load", [result.load()]),
+            ]
+        });
+        // Idle, choose, load and the result; the other value waits for two clocks.
+        assert_eq!([0, 1].map(|value| done_after_dispatch(&design, value)), [Some(4), Some(6)]);
+        assert_eq!(latest_done(&design), Some(6));
+        let looped = counted(|d, iterations, _| d.any("more", iterations));
+        assert_eq!(done_after_dispatch(&looped, 0), None);
     }
 
     #[test]

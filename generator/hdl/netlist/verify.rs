@@ -330,10 +330,10 @@ impl Design {
             }
         }
         if let Some(idle) = microprogram.first() {
-            if idle.sequence != Sequence::Next {
+            if !matches!(idle.sequence, Sequence::Next | Sequence::Dispatch { .. }) {
                 let message = format!(
                     "microinstruction `{}`, in which the device waits for `start`, must continue with the \
-                     next microinstruction",
+                     next microinstruction, or dispatch",
                     idle.name
                 );
                 found.push(Diagnostic::new(codes::IDLE, message, idle.location));

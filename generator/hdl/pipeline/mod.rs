@@ -36,8 +36,8 @@ pub use interval::IntervalGoal;
 pub use passes::{PASSES, Pass, PassResult};
 use request::Request;
 pub use unroll::{
-    Cycle, StateValues, Unrolled, UnrolledLine, WalkRegister, any_cycle, carried, unroll,
-    unroll_in_powers, unroll_line,
+    Cycle, DispatchedResults, StateValues, Unrolled, UnrolledLine, WalkRegister, any_cycle,
+    carried, unroll, unroll_in_powers, unroll_line,
 };
 
 /// How Glint divides a computation into stages.

@@ -22,6 +22,7 @@ pub fn parsed(text: &str) -> Result<Unrolled, String> {
         operands: Vec::new(),
         results: Vec::new(),
         steps: Vec::new(),
+        dispatched: None,
     };
     for line in text.lines().filter(|line| !line.is_empty() && !line.starts_with('#')) {
         let wrong = |what: &str| format!("`{line}`: {what}");

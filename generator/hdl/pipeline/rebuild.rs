@@ -42,5 +42,7 @@ pub fn rebuilt(
     for (_, node) in &mut results {
         *node = place[node.index()];
     }
-    Unrolled { steps, operands: unrolled.operands.clone(), results, graph }
+    // A microprogram that dispatches never becomes a pipeline.
+    let dispatched = None;
+    Unrolled { steps, operands: unrolled.operands.clone(), results, graph, dispatched }
 }

@@ -1,9 +1,9 @@
 use super::{Delays, Goal, IntervalGoal, Options, PipelineError, PipelineErrorKind, pipeline};
 use crate::blocks::divider::Divider;
 use crate::dsl::fixture::design;
-use crate::dsl::{loop_while, step, wait_for_start};
+use crate::dsl::{dispatch, jump_if, loop_while, step, wait_for_start};
 use crate::netlist::{Design, Driver, Net, NetId, NetlistRegister, Op, RegId};
-use glint_base::fixed::Format;
+use glint_base::fixed::{Format, Overflow, Rounding};
 use glint_base::target::Timing;
 
 fn options(goal: Goal) -> Options {
@@ -109,6 +109,43 @@ fn a_loop_without_a_bound_cannot_be_unrolled() {
         text.contains("`count` repeats a loop for which no largest trip count is found"),
         "{text}"
     );
+}
+
+/// A function adds 1 to the operand, and the other one doubles it. Each loads the register that the other one does not load.
+fn two_functions() -> Design {
+    let byte = Format::unsigned(8, 0);
+    design(|d| {
+        let opcode = d.operand("opcode", Format::BIT);
+        let x = d.operand("x", byte);
+        let one = d.raw_constant("one", 1, byte);
+        let names = ["incremented", "doubled"];
+        let [incremented, doubled] = names.map(|name| d.register(name, byte));
+        let wrapped =
+            |name: &str, sum| d.narrow(name, sum, byte, Rounding::Truncate, Overflow::Wrap);
+        incremented.takes(wrapped("more", d.add("sum", x.q(), one)));
+        doubled.takes(wrapped("twice", d.add("double", x.q(), x.q())));
+        let result = d.choose("result", opcode.q(), [incremented.q(), doubled.q()]);
+        d.output("result_out", result);
+        let one_bit = d.raw_constant("one_bit", 1, Format::BIT);
+        vec![
+            step("choose", [dispatch(opcode.q(), &["increment", "double"])]),
+            step("increment", [incremented.load(), jump_if(one_bit, "result")]),
+            step("double", [doubled.load()]),
+        ]
+    })
+}
+
+#[test]
+fn a_dispatch_is_unrolled_for_each_value_and_becomes_no_pipeline() {
+    let design = two_functions();
+    // No result depends on the register that its function does not load.
+    assert!(super::carried(&design).is_none());
+    let unrolled = super::unroll(&design).unwrap_or_else(|wrong| panic!("{wrong}"));
+    let dispatched = unrolled.dispatched.expect("a dispatch");
+    let [increment, double] = &dispatched.of_values[..] else { panic!("two values") };
+    assert_ne!(increment[0].1, double[0].1);
+    let error = refused(&design, Goal::Stages(2)).to_string();
+    assert!(error.contains("the microinstruction `choose` dispatches"), "{error}");
 }
 
 #[test]

@@ -3,7 +3,8 @@
 //! The execution follows one computation from the clock that accepts `start` to the clock with the results. The fields of the
 //! control word are constants in each clock, so that muxes with a field as their select disappear. If a condition depends on an
 //! operand, the execution follows both branches, and muxes choose the register contents behind them. A loop is unrolled as often
-//! as it can run. The module fails if a computation takes more than 4096 clocks.
+//! as it can run. If an operand selects among several microprograms (a dispatch), a computation is executed for each value of the
+//! operand, and muxes choose the results. The module fails if a computation takes more than 4096 clocks.
 
 mod clock;
 mod cycle;
@@ -16,7 +17,7 @@ pub use line::{UnrolledLine, WalkRegister, unroll_line};
 use super::graph::{Cell, Graph, Label, NodeId, NodeOp};
 use super::possible;
 use super::settle::settled;
-use crate::netlist::{Design, Net, NetId, RegId, RegisterKind, Role, Sequence};
+use crate::netlist::{Design, Driver, Net, NetId, RegId, RegisterKind, Role, Sequence};
 use glint_base::codes;
 use glint_base::diagnostic::{Diagnostic, Diagnostics};
 use glint_base::fixed::Format;
@@ -33,8 +34,19 @@ pub struct Unrolled {
     /// The nets of output ports, each with its node. The outputs of the handshake are not among them, except in the graph of a
     /// `Cycle`, which has all outputs.
     pub results: Vec<(NetId, NodeId)>,
-    /// The microinstructions in the order of execution.
+    /// The microinstructions in the order of execution. If the microprogram dispatches, those for the selector's value 0 come first.
     pub steps: Vec<UnrolledStep>,
+    /// The results for each value of the selector, if the microprogram dispatches.
+    pub dispatched: Option<DispatchedResults>,
+}
+
+/// The results of a microprogram that dispatches, for each value of the operand that selects the microinstructions.
+#[derive(Clone, Debug)]
+pub struct DispatchedResults {
+    /// The node of the operand.
+    pub selector: NodeId,
+    /// For each value of the operand, the nets of output ports with their nodes, as in [`Unrolled::results`].
+    pub of_values: Vec<Vec<(NetId, NodeId)>>,
 }
 
 /// An executed microinstruction.
@@ -59,6 +71,8 @@ struct Executor<'a> {
     iterations: Iterations,
     unrolled: Unrolled,
     visits: Vec<usize>,
+    /// The value of the selector for which the microprogram is executed; `None` if it does not dispatch.
+    selected: Option<u64>,
     /// Each result or status port with its node; `None` until a microinstruction sets `valid`.
     shown: Option<Vec<(NetId, NodeId)>>,
 }
@@ -80,11 +94,19 @@ pub fn unroll(design: &Design) -> Result<Unrolled, Diagnostics> {
 /// # Errors
 /// Fails as [`unroll`] does.
 pub fn unroll_in_powers(design: &Design) -> Result<Unrolled, Diagnostics> {
-    unroll_for_pipeline(design).map_err(|diagnostic| Diagnostics(vec![diagnostic]))
+    run(design, Iterations::InPowers).map_err(|diagnostic| Diagnostics(vec![diagnostic]))
 }
 
-/// Like [`unroll_in_powers`]; the error is the first mistake that the execution meets.
+/// Like [`unroll_in_powers`]; the error is the first mistake that the execution meets. Fails also if the microprogram dispatches.
 pub(super) fn unroll_for_pipeline(design: &Design) -> Result<Unrolled, Diagnostic> {
+    let executor = Executor::new(design, Iterations::InPowers);
+    for (at, microinstruction) in design.control.microprogram.iter().enumerate() {
+        if let Sequence::Dispatch { .. } = microinstruction.sequence {
+            let why = "dispatches, and the points of a pipeline all pass the same stages: let choices by \
+                       the operand select the values instead";
+            return Err(executor.cannot(at, why));
+        }
+    }
     run(design, Iterations::InPowers)
 }
 
@@ -121,13 +143,13 @@ fn executed(
     let mut executor = Executor::new(design, iterations);
     let state = executor.power_up();
     let state = executor.start(&state);
-    executor.follow(At { state, address: 0 }, None)?;
-    let Some(results) = executor.shown.take() else {
-        let place =
-            design.control.microprogram.last().map_or(design.nets[0].location, |it| it.location);
-        let message = "no microinstruction sets `valid`, so the pipeline cannot know when the results are \
-                       ready";
-        return Err(Diagnostic::new(codes::UNROLL, message.to_owned(), place));
+    let selector = design.control.microprogram.iter().find_map(|it| match it.sequence {
+        Sequence::Dispatch { selector, .. } => Some(selector),
+        _ => None,
+    });
+    let results = match selector {
+        Some(selector) => executor.results_by(selector, &state)?,
+        None => executor.results_from(state)?,
     };
     Ok((executor, results))
 }
@@ -140,11 +162,13 @@ impl<'a> Executor<'a> {
             design,
             iterations,
             visits: vec![0; design.control.microprogram.len()],
+            selected: None,
             unrolled: Unrolled {
                 graph: Graph::default(),
                 operands: operands.map(|port| port.net).collect(),
                 results: Vec::new(),
                 steps: Vec::new(),
+                dispatched: None,
             },
             shown: None,
         }
@@ -165,6 +189,56 @@ impl<'a> Executor<'a> {
     /// Executes the clock that accepts `start` and writes all operands.
     fn start(&mut self, state: &State) -> State {
         Clock::new(self, state, Some(0), true).edge()
+    }
+
+    /// Executes the microprogram from its beginning. Returns each result or status port with its node.
+    fn results_from(&mut self, state: State) -> Result<Vec<(NetId, NodeId)>, Diagnostic> {
+        self.follow(At { state, address: 0 }, None)?;
+        self.shown.take().ok_or_else(|| {
+            let microprogram = &self.design.control.microprogram;
+            let place = microprogram.last().map_or(self.design.nets[0].location, |it| it.location);
+            let message = "no microinstruction sets `valid`, so the pipeline cannot know when the results \
+                           are ready";
+            Diagnostic::new(codes::UNROLL, message.to_owned(), place)
+        })
+    }
+
+    /// Executes the microprogram for each value of the operand register `selector`. Muxes choose the results by the operand.
+    fn results_by(
+        &mut self,
+        selector: NetId,
+        start: &State,
+    ) -> Result<Vec<(NetId, NodeId)>, Diagnostic> {
+        let design = self.design;
+        let net = design.net(selector);
+        let Driver::Register(register) = net.driver else {
+            unreachable!("the description language wants an operand's register")
+        };
+        let operand = start.registers[register.index()];
+        let mut of_values: Vec<Vec<(NetId, NodeId)>> = Vec::new();
+        for value in 0..1 << net.format.width() {
+            let mut state = start.clone();
+            state.registers[register.index()] =
+                self.unrolled.graph.constant(value, net.format, &label(net));
+            self.visits.fill(0);
+            self.selected = Some(value);
+            of_values.push(self.results_from(state)?);
+        }
+        let mut results = Vec::new();
+        for (at, &(port, first)) in of_values[0].iter().enumerate() {
+            let inputs: Vec<NodeId> = of_values.iter().map(|of_value| of_value[at].1).collect();
+            let is_same = inputs.iter().all(|input| *input == first);
+            let node = if is_same {
+                first
+            } else {
+                let net = design.net(port);
+                let mux = NodeOp::Mux { select: operand, inputs };
+                self.unrolled.graph.op(mux, net.format, &label(net))
+            };
+            results.push((port, node));
+        }
+        self.unrolled.dispatched = Some(DispatchedResults { selector: operand, of_values });
+        Ok(results)
     }
 
     /// Executes microinstructions from `at` on, up to the clock with the results, or until the microinstruction at `stop` comes
@@ -205,6 +279,10 @@ impl<'a> Executor<'a> {
                             at = At { state, address: to };
                         }
                     }
+                }
+                Sequence::Dispatch { ref to, .. } => {
+                    let selected = self.selected.expect("the value of the selector") as usize;
+                    at = At { state: after, address: to[selected] };
                 }
                 Sequence::WaitStart => {
                     return Err(

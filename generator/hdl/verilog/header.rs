@@ -175,6 +175,10 @@ fn program(design: &Design) -> Vec<String> {
                 let when = if *to > address { "if" } else { "while" };
                 format!("  (to {to} {when} {})", design.net(*condition).name)
             }
+            Sequence::Dispatch { selector, to } => {
+                let targets: Vec<String> = to.iter().map(usize::to_string).collect();
+                format!("  (to {} by {})", targets.join(" "), design.net(*selector).name)
+            }
         };
         lines.push(format!("//   {address:2}  {}{next}", super::text::ascii(name)));
     }

@@ -1,6 +1,8 @@
 //! Tests mistakes in microprograms: the order and the end of microinstructions, selections, `valid`, jumps and loops.
 
-use glint::dsl::{Designer, Signal, StepSetting, end, jump_if, loop_while, next, step, valid};
+use glint::dsl::{
+    Designer, Signal, StepSetting, dispatch, end, jump_if, loop_while, next, step, valid,
+};
 use glint::fixed::{Format, Overflow, Rounding};
 
 use super::{BYTE, Found, finish, mistakes, program};
@@ -72,6 +74,54 @@ fn microinstructions_stand_in_order() {
         ]
     })
     .are(["microinstruction `load` goes to `nowhere`, but no microinstruction has this name"]);
+}
+
+#[test]
+fn a_dispatch_has_a_later_microinstruction_for_each_value_of_an_operand() {
+    let dispatching = |to: &'static [&'static str]| {
+        program(move |d, load| {
+            let opcode = d.operand("opcode", Format::BIT);
+            vec![
+                step("idle", []),
+                step("before", []),
+                step("choose", [dispatch(opcode.q(), to)]),
+                step("load", [load]),
+                step("end", [end()]),
+            ]
+        })
+    };
+    dispatching(&["load", "end", "end"])
+        .are(["microinstruction `choose` dispatches to 3 microinstructions, but `opcode_reg` has 2 values: \
+               state a microinstruction for each value"]);
+    dispatching(&["load", "before"])
+        .are(["microinstruction `choose` dispatches to `before`, which does not come after it: a dispatch \
+               jumps ahead"]);
+    dispatching(&["load", "nowhere"]).are([
+        "microinstruction `choose` goes to `nowhere`, but no microinstruction has this name",
+    ]);
+    program(|d, load| {
+        let opcode = d.operand("opcode", Format::BIT);
+        let inverted = d.not("inverted", opcode.q());
+        vec![
+            step("idle", []),
+            step("choose", [dispatch(inverted, &["load", "end"])]),
+            step("load", [load]),
+            step("end", [end()]),
+        ]
+    })
+    .are(["microinstruction `choose` dispatches by `inverted`, which is not the register of an operand"]);
+    program(|d, load| {
+        let [first, second] = ["first", "second"].map(|name| d.operand(name, Format::BIT));
+        vec![
+            step("idle", []),
+            step("choose", [dispatch(first.q(), &["load", "again"])]),
+            step("load", [load]),
+            step("again", [dispatch(second.q(), &["end", "end"])]),
+            step("end", [end()]),
+        ]
+    })
+    .are(["microinstruction `again` dispatches by `second_reg`, but an earlier one by `first_reg`: all \
+           dispatches must have the same selector"]);
 }
 
 #[test]

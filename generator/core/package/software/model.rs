@@ -16,9 +16,10 @@ use crate::package::file_kind::FileKind;
 use crate::package::output_files::OutputFiles;
 use glint_base::config_error::ConfigError;
 use glint_base::fixed::{Format, mask};
-use glint_rtl::netlist::{Design, Port, Role, RomId};
+use glint_rtl::netlist::{Design, NetId, Port, Role, RomId};
 use glint_rtl::pipeline::{
-    Cell, Cycle, Graph, NodeId, StateValues, Unrolled, any_cycle, unroll_in_powers,
+    Cell, Cycle, DispatchedResults, Graph, NodeId, StateValues, Unrolled, any_cycle,
+    unroll_in_powers,
 };
 use glint_rtl::verilog::text::{Names, ascii, constant_name, statement};
 
@@ -204,9 +205,30 @@ fn result_ports(design: &Design) -> impl Iterator<Item = &Port> {
 /// arrays with their words. Fails if the microprogram cannot be unrolled.
 fn of_point(design: &Design, tables: &[String]) -> Result<(Vec<String>, Vec<RomId>)> {
     let unrolled = unroll_in_powers(design)?;
-    let results: Vec<(&Port, NodeId)> = results_of(design, &unrolled).collect();
+    let mut body = match &unrolled.dispatched {
+        Some(dispatched) => switch(design, &unrolled, tables, dispatched),
+        None => computation(design, &unrolled, tables, (4, &unrolled.results)),
+    };
+    if !body.iter().any(|line| line.contains("operands.")) {
+        // A constant reads no operand, and a compiler would warn of the unused parameter.
+        body.insert(0, "    (void)operands;".to_owned());
+    }
+    let wanted: Vec<NodeId> =
+        results_of(design, &unrolled.results).map(|(_, value)| value).collect();
+    Ok((body, roms(&unrolled.graph, &wanted)))
+}
+
+/// Returns the C statements that compute the nodes `results` of some ports and assign them, behind `indent` blanks.
+fn computation(
+    design: &Design,
+    unrolled: &Unrolled,
+    tables: &[String],
+    (indent, results): (usize, &[(NetId, NodeId)]),
+) -> Vec<String> {
+    let results: Vec<(&Port, NodeId)> = results_of(design, results).collect();
     let wanted: Vec<NodeId> = results.iter().map(|(_, value)| *value).collect();
-    let mut printer = Printer::new(design, &unrolled, tables, BTreeMap::new());
+    let mut printer = Printer::new(design, unrolled, tables, BTreeMap::new());
+    let margin = " ".repeat(indent);
     let mut body = Vec::new();
     let mut step = None;
     for CStatement { step: of, text } in printer.lines(&mut taken(), &wanted) {
@@ -215,29 +237,67 @@ fn of_point(design: &Design, tables: &[String]) -> Result<(Vec<String>, Vec<RomI
             let turn =
                 if step.visit == 0 { String::new() } else { format!(", turn {}", step.visit + 1) };
             let name = &design.control.microprogram[step.address].name;
-            body.push(format!("    {}", comment(&format!("{}: {name}{turn}", step.address))));
+            body.push(format!("{margin}{}", comment(&format!("{}: {name}{turn}", step.address))));
         }
-        body.extend(statement(4, &text));
+        body.extend(statement(indent, &text));
     }
-    if !body.iter().any(|line| line.contains("operands.")) {
-        // A constant reads no operand, and a compiler would warn of the unused parameter.
-        body.push("    (void)operands;".to_owned());
+    if !body.is_empty() {
+        body.push(String::new());
     }
-    body.push(String::new());
     for (port, value) in results {
         let text = assigned(design, port, &printer.text(value));
-        body.extend(statement(4, &format!("results.{text}")));
+        body.extend(statement(indent, &format!("results.{text}")));
     }
-    Ok((body, roms(&unrolled.graph, &wanted)))
+    body
 }
 
-/// Returns the result ports, each with the node of its value in the unrolled computation.
+/// Returns a C statement `switch` that computes the results for each value of the operand by which the microprogram dispatches.
+fn switch(
+    design: &Design,
+    unrolled: &Unrolled,
+    tables: &[String],
+    dispatched: &DispatchedResults,
+) -> Vec<String> {
+    let mut printer = Printer::new(design, unrolled, tables, BTreeMap::new());
+    let mut body = Vec::new();
+    for line in printer.lines(&mut taken(), &[dispatched.selector]) {
+        body.extend(statement(4, &line.text));
+    }
+    body.push(format!("    switch ({}) {{", printer.text(dispatched.selector)));
+    let mut values: Vec<usize> = Vec::new();
+    for (value, results) in dispatched.of_values.iter().enumerate() {
+        values.push(value);
+        let following = dispatched.of_values.get(value + 1);
+        if following == Some(results) {
+            continue;
+        }
+        for value in values.drain(..) {
+            let name = design.functions.get(value).map(|function| comment(&function.name));
+            let label = match following {
+                Some(_) => format!("    case {value}u:"),
+                // With a default, every path assigns the results.
+                None => "    default:".to_owned(),
+            };
+            body.push(format!("{label} {}", name.unwrap_or_default()).trim_end().to_owned());
+            if following.is_none() {
+                break;
+            }
+        }
+        body.push("    {".to_owned());
+        body.extend(computation(design, unrolled, tables, (8, results)));
+        body.extend(["        break;".to_owned(), "    }".to_owned()]);
+    }
+    body.push("    }".to_owned());
+    body
+}
+
+/// Returns the result ports, each with its node in the list `results` of nets and nodes.
 fn results_of<'a>(
     design: &'a Design,
-    of: &'a Unrolled,
+    results: &'a [(NetId, NodeId)],
 ) -> impl Iterator<Item = (&'a Port, NodeId)> {
     result_ports(design).filter_map(|port| {
-        let (_, value) = of.results.iter().find(|(net, _)| *net == port.net)?;
+        let (_, value) = results.iter().find(|(net, _)| *net == port.net)?;
         Some((port, *value))
     })
 }
@@ -255,7 +315,7 @@ fn of_line(design: &Design, tables: &[String]) -> Result<(Vec<String>, Vec<RomId
         value.map(|it| it.1).context("an output has no value")
     };
     let (valid, done) = (port(Role::Valid)?, port(Role::Done)?);
-    let results: Vec<(&Port, NodeId)> = results_of(design, &unrolled).collect();
+    let results: Vec<(&Port, NodeId)> = results_of(design, &unrolled.results).collect();
 
     // The registers and memories on which the results, `valid` and `done` of any clock depend.
     let mut wanted: Vec<NodeId> = results.iter().map(|(_, value)| *value).collect();

@@ -161,9 +161,14 @@ fn reached_states(order: &Order, following: &[Vec<usize>]) -> Vec<Option<PairSta
         let Some(state) = &reached[at] else { continue };
         let after = order.next(&order.settle(at, state, None), None, &[]);
         for &to in &following[at] {
+            let mut entering = after.clone();
+            if to > 0 && design.pipeline.is_none() {
+                // Only a running device leaves microinstruction 0.
+                entering[design.control.run.index()] = Pairs::constant(1, 1);
+            }
             let joined = match &reached[to] {
-                Some(before) => join(before, &after),
-                None => after.clone(),
+                Some(before) => join(before, &entering),
+                None => entering,
             };
             if reached[to].as_ref() != Some(&joined) {
                 reached[to] = Some(joined);

@@ -7,7 +7,7 @@
 use std::collections::BTreeSet;
 
 use super::pairs::Pairs;
-use glint_rtl::netlist::{Design, Driver, FieldId, NetId};
+use glint_rtl::netlist::{Design, Driver, FieldId, NetId, Sequence};
 
 /// Whether a register or a synchronous ROM takes a new value in a microinstruction.
 #[derive(Clone, Copy, PartialEq)]
@@ -31,16 +31,74 @@ struct Holder {
 
 /// Returns for each microinstruction and each register whether the next value certainly equals the present one. `nets` has the
 /// possible values of all nets in each microinstruction, and `following` the microinstructions that may follow.
+///
+/// If the microprogram dispatches, each computation keeps to the microinstructions for one value of the selector. A register must
+/// then keep its value for each of these values.
 pub(super) fn reloads(
     design: &Design,
     nets: &[Vec<Pairs>],
     following: &[Vec<usize>],
 ) -> Vec<Vec<bool>> {
-    let count = nets.len();
-    let holders = holders(design);
+    let registers = design.registers.len();
     if design.pipeline.is_some() {
-        return vec![vec![false; design.registers.len()]; count];
+        return vec![vec![false; registers]; nets.len()];
     }
+    let holders = holders(design);
+    let mut reloads = vec![vec![true; registers]; nets.len()];
+    for selected in 0..selector_values(design) {
+        let following = executed_following(design, following, selected);
+        let facts = facts(design, &holders, nets, &following);
+        for (at, of_registers) in reloads.iter_mut().enumerate() {
+            let is_executed = following.iter().any(|following| following.contains(&at));
+            for (reloads, fact) in of_registers.iter_mut().zip(&facts[at]) {
+                *reloads &= !is_executed || *fact;
+            }
+        }
+    }
+    reloads
+}
+
+/// Returns the number of values of the operand by which the microprogram dispatches, or 1 if it does not dispatch.
+fn selector_values(design: &Design) -> usize {
+    let mut sequences = design.control.microprogram.iter().map(|it| &it.sequence);
+    let targets = sequences.find_map(|sequence| match sequence {
+        Sequence::Dispatch { to, .. } => Some(to.len()),
+        _ => None,
+    });
+    targets.unwrap_or(1)
+}
+
+/// Returns `following` without the microinstructions that are not executed if the selector has the value `selected`.
+fn executed_following(
+    design: &Design,
+    following: &[Vec<usize>],
+    selected: usize,
+) -> Vec<Vec<usize>> {
+    let mut of_value = vec![Vec::new(); following.len()];
+    let mut todo = vec![0];
+    while let Some(at) = todo.pop() {
+        if !of_value[at].is_empty() {
+            continue;
+        }
+        let mut next = following[at].clone();
+        if let Sequence::Dispatch { to, .. } = &design.control.microprogram[at].sequence {
+            // A reset leads to microinstruction 0.
+            next.retain(|address| *address == 0 || *address == to[selected]);
+        }
+        todo.extend(&next);
+        of_value[at] = next;
+    }
+    of_value
+}
+
+/// Returns for each microinstruction and each holder whether the next value certainly equals the present one.
+fn facts(
+    design: &Design,
+    holders: &[Holder],
+    nets: &[Vec<Pairs>],
+    following: &[Vec<usize>],
+) -> Vec<Vec<bool>> {
+    let count = nets.len();
     // Every fact is assumed at first, except in the idle microinstruction, and dropped where it does not follow.
     let mut facts = vec![vec![true; holders.len()]; count];
     facts[0] = vec![false; holders.len()];
@@ -50,7 +108,7 @@ pub(super) fn reloads(
         for at in 0..count {
             for &to in &following[at] {
                 for (number, holder) in holders.iter().enumerate() {
-                    let holds = follows(design, &holders, holder, &nets[at], &facts[at], (at, to))
+                    let holds = follows(design, holders, holder, &nets[at], &facts[at], (at, to))
                         && (load(holder, &nets[at]) == Load::Always || facts[at][number]);
                     if facts[to][number] && !holds {
                         facts[to][number] = false;
@@ -59,9 +117,6 @@ pub(super) fn reloads(
                 }
             }
         }
-    }
-    for of_registers in &mut facts {
-        of_registers.truncate(design.registers.len());
     }
     facts
 }

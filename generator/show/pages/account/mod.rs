@@ -277,6 +277,10 @@ pub fn microprogram(design: &Design) -> TextTable {
             SequenceFacts::Loop { loop_to, condition } => {
                 format!("to {loop_to} while {}", code(condition))
             }
+            SequenceFacts::Dispatch { dispatch_to, by } => {
+                let targets: Vec<String> = dispatch_to.iter().map(usize::to_string).collect();
+                format!("to {} by {}", targets.join(", "), code(by))
+            }
             SequenceFacts::Jump { jump_to, condition } => {
                 format!("to {jump_to} if {}", code(condition))
             }
@@ -287,8 +291,8 @@ pub fn microprogram(design: &Design) -> TextTable {
 }
 
 /// Clocks are counted from the clock that takes `start`. If a clock depends on the length of a line, the table has a formula;
-/// if it depends on other operands, a remark.
-pub fn clocks(timing: &HandshakeTiming, line: Option<&LineClocks>) -> TextTable {
+/// if it depends on the function of a unit, a row for each function; if it depends on other operands, a remark.
+pub fn clocks(timing: &HandshakeTiming, line: Option<&LineClocks>, design: &Design) -> TextTable {
     let mut events: Vec<(&str, Option<u32>, Option<Linear>)> =
         vec![("`valid` is high, first", timing.start_to_valid, None)];
     if let Some(line) = line {
@@ -305,6 +309,14 @@ pub fn clocks(timing: &HandshakeTiming, line: Option<&LineClocks>) -> TextTable 
             _ => "depends on the operands".to_owned(),
         };
         table.row([event.to_owned(), text]);
+    }
+    if timing.start_to_done.is_none() {
+        for (opcode, function) in design.functions.iter().enumerate() {
+            if let Some(clock) = design.clocks_of_function(opcode) {
+                let event = format!("`done` is high, function {}", function.name);
+                table.row([event, clock.to_string()]);
+            }
+        }
     }
     table
 }

@@ -156,7 +156,7 @@ pub fn page(subject: &Subject, measured: &DatasheetResults) -> Result<String> {
         clocks: TableView::new(
             "Clocks",
             &match &design.pipeline {
-                None => account::clocks(&measured.timing, measured.line.as_ref()),
+                None => account::clocks(&measured.timing, measured.line.as_ref(), design),
                 Some(pipeline) => account::pipeline_clocks(pipeline),
             },
         ),

@@ -207,13 +207,16 @@ impl<'a> GraphBuilder<'a> {
         at
     }
 
-    /// Adds a wire to the control unit from each block or port on which a condition of the microprogram depends.
+    /// Adds a wire to the control unit from each block or port on which the order of the microinstructions depends.
     fn conditions(&mut self, control: usize) {
         for microinstruction in &self.design.control.microprogram {
-            if let Sequence::LoopWhile { condition, .. } = microinstruction.sequence {
-                for net in self.blocks.behind(condition).to_vec() {
-                    self.wire(net, control);
-                }
+            let (Sequence::LoopWhile { condition: deciding, .. }
+            | Sequence::Dispatch { selector: deciding, .. }) = microinstruction.sequence
+            else {
+                continue;
+            };
+            for net in self.blocks.behind(deciding).to_vec() {
+                self.wire(net, control);
             }
         }
     }

@@ -88,7 +88,7 @@ pub fn page(design: &Design, inputs: &PageInputs) -> Result<String> {
             table(&account::roms(design, inputs.config))
         },
         clocks: table(&match &design.pipeline {
-            None => account::clocks(inputs.timing, inputs.line),
+            None => account::clocks(inputs.timing, inputs.line, design),
             Some(pipeline) => account::pipeline_clocks(pipeline),
         }),
         accuracy: account::accuracy(inputs.contract, inputs.backing),
