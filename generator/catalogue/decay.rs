@@ -46,9 +46,9 @@ pub fn describe<'d>(
     let tables = Tables { split: true, synchronous: false, holds_highest: false };
     let fraction = keys.operands.cosine.fraction as i32;
     let bits = u.format().width() as i32;
-    let sums = ["ratio", "ratio_sum1", "ratio_sum2"];
+    let sums = ["ratio", "ratio_sum1", "ratio_sum2"].map(Some);
     let number = u.bits(keys.unseen(), Format::unsigned(bits - keys.unseen() as i32, 0));
-    let ratio = PolynomialDatapath::new(d, "ratio_", &sums, number, &ratios, tables);
+    let ratio = PolynomialDatapath::new(d, "ratio_", sums, number, &ratios, tables);
     let _ = ratio.q().doc("the decay divided by 1 - cos gamma");
     let ulp = d.raw_constant("ulp", 1, Format::unsigned(1 - fraction, fraction));
     let whole =
@@ -91,9 +91,9 @@ pub fn describe<'d>(
     let fine = scaled("halvings_fine", keys.decay_fraction);
     halvings.takes(d.choose("halvings_next", small.q(), [coarse, fine]));
 
-    let sums = ["power", "power_sum1", "power_sum2"];
+    let sums = ["power", "power_sum1", "power_sum2"].map(Some);
     let number = halvings.q().bits(0, Format::unsigned(keys.argument as i32, 0));
-    let exp2 = PolynomialDatapath::new(d, "power_", &sums, number, &powers, tables);
+    let exp2 = PolynomialDatapath::new(d, "power_", sums, number, &powers, tables);
     let _ = exp2.q().doc("2^-x, where x is the fraction of halvings");
     // An integer part that shifts all bits of f out need not be larger.
     let most = integer((f.frac as u32 + 2).ilog2() + 1);

@@ -29,5 +29,6 @@ pub mod quadratic;
 pub mod rough;
 pub mod schlick;
 pub mod shading;
+mod shared_table;
 pub mod threshold;
 pub mod unit;

@@ -50,14 +50,36 @@ impl<'d> StepMultiplier<'d> {
 
     /// Connects the register of one step of a polynomial, and returns the settings that execute this step.
     pub fn step(&self, polynomial: &PolynomialDatapath<'d, '_>, step: usize) -> Vec<StepSetting> {
-        let mut settings = Vec::new();
-        let mut product = None;
-        if let Some(factors) = polynomial.factors(step) {
-            product = Some(self.product(factors));
-            settings.extend(self.pick(factors));
-        }
-        settings.push(polynomial.add(step, product));
+        let register = polynomial.register(step).expect("the register of a step");
+        register.takes(self.sum(polynomial, step));
+        let mut settings = self.settings(polynomial, step);
+        settings.push(register.load());
         settings
+    }
+
+    /// Connects the registers of the partial sums of a polynomial without a register for its value. Returns the settings of each
+    /// step, the last step first, and the value, which the caller must load in the last step.
+    pub fn steps_to_value(
+        &self,
+        polynomial: &PolynomialDatapath<'d, '_>,
+    ) -> (Vec<Vec<StepSetting>>, Signal<'d>) {
+        let mut of_steps = vec![self.settings(polynomial, 0)];
+        for step in 1..polynomial.count() {
+            of_steps.push(self.step(polynomial, step));
+        }
+        (of_steps, self.sum(polynomial, 0))
+    }
+
+    /// Returns the settings that select the factors of a step.
+    fn settings(&self, polynomial: &PolynomialDatapath<'d, '_>, step: usize) -> Vec<StepSetting> {
+        let factors = polynomial.factors(step);
+        factors.and_then(|factors| self.pick(factors)).into_iter().collect()
+    }
+
+    /// Builds the sum of a step: its coefficient plus the product.
+    fn sum(&self, polynomial: &PolynomialDatapath<'d, '_>, step: usize) -> Signal<'d> {
+        let product = polynomial.factors(step).map(|factors| self.product(factors));
+        polynomial.sum(step, product)
     }
 
     /// Returns the product of a pair of factors, one that [`StepMultiplier::new`] received unless the device has only one
@@ -129,22 +151,23 @@ pub struct PolynomialDatapath<'d, 'p> {
     coefficients: Vec<Signal<'d>>,
     /// The offset from the middle of the segment, shortened to the bits that each step multiplies.
     offsets: Vec<Signal<'d>>,
-    /// The partial sums. Register k has the sum of the terms from coefficient k on, so that the first register has the whole
-    /// polynomial.
-    registers: Vec<Register<'d>>,
+    /// The register of the whole polynomial. `None` if several operands share the table, so that each value has a register elsewhere.
+    value: Option<Register<'d>>,
+    /// The partial sums. Register number k has the sum of the terms from coefficient k + 1 on.
+    partial_sums: Vec<Register<'d>>,
     /// The register of the highest coefficient, if it has one.
     highest: Option<Register<'d>>,
 }
 
 impl<'d, 'p> PolynomialDatapath<'d, 'p> {
-    /// Makes the table, and the registers of the partial sums with the names `registers`, the whole polynomial first. Other names
-    /// begin with `prefix`. `number` is the position of the operand in its domain, an integer of
+    /// Makes the table, and the registers of the partial sums with the names `registers`, the whole polynomial first. The first name
+    /// is `None` if the polynomial gets no register for its value. Other names begin with `prefix`. `number` is the position of the operand in its domain, an integer of
     /// [`glint_approximate::Segments::number_bits`] bits. It must be stable while the sums are loaded, and also one clock earlier
     /// if the table is read at the rising clock edge.
     pub fn new(
         d: &'d Designer,
         prefix: &str,
-        registers: &[&str],
+        [value, partial_sums @ ..]: [Option<&str>; 3],
         number: Signal<'d>,
         it: &'p Piecewise,
         tables: Tables,
@@ -158,33 +181,59 @@ impl<'d, 'p> PolynomialDatapath<'d, 'p> {
             offset.bits(it.segments.rest() - step.offset, Format::signed(whole, width))
         };
         let offsets = it.steps.iter().map(cut).collect();
-        let registers = registers.iter().zip(&it.sums).take(it.degree().max(1));
-        let registers = registers.map(|(name, format)| d.register(name, *format)).collect();
+        let value = value.map(|name| d.register(name, it.sums[0]));
+        let partial_sums = partial_sums.iter().flatten().zip(it.sums.iter().skip(1));
+        let partial_sums: Vec<Register> = partial_sums
+            .take(it.degree().saturating_sub(1))
+            .map(|(name, format)| d.register(name, *format))
+            .collect();
         let highest = tables.holds_highest.then(|| {
             let last = it.degree();
             let register = d.register(&format!("{prefix}highest"), it.coefficients[last]);
             register.takes(coefficients[last]);
             register
         });
-        Self { d, it, prefix: prefix.to_owned(), coefficients, offsets, registers, highest }
+        Self {
+            d,
+            it,
+            prefix: prefix.to_owned(),
+            coefficients,
+            offsets,
+            value,
+            partial_sums,
+            highest,
+        }
     }
 
     /// Returns the numbers of Horner's steps in the order of execution; the last is 0.
     pub fn steps(&self) -> impl Iterator<Item = usize> + use<> {
-        (0..self.registers.len()).rev()
+        (0..self.count()).rev()
+    }
+
+    /// Returns the number of Horner's steps.
+    fn count(&self) -> usize {
+        self.it.degree().max(1)
+    }
+
+    /// Returns the register of a step, which step number 0 may lack.
+    fn register(&self, step: usize) -> Option<&Register<'d>> {
+        match step {
+            0 => self.value.as_ref(),
+            _ => self.partial_sums.get(step - 1),
+        }
     }
 
     /// Returns the factors of a step's product: the sum of the previous step, or the highest coefficient, and the offset. A
     /// constant polynomial has no product.
     fn factors(&self, step: usize) -> Option<[Signal<'d>; 2]> {
         let offset = *self.offsets.get(step)?;
-        let above = self.registers.get(step + 1).or(self.highest.as_ref());
+        let above = self.partial_sums.get(step).or(self.highest.as_ref());
         let above = above.map(|register| register.q());
         Some([above.unwrap_or(self.coefficients[step + 1]), offset])
     }
 
-    /// Connects the register of a step to its coefficient plus the product, and returns the setting that loads it.
-    fn add(&self, step: usize, product: Option<Signal<'d>>) -> StepSetting {
+    /// Builds the sum of a step's coefficient and the product.
+    fn sum(&self, step: usize, product: Option<Signal<'d>>) -> Signal<'d> {
         let Self { d, it, prefix, .. } = self;
         let coefficient = self.coefficients[step];
         let sum = product.map_or(coefficient, |product| {
@@ -196,9 +245,7 @@ impl<'d, 'p> PolynomialDatapath<'d, 'p> {
             d.add(&format!("{prefix}added{step}"), coefficient, cut)
         });
         let name = format!("{prefix}kept{step}");
-        let register = self.registers[step];
-        register.takes(d.narrow(&name, sum, it.sums[step], Rounding::Truncate, Overflow::Wrap));
-        register.load()
+        d.narrow(&name, sum, it.sums[step], Rounding::Truncate, Overflow::Wrap)
     }
 
     /// Returns the setting that loads the register of the highest coefficient.
@@ -210,8 +257,11 @@ impl<'d, 'p> PolynomialDatapath<'d, 'p> {
     }
 
     /// Returns the value of the polynomial, which is valid after all steps.
+    ///
+    /// # Panics
+    /// Panics if the polynomial has no register for its value.
     pub fn q(&self) -> Signal<'d> {
-        self.registers[0].q()
+        self.value.expect("a register of the value").q()
     }
 }
 

@@ -14,6 +14,7 @@ use glint_rtl::dsl::{Designer, Register, Signal, Step, StepSetting, dispatch, en
 
 use crate::mirror::MirrorChain;
 use crate::piecewise::{PolynomialDatapath, StepMultiplier, Tables, number};
+use crate::shared_table::{SharedSteps, SharedTable, TableReaders};
 
 pub(super) struct PlanOutput {
     pub(super) name: String,
@@ -53,6 +54,10 @@ struct PlanDatapath<'d, 'p> {
     /// For each node that is built, the signal that later nodes read.
     signals: Vec<Option<Signal<'d>>>,
     polynomials: Vec<Option<PolynomialDatapath<'d, 'p>>>,
+    /// For each owner of a table that several polynomials share, these polynomials.
+    table_readers: Vec<TableReaders<'d>>,
+    /// For each owner, the table with its polynomials, once all their operands are built.
+    shared_tables: Vec<Option<SharedTable<'d, 'p>>>,
     /// The two factors of each product.
     factors: Vec<Option<[Signal<'d>; 2]>>,
     /// The chain of mirrors that ends at each node, if there is one.
@@ -91,6 +96,8 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
             registers,
             signals: vec![None; count],
             polynomials: (0..count).map(|_| None).collect(),
+            table_readers: (0..count).map(|_| TableReaders::new()).collect(),
+            shared_tables: (0..count).map(|_| None).collect(),
             factors: vec![None; count],
         }
     }
@@ -288,23 +295,38 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
         self.in_format(name, value, *format)
     }
 
-    /// Builds a table of polynomials and its registers, and returns the register with the result.
+    /// Builds a table of polynomials and its registers, and returns the register with the result. If several polynomials share the
+    /// table, it is built for the last of them.
     fn polynomial(&mut self, id: NodeId, operand: Signal<'d>, it: &'p Piecewise) -> Signal<'d> {
-        let prefix = self.plan.table_prefix(id);
-        let number = number(self.d, &format!("{prefix}number"), operand, it);
-        let registers = self.plan.sum_names(id);
-        let registers: Vec<&str> = registers.iter().map(String::as_str).collect();
+        let owner = self.schedule.table_owners[id.0];
+        let sharers = self.schedule.table_sharers(owner);
+        let prefix = self.plan.table_prefix(owner);
+        let [value, first_sum, second_sum] = &self.plan.sum_names(owner);
         let holds_highest = self.schedule.is_coefficient_held[id.0];
         let tables = Tables { holds_highest, ..Tables::of(it, self.is_pipelined) };
-        let datapath = PolynomialDatapath::new(self.d, &prefix, &registers, number, it, tables);
-        let q = datapath.q();
-        self.polynomials[id.0] = Some(datapath);
-        q
+        if sharers.len() == 1 {
+            let number = number(self.d, &format!("{prefix}number"), operand, it);
+            let names = [value, first_sum, second_sum].map(|name| Some(name.as_str()));
+            let datapath = PolynomialDatapath::new(self.d, &prefix, names, number, it, tables);
+            let q = datapath.q();
+            self.polynomials[id.0] = Some(datapath);
+            return q;
+        }
+        let value = self.d.register(&self.plan.node(id).name, it.sums[0]);
+        self.table_readers[owner.0].add(id, operand, value);
+        if sharers.last() == Some(&id) {
+            let readers = std::mem::replace(&mut self.table_readers[owner.0], TableReaders::new());
+            let table = readers.build(self.d, &prefix, [first_sum, second_sum], it, tables);
+            self.shared_tables[owner.0] = Some(table);
+        }
+        value.q()
     }
 
     /// Builds the microinstructions, and connects the registers of products to the multiplier.
     fn microprogram(&mut self) -> Vec<Step> {
-        let polynomials: Vec<&PolynomialDatapath> = self.polynomials.iter().flatten().collect();
+        let of_shared = self.shared_tables.iter().flatten().map(SharedTable::datapath);
+        let polynomials: Vec<&PolynomialDatapath> =
+            self.polynomials.iter().flatten().chain(of_shared).collect();
         let mut others = Vec::new();
         for (node, factors) in self.plan.nodes.iter().zip(&self.factors) {
             others.extend(factors.map(|factors| (node.name.clone(), factors)));
@@ -316,6 +338,11 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
         let names = names.map(|name| self.beside_operands(name));
         let names = names.each_ref().map(String::as_str);
         let multiplier = StepMultiplier::new(self.d, names, &polynomials, &others);
+        let mut shared_steps = Vec::new();
+        for table in &self.shared_tables {
+            shared_steps.push(table.as_ref().map(|table| table.steps(&multiplier)));
+        }
+        let work = PlanWork { multiplier, shared_steps };
         let first = self.schedule.steps.first();
         let addresses_table = first.is_some_and(|first| {
             matches!(first.work, Some(StepWork::Sum { .. })) || !first.coefficients.is_empty()
@@ -324,9 +351,9 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
             true => format!("{}; table addressed", noun(self.operands.len(), "operand")),
             false => noun(self.operands.len(), "operand"),
         };
-        let mut steps = vec![step(&first, [])];
-        for plan_step in &self.schedule.steps {
-            steps.push(self.microinstruction(plan_step, &multiplier));
+        let mut steps = vec![step(&first, self.addresses(0))];
+        for (at, plan_step) in self.schedule.steps.iter().enumerate() {
+            steps.push(self.microinstruction(at + 1, plan_step, &work));
         }
         steps.push(step(&noun(self.plan.results.len(), "result"), [valid(), end()]));
         self.with_dispatches(steps)
@@ -363,19 +390,35 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
         free
     }
 
-    fn microinstruction(&self, plan_step: &PlanStep, multiplier: &StepMultiplier<'d>) -> Step {
+    /// Returns the settings by which microinstruction number `at` addresses shared tables.
+    fn addresses(&self, at: usize) -> Vec<StepSetting> {
+        let mut settings = Vec::new();
+        for (owner, table) in self.shared_tables.iter().enumerate() {
+            if let Some(table) = table
+                && let Some(polynomial) = self.schedule.addressing(NodeId(owner), at)
+            {
+                settings.extend(table.address_by(polynomial));
+            }
+        }
+        settings
+    }
+
+    /// Returns microinstruction number `at`.
+    fn microinstruction(&self, at: usize, plan_step: &PlanStep, parts: &PlanWork<'d>) -> Step {
         let PlanStep { work, loads, coefficients } = plan_step;
         let mut names = Vec::new();
-        let mut settings = Vec::new();
+        let mut settings = self.addresses(at);
         if let Some(work) = work {
-            let (name, of_work) = self.work(work, multiplier);
+            let (name, of_work) = self.work(work, parts);
             names.push(name);
             settings.extend(of_work);
         }
         let mut loaded = Vec::new();
         for polynomial in coefficients {
             settings.push(self.polynomial_datapath(*polynomial).load_highest());
-            loaded.push(self.plan.highest_name(*polynomial));
+            let owner = self.schedule.table_owners[polynomial.0];
+            let name = self.plan.highest_name(owner);
+            loaded.push(format!("{name}{}", self.of_sharer(*polynomial)));
         }
         for node in loads {
             settings.push(self.register(*node).load());
@@ -387,16 +430,28 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
         step(&names.join("; "), settings)
     }
 
+    /// Returns the words that name a polynomial, for a microinstruction that loads a register of another polynomial with the same
+    /// table; empty for the polynomial after which the register is named.
+    fn of_sharer(&self, polynomial: NodeId) -> String {
+        match self.schedule.table_owners[polynomial.0] == polynomial {
+            true => String::new(),
+            false => format!(" for {}", self.plan.node(polynomial).name),
+        }
+    }
+
     fn register(&self, node: NodeId) -> Register<'d> {
         self.registers[node.0].expect("a register of a node that is held")
     }
 
     fn polynomial_datapath(&self, node: NodeId) -> &PolynomialDatapath<'d, 'p> {
-        self.polynomials[node.0].as_ref().expect("a polynomial")
+        let owner = self.schedule.table_owners[node.0].0;
+        let shared = self.shared_tables[owner].as_ref().map(SharedTable::datapath);
+        shared.or(self.polynomials[owner].as_ref()).expect("a polynomial")
     }
 
     /// Returns the name and the settings of what the multiplier or a table does.
-    fn work(&self, work: &StepWork, multiplier: &StepMultiplier<'d>) -> (String, Vec<StepSetting>) {
+    fn work(&self, work: &StepWork, parts: &PlanWork<'d>) -> (String, Vec<StepSetting>) {
+        let multiplier = &parts.multiplier;
         let name_of = |id: NodeId| self.plan.node(id).name.as_str();
         match work {
             StepWork::Product { product, held } => {
@@ -411,13 +466,22 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
                 (format!("{}: table addressed", name_of(*polynomial)), Vec::new())
             }
             StepWork::Sum { polynomial, coefficient } => {
-                let datapath = self.polynomial_datapath(*polynomial);
-                let settings = multiplier.step(datapath, *coefficient);
-                let register = &self.plan.sum_names(*polynomial)[*coefficient];
+                let owner = self.schedule.table_owners[polynomial.0];
+                let settings = match &parts.shared_steps[owner.0] {
+                    Some(shared) => shared.step(*polynomial, *coefficient),
+                    None => multiplier.step(self.polynomial_datapath(*polynomial), *coefficient),
+                };
+                let register = match coefficient {
+                    0 => &self.plan.node(*polynomial).name,
+                    _ => &self.plan.sum_names(owner)[*coefficient],
+                };
                 let sum = match coefficient {
                     0 if self.plan.results.contains(polynomial) => "the polynomial".to_owned(),
                     0 => "all coefficients".to_owned(),
-                    _ => format!("coefficients from {coefficient} on"),
+                    _ => {
+                        let of_sharer = self.of_sharer(*polynomial);
+                        format!("coefficients from {coefficient} on{of_sharer}")
+                    }
                 };
                 (format!("{register} <- {sum}"), settings)
             }
@@ -444,6 +508,12 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
             _ => before.read_as(node.format),
         }
     }
+}
+
+/// The multiplier, and the steps of the polynomials that share a table, for each owner of such a table.
+struct PlanWork<'d> {
+    multiplier: StepMultiplier<'d>,
+    shared_steps: Vec<Option<SharedSteps<'d>>>,
 }
 
 /// Replaces the low bits by a single 1, the lowest bit of `format`.

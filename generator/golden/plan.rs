@@ -92,10 +92,17 @@ pub(super) fn plan_device(
         });
     }
     let mut registers = Vec::with_capacity(plan.nodes.len());
-    let mut polynomials = Vec::with_capacity(plan.nodes.len());
+    let mut polynomials: Vec<Option<Polynomial>> = Vec::with_capacity(plan.nodes.len());
     for (at, (node, is_held)) in plan.nodes.iter().zip(&schedule.held).enumerate() {
         let mut polynomial = None;
         registers.push(match &node.operation {
+            Operation::Polynomial(..) if *is_held && schedule.table_owners[at] != NodeId(at) => {
+                let first = polynomials[schedule.table_owners[at].0].as_ref();
+                let sums = first.expect("an earlier polynomial").sharing(&mut frame, &node.name);
+                let q = sums.q();
+                polynomial = Some(sums);
+                Some(q)
+            }
             Operation::Polynomial(_, approximation) if *is_held => {
                 let it = approximation.polynomials.as_ref().expect("polynomials that are found");
                 let names = plan.sum_names(NodeId(at));

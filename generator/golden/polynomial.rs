@@ -25,6 +25,14 @@ impl Polynomial {
         Self { it: it.clone(), sums, highest: None }
     }
 
+    /// Returns the polynomial of another operand, with the same table, the same registers of partial sums, and the register `name` for
+    /// its value. The two polynomials are computed one after the other.
+    pub fn sharing(&self, frame: &mut Frame, name: &str) -> Self {
+        let mut sums = self.sums.clone();
+        sums[0] = frame.register(name, self.it.sums[0]);
+        Self { it: self.it.clone(), sums, highest: self.highest }
+    }
+
     /// Adds a register for the highest coefficient, which [`Polynomial::load_highest`] loads before the first sum.
     pub fn with_highest(self, frame: &mut Frame, name: &str) -> Self {
         let format = self.it.coefficients[self.it.degree()];

@@ -6,7 +6,7 @@
 
 use glint_base::config_error::ConfigError;
 use glint_base::identifier;
-use glint_config::{Config, Key, Problems, Schema, TableEntries, TableEntry, Value};
+use glint_config::{Config, Key, Problems, Schema, Shared, TableEntries, TableEntry, Value};
 use glint_plan::{ExpressionStatement, MOST_FUNCTIONS, StatedOverflow, UnitPlan, find_unit};
 
 use super::expression;
@@ -156,7 +156,8 @@ pub fn plan(config: &Config) -> Result<UnitPlan, ConfigError> {
     let statements = statements(config)?;
     let names: Vec<String> =
         keys.functions.0.iter().map(|function| function.name.clone()).collect();
-    find_unit(&names, &statements).map_err(|(number, refusal)| {
+    let is_sequential = Shared::of(config).architecture == "sequential";
+    find_unit(&names, &statements, is_sequential).map_err(|(number, refusal)| {
         let function = &keys.functions.0[number];
         let error = keys_of(function).map_or_else(
             |error| error,

@@ -148,15 +148,17 @@ impl<'p> FunctionNodes<'p> {
         loaded.any(|node| self.is_needed[node.0])
     }
 
-    /// Returns the first executed step that reads a table whose address changes in the executed step before it.
+    /// Returns the first executed step that reads a table to which the microinstruction before it does not give the right address:
+    /// it changes the address, or another polynomial addresses the table.
     fn early_read(&self, executed: &[bool]) -> Option<usize> {
         (0..executed.len()).filter(|at| executed[*at]).find(|&at| {
-            let Some(before) = executed[..at].iter().rposition(|is_executed| *is_executed) else {
-                return false;
-            };
+            let before = executed[..at].iter().rposition(|is_executed| *is_executed);
+            let addressing = before.map_or(0, |step| step + 1);
             self.schedule.steps[at].tables_read().into_iter().any(|polynomial| {
                 let address = self.plan.node(polynomial).operation.inputs()[0];
-                self.last_load(address, executed) == Some(before)
+                let changes = before.is_some() && self.last_load(address, executed) == before;
+                let owner = self.schedule.table_owners[polynomial.0];
+                changes || self.schedule.addressing(owner, addressing) != Some(polynomial)
             })
         })
     }
@@ -181,14 +183,5 @@ impl PlanStep {
             _ => false,
         };
         is_worked_out || self.loads.contains(&id)
-    }
-
-    /// Returns the polynomials whose tables the step reads.
-    fn tables_read(&self) -> Vec<NodeId> {
-        let mut read = self.coefficients.clone();
-        if let Some(StepWork::Sum { polynomial, .. }) = self.work {
-            read.push(polynomial);
-        }
-        read
     }
 }

@@ -42,6 +42,9 @@ pub struct PlanSchedule {
     /// For each node, whether it is a polynomial with a register for the highest coefficient. A block memory gives a coefficient too
     /// late in the clock for the multiplier.
     pub is_coefficient_held: Vec<bool>,
+    /// For each node of a sequential core that is a polynomial, the first polynomial with the same table. Polynomials with the same
+    /// table share its memory, the adders, and all registers except the one with the value. Other nodes have themselves.
+    pub table_owners: Vec<NodeId>,
     /// The microinstructions in the order of execution.
     pub steps: Vec<PlanStep>,
     /// For a sequential unit, the microinstructions that follow each microinstruction: `None` if the next one follows for every
@@ -51,9 +54,48 @@ pub struct PlanSchedule {
 }
 
 impl PlanSchedule {
+    /// Returns the polynomials that share the table of `owner`, the first such polynomial.
+    pub fn table_sharers(&self, owner: NodeId) -> Vec<NodeId> {
+        let mut sharers = Vec::new();
+        for (at, other) in self.table_owners.iter().enumerate() {
+            if *other == owner {
+                sharers.push(NodeId(at));
+            }
+        }
+        sharers
+    }
+
+    /// Returns the polynomial whose operand the table of `owner` gets in microinstruction number `at`. A sum needs the offset of its
+    /// operand at once. Otherwise it is the next polynomial that reads a word, because a table has the word of an address one clock
+    /// later. Microinstruction number 0 waits for `start`, and number k executes `steps[k - 1]`.
+    pub fn addressing(&self, owner: NodeId, at: usize) -> Option<NodeId> {
+        let is_own = |polynomial: &NodeId| self.table_owners[polynomial.0] == owner;
+        let present = at.checked_sub(1).and_then(|step| self.steps.get(step)?.polynomial_summed());
+        let following = self.steps.get(at..)?.iter();
+        let mut read = following.flat_map(PlanStep::tables_read);
+        present.filter(is_own).or_else(|| read.find(is_own))
+    }
+
     /// Returns the numbers of the microinstructions that follow microinstruction `at`, for each opcode, if they differ.
     pub fn dispatch(&self, at: usize) -> Option<&[usize]> {
         self.dispatches.get(at)?.as_deref()
+    }
+}
+
+impl PlanStep {
+    /// Returns the polynomials whose tables the step reads.
+    pub(super) fn tables_read(&self) -> Vec<NodeId> {
+        let mut read = self.coefficients.clone();
+        read.extend(self.polynomial_summed());
+        read
+    }
+
+    /// Returns the polynomial whose partial sum the step computes.
+    fn polynomial_summed(&self) -> Option<NodeId> {
+        match self.work {
+            Some(StepWork::Sum { polynomial, .. }) => Some(polynomial),
+            _ => None,
+        }
     }
 }
 
@@ -70,6 +112,8 @@ pub(super) struct StepPlacement<'p> {
     is_placed: Vec<bool>,
     /// The first microinstruction in which the multiplier is free.
     next_work: usize,
+    /// For each owner of a table, the first microinstruction in which another polynomial can read the table.
+    table_free: Vec<usize>,
     pub(super) schedule: PlanSchedule,
 }
 
@@ -81,8 +125,16 @@ impl<'p> StepPlacement<'p> {
         is_pipelined: bool,
     ) -> Self {
         let count = plan.nodes.len();
-        let (ready, is_placed) = (vec![0; count], vec![false; count]);
-        Self { plan, targets, is_pipelined, ready, is_placed, next_work: 0, schedule }
+        Self {
+            plan,
+            targets,
+            is_pipelined,
+            ready: vec![0; count],
+            is_placed: vec![false; count],
+            next_work: 0,
+            table_free: vec![0; count],
+            schedule,
+        }
     }
 
     /// Places the operation of `node`. All nodes before it must be placed.
@@ -145,6 +197,8 @@ impl<'p> StepPlacement<'p> {
             0 => 0,
             _ => address + 1,
         };
+        let owner = self.schedule.table_owners[node.0];
+        at = at.max(self.table_free[owner.0]);
         for gap in self.schedule.steps.len()..at {
             self.step(gap).work = Some(StepWork::Address(node));
         }
@@ -156,6 +210,8 @@ impl<'p> StepPlacement<'p> {
             at = self.free_work(at);
             self.step(at).work = Some(StepWork::Sum { polynomial: node, coefficient });
         }
+        // Another operand addresses the table one clock after the last sum.
+        self.table_free[owner.0] = at + 2;
         self.loaded(node, at);
     }
 

@@ -34,8 +34,13 @@ impl ExpressionPlan {
         }
         let targets = self.register_targets();
         let held = vec![false; self.nodes.len()];
-        let empty =
-            PlanSchedule { held, is_coefficient_held, steps: Vec::new(), dispatches: Vec::new() };
+        let empty = PlanSchedule {
+            held,
+            is_coefficient_held,
+            table_owners: self.table_owners(is_pipelined),
+            steps: Vec::new(),
+            dispatches: Vec::new(),
+        };
         let start = StepPlacement::new(self, &targets, empty, is_pipelined);
         let held = held_nodes(&start, &computed);
         let mut placement = start;
@@ -49,6 +54,29 @@ impl ExpressionPlan {
             schedule.dispatches = dispatches(self, &schedule);
         }
         schedule
+    }
+
+    /// Returns for each polynomial of a sequential core the first polynomial with the same table, and for other nodes themselves. Each
+    /// polynomial of a pipeline has a table of its own, because the pipeline reads the tables of several points in the same clock.
+    fn table_owners(&self, is_pipelined: bool) -> Vec<NodeId> {
+        let mut owners: Vec<NodeId> = (0..self.nodes.len()).map(NodeId).collect();
+        let is_read = self.read_nodes();
+        for at in (0..self.nodes.len()).filter(|at| is_read[*at] && !is_pipelined) {
+            let is_same = |other: &usize| is_read[*other] && self.have_same_table(at, *other);
+            if let Some(first) = (0..at).find(is_same) {
+                owners[at] = NodeId(first);
+            }
+        }
+        owners
+    }
+
+    /// Returns whether two nodes are polynomials with the same table and operands of the same format.
+    fn have_same_table(&self, at: usize, other: usize) -> bool {
+        let [at, other] = [at, other].map(|it| &self.nodes[it].operation);
+        let (Operation::Polynomial(x, own), Operation::Polynomial(y, others)) = (at, other) else {
+            return false;
+        };
+        self.node(*x).format == self.node(*y).format && own.polynomials == others.polynomials
     }
 
     /// Returns for each node the node whose register stores its value: for most nodes the node itself.
@@ -252,6 +280,28 @@ mod tests {
         assert_eq!(counts(true), [1]);
         // Both maxima of two operands are stored in the same clock.
         assert_eq!(counts(false), [2, 1]);
+    }
+
+    #[test]
+    fn polynomials_with_the_same_table_share_it() {
+        let plan = plan_of("sin(pi * a) * b - sin(pi * c) * d");
+        let mut polynomials = Vec::new();
+        for (at, node) in plan.nodes.iter().enumerate() {
+            if matches!(node.operation, Operation::Polynomial(..)) {
+                polynomials.push(NodeId(at));
+            }
+        }
+        let [first, second] = polynomials[..] else { panic!("two sines: {polynomials:?}") };
+        let schedule = plan.schedule(false);
+        assert_eq!(schedule.table_sharers(first), [first, second]);
+        // The table gets each operand one clock before it reads a word, and during the sums.
+        for (at, step) in schedule.steps.iter().enumerate() {
+            for polynomial in step.tables_read() {
+                assert_eq!(schedule.addressing(first, at), Some(polynomial), "{at}");
+            }
+        }
+        let pipelined = plan.schedule(true);
+        assert_eq!(pipelined.table_sharers(first), [first]);
     }
 
     #[test]

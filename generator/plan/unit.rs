@@ -53,6 +53,9 @@ pub struct UnitPlan {
 /// Finds a plan for each function, merges the plans, and compares the merged plan with them. A failure comes with the number of the
 /// function that it concerns.
 ///
+/// With `shares_tables`, one table serves all functions, also if a function reads it several times. Only a sequential core can share
+/// such a table: a pipeline reads the tables of several points in the same clock.
+///
 /// # Errors
 /// Fails if a formula has no plan, if no plan keeps the allowed errors, or if an operation of the merged plan has too many bits.
 ///
@@ -61,6 +64,7 @@ pub struct UnitPlan {
 pub fn find_unit(
     names: &[String],
     statements: &[ExpressionStatement],
+    shares_tables: bool,
 ) -> Result<UnitPlan, (usize, PlanRefusal)> {
     assert!((1..=MOST_FUNCTIONS).contains(&names.len()), "{} functions", names.len());
     let mut functions = Vec::new();
@@ -69,7 +73,8 @@ pub fn find_unit(
     }
     let operands = operand_ports(&functions);
     let results = result_ports(&functions);
-    let plan = merge::merged(&functions, &operands, &results).map_err(|refusal| (0, refusal))?;
+    let plan = merge::merged(&functions, &operands, &results, shares_tables)
+        .map_err(|refusal| (0, refusal))?;
     if !reads_opcode(&plan) {
         let message = "all functions of the unit compute the same results";
         let remedy = "keep one of them, as a configuration of the device expression";
@@ -261,7 +266,7 @@ mod tests {
     #[test]
     fn a_unit_computes_what_its_functions_compute_alone() {
         let (names, statements) = functions(8);
-        let unit = find_unit(&names, &statements).unwrap();
+        let unit = find_unit(&names, &statements, true).unwrap();
         let mut compared = 0;
         for (opcode, name) in names.iter().enumerate() {
             let statement = &unit.functions[opcode].planned.statement;
@@ -295,7 +300,7 @@ mod tests {
     #[test]
     fn functions_of_a_unit_share_its_operations() {
         let (names, statements) = functions(12);
-        let unit = find_unit(&names, &statements).unwrap();
+        let unit = find_unit(&names, &statements, false).unwrap();
         let separate: f64 =
             unit.functions.iter().map(|function| function.planned.plan.total_cells()).sum();
         let merged = unit.plan.total_cells();

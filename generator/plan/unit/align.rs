@@ -25,6 +25,14 @@ pub(super) struct MergedOperation {
     pub(super) members: Vec<Option<NodeId>>,
 }
 
+impl MergedOperation {
+    /// Returns the functions that have the operation, each with its node.
+    pub(super) fn present(&self) -> Vec<(usize, NodeId)> {
+        let nodes = self.members.iter().enumerate();
+        nodes.filter_map(|(function, node)| Some((function, (*node)?))).collect()
+    }
+}
+
 /// Returns slots for all operations of these kinds. The nodes of each plan are in the order of the slots, so that the merged plan
 /// has no circles. `kind_of` returns the kind of a node.
 ///

@@ -11,7 +11,7 @@ use glint_base::fixed::{Format, Rounding};
 use glint_formula::Enclosure;
 
 use super::align::{MergedOperation, SharedKind, shared_operations, slots};
-use super::tables::{paged, wide_enough};
+use super::tables::{PagedTable, paged, wide_enough};
 use super::{UnitFunction, opcode_bits};
 use crate::node::{Approximation, NodeId, Operation, PlanNode};
 use crate::plan::ExpressionPlan;
@@ -28,9 +28,21 @@ struct Merger<'u> {
     ports: Vec<NodeId>,
     /// For each function and each node of its plan, the node of the merged plan with its value.
     nodes: Vec<Vec<NodeId>>,
+    /// The table of all functions, if a single table serves all slots.
+    common_table: Option<SetTable>,
 }
 
-/// Returns the merged plan. Its operands are `ports`, the opcode first, and its results are words with the given formats.
+/// One table for several polynomials of functions.
+#[derive(Clone)]
+struct SetTable {
+    /// For each polynomial, its function and its node.
+    members: Vec<(usize, NodeId)>,
+    tables: Vec<Arc<Piecewise>>,
+    paged: PagedTable,
+}
+
+/// Returns the merged plan. Its operands are `ports`, the opcode first, and its results are words with the given formats. With
+/// `shares_tables`, one table serves all polynomials of shared widths. A function can read it several times, one after the other.
 ///
 /// # Errors
 /// Fails if an operation has too many bits.
@@ -38,6 +50,7 @@ pub(super) fn merged(
     functions: &[UnitFunction],
     ports: &[StatedOperand],
     results: &[(&'static str, Format)],
+    shares_tables: bool,
 ) -> Result<ExpressionPlan, PlanRefusal> {
     let mut plan = ExpressionPlan { is_shared: true, ..ExpressionPlan::default() };
     let mut nodes = Vec::new();
@@ -45,10 +58,22 @@ pub(super) fn merged(
         nodes.push(plan.operand(number, &port.name, port.format, port.domain)?);
     }
     let opcode = nodes.remove(0);
-    let mut merger =
-        Merger { functions, plan, opcode, ports: nodes, nodes: vec![Vec::new(); functions.len()] };
-    for slot in slots(&merger.sequences()) {
-        merger.add_slot(&slot)?;
+    let mut merger = Merger {
+        functions,
+        plan,
+        opcode,
+        ports: nodes,
+        nodes: vec![Vec::new(); functions.len()],
+        common_table: None,
+    };
+    let slots = slots(&merger.sequences());
+    if shares_tables {
+        let of_tables = slots.iter().filter(|slot| slot.kind == SharedKind::Table);
+        let members: Vec<(usize, NodeId)> = of_tables.flat_map(MergedOperation::present).collect();
+        merger.common_table = (!members.is_empty()).then(|| merger.set_table(&members));
+    }
+    for slot in &slots {
+        merger.add_slot(slot)?;
     }
     for (number, function) in functions.iter().enumerate() {
         merger.copy_until(number, function.planned.plan.nodes.len())?;
@@ -242,14 +267,12 @@ impl Merger<'_> {
 
     /// Adds the node of a slot, and the nodes of its functions up to it.
     fn add_slot(&mut self, slot: &MergedOperation) -> Result<(), PlanRefusal> {
-        let mut members = Vec::new();
-        for (function, node) in slot.members.iter().enumerate() {
-            if let Some(node) = node {
-                self.copy_until(function, node.0)?;
-                members.push((function, *node));
-            }
+        let members = slot.present();
+        for (function, node) in &members {
+            self.copy_until(*function, node.0)?;
         }
-        if let [_] = members[..] {
+        let is_in_common_table = slot.kind == SharedKind::Table && self.common_table.is_some();
+        if members.len() == 1 && !is_in_common_table {
             // The function alone has this operation, which is copied with the nodes that follow.
             return Ok(());
         }
@@ -386,24 +409,36 @@ impl Merger<'_> {
         Ok([word, pairs])
     }
 
-    /// Adds a table with a page for each function.
-    fn add_table(&mut self, members: &[(usize, NodeId)]) -> Result<(), PlanRefusal> {
+    /// Returns a table with a page for each of the polynomials `members`.
+    fn set_table(&self, members: &[(usize, NodeId)]) -> SetTable {
         let mut tables = Vec::new();
         for (function, node) in members {
             tables.push(table_of(self.own(*function), *node).expect("a table"));
         }
-        let table = paged(&tables);
+        let paged = paged(&tables);
+        SetTable { members: members.to_vec(), tables, paged }
+    }
+
+    /// Adds a polynomial whose table has a page for each of `members`.
+    fn add_table(&mut self, members: &[(usize, NodeId)]) -> Result<(), PlanRefusal> {
+        let set = match &self.common_table {
+            Some(common) => common.clone(),
+            None => self.set_table(members),
+        };
+        let table = set.paged;
         let mut numbers = vec![None; self.functions.len()];
         // The first page of each function, and the further pages that the top of an operand's number selects.
         let mut first_pages = vec![0; 1 << opcode_bits(self.functions.len())];
         let mut further_pages = vec![None; self.functions.len()];
         let no_further_page = self.plan.constant("zero", 0, 0)?;
-        for (member, (function, node)) in members.iter().enumerate() {
+        for (function, node) in members {
+            let same = set.members.iter().position(|member| *member == (*function, *node));
+            let member = same.expect("a polynomial of the table");
             let operand = self.own(*function).node(*node).operation.inputs()[0];
             let operand = self.nodes[*function][operand.0];
             let page_bits = table.page_bits[member];
             let bits = table.number_bits + page_bits;
-            let number = self.number(*function, operand, &tables[member], bits)?;
+            let number = self.number(*function, operand, &set.tables[member], bits)?;
             let name = &self.functions[*function].name.clone();
             let in_page = Format::unsigned(table.number_bits as i32, 0);
             numbers[*function] = Some(self.narrow(&format!("{name}_in_page"), number, in_page)?);
@@ -426,7 +461,7 @@ impl Merger<'_> {
         let address = self.narrow("place_in_table", address, table.polynomials.operand)?;
         let function = table.function();
         let values = table.polynomials.result.range();
-        let polynomials = Some(Arc::new(table.polynomials));
+        let polynomials = Some(table.polynomials);
         let approximation = Approximation { function, polynomials };
         let value = self.plan.polynomial("curve", address, approximation, values)?;
         for (function, node) in members {

@@ -8,8 +8,9 @@ use glint_approximate::{
 use glint_base::fixed::Format;
 
 /// A table whose pages are the tables of functions with the same widths.
+#[derive(Clone)]
 pub(super) struct PagedTable {
-    pub(super) polynomials: Piecewise,
+    pub(super) polynomials: Arc<Piecewise>,
     /// The number of bits of an operand's number within a page.
     pub(super) number_bits: u32,
     /// The first page of each function, in the order of the tables.
@@ -92,7 +93,7 @@ pub(super) fn paged(tables: &[Arc<Piecewise>]) -> PagedTable {
         sums,
         bound: f64::INFINITY,
     };
-    PagedTable { polynomials, number_bits, pages, page_bits }
+    PagedTable { polynomials: Arc::new(polynomials), number_bits, pages, page_bits }
 }
 
 /// Returns a format with the same fraction bits that can represent all values of two formats.
