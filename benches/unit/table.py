@@ -61,14 +61,18 @@ def configurations():
 
 
 def measured(path, seeds):
-    """Look-up tables, multipliers, block memories, MHz, and the clocks from a start to its result."""
+    """Look-up tables, multipliers, block memories, MHz, and the clocks from a start to its result: of each function for a sequential unit."""
     found = json.loads(glint("synth", path, "--target", "ecp5", "--seeds", seeds, "--json", "--quiet"))
     figures = found["synthesis"][0]["targets"][0]
     area = figures["area"]
     glint("generate", path, "--out", PLACE / "out", "--force")
     manifest = json.loads((PLACE / f"out/rtl_out/{path.stem}/{path.stem}.json").read_text())
     pipeline = manifest.get("pipeline")
-    clocks = pipeline["latency"] if pipeline else manifest["timing"]["start_to_valid"]
+    functions = {function["name"]: function["start_to_done"] for function in manifest.get("functions", [])}
+    if pipeline:
+        clocks = pipeline["latency"]
+    else:
+        clocks = functions or manifest["timing"]["start_to_valid"]
     return [area["luts"], area["dsps"], area["block_rams"], round(figures["frequency"]["median"]), clocks]
 
 
@@ -83,6 +87,11 @@ def main():
     for name in [*names, "unit"]:
         rows[name] = [measured(paths[name, architecture], arguments.seeds) for architecture in ARCHITECTURES]
         print(name, rows[name], file=sys.stderr, flush=True)
+    in_unit = rows["unit"][0][-1]
+    for name in names:
+        alone = rows[name][0]
+        alone[-1] = f"{alone[-1]}, in the unit {in_unit[name]}"
+    rows["unit"][0][-1] = f"{min(in_unit.values())} to {max(in_unit.values())}"
     heads = ["LUT", "DSP", "RAM", "MHz", "clocks"]
     lines = [
         "| core | sequential: " + " | ".join(heads) + " | pipelined: " + " | ".join(heads) + " |",
