@@ -14,38 +14,37 @@ mod exponential;
 mod nearest;
 mod quotient;
 mod rational;
+mod result;
 mod root;
 mod shape;
+mod table;
 mod wave;
+
+pub(crate) use table::has_functions_of_operands;
 
 use std::collections::HashMap;
 use std::mem;
 use std::sync::Arc;
 
-use glint_approximate::{Curve, Outside, Piecewise, SharedWidths, TargetFunction};
-use glint_base::fixed::{Format, Rounding, exp2, nearest, shifted_left};
-use glint_formula::{Comparison, Enclosure, Expression, Function, Kind, Operator, RBig};
+use glint_approximate::{Piecewise, SharedWidths, TargetFunction};
+use glint_base::fixed::{Rounding, exp2, nearest};
+use glint_formula::{Comparison, Enclosure, Expression, Function, Kind, Operator};
 
 use super::facts::has_fact;
 use super::guarded::GuardedFormula;
-use super::node::{Approximation, NodeId, Operation, PlanNode, StatedValue, ValueAccuracy};
+use super::node::{NodeId, Operation, PlanNode, StatedValue, ValueAccuracy};
 use super::order;
 use super::plan::ExpressionPlan;
-use super::range::{LIMIT_THE_OPERANDS, RangeMemo};
+use super::range::RangeMemo;
 use super::refusal::PlanRefusal;
-use super::statement::{
-    ExpressionStatement, HALF_A_UNIT, StatedOverflow, StatedResult, StatedWidth,
-};
+use super::statement::ExpressionStatement;
 use super::uses::{PartUses, reads_always};
 use errors::ErrorMemo;
-use nearest::has_no_function;
 use rational::{
     QuotientParts, ceiling_of, floor_of_quotient, rational_quotient, with_single_division,
 };
-use shape::{
-    core_of, dominators, dyadic, floor_of, is_limit_of, is_logarithm_of_multiple, is_size_of,
-    modulus_exponent, number, power_of_two, products_of,
-};
+use shape::{core_of, dyadic, floor_of, modulus_exponent, number, power_of_two, products_of};
+use table::is_short_operand;
 
 /// The widest operand of a table of polynomials, in bits. A wider one is shortened first.
 const WIDEST_OPERAND: u32 = 20;
@@ -241,107 +240,6 @@ pub(super) fn lowered(
 }
 
 impl<'s> Lowering<'s> {
-    /// Returns the node of the result with the index `number`, rounded to the result's fraction bits. Fails if a part has too
-    /// many bits, no finite values, or no rule.
-    fn result(&mut self, number: usize) -> Result<NodeId, PlanRefusal> {
-        let result = &self.statement.results[number];
-        let node = match self.nearest_where_needed(result)? {
-            Some(node) => node,
-            None => self.part(&result.formula)?,
-        };
-        let values = self.range(&result.formula)?;
-        let frac = result.fraction as i32;
-        let unit = exp2(frac);
-        let places = self.plan.node(node).format.frac - frac;
-        let range = self.plan.node(node).range;
-        let rounded = |raw: i128| match places {
-            1.. => Rounding::Nearest.shift(raw, places),
-            _ => shifted_left(raw, -places).unwrap_or(if raw < 0 { i128::MIN } else { i128::MAX }),
-        };
-        // Neither the formula with its allowed error nor the node has values beyond these.
-        let low = ((values.low * unit - result.error).ceil() as i128).max(rounded(range.0));
-        let high = ((values.high * unit + result.error).floor() as i128).min(rounded(range.1));
-        let format = Format::holding(low.min(high), high.max(low), frac);
-        let name = format!("{}_rounded", result.name);
-        let node = self.plan.narrow(&name, node, format, Rounding::Nearest)?;
-        match self.plan.node(node).operation {
-            Operation::Operand(_) => self.plan.copy(&name, node),
-            _ => Ok(node),
-        }
-    }
-
-    /// Returns the node of a result that is the nearest value: if no larger error is allowed, or if the result is a quotient of so many
-    /// bits that the product with a reciprocal is too wide. Returns `None` for another result, and for a formula that is no quotient
-    /// and no root of exact numbers. Fails if a part has too many bits or no finite values.
-    fn nearest_where_needed(
-        &mut self,
-        result: &StatedResult,
-    ) -> Result<Option<NodeId>, PlanRefusal> {
-        let is_nearest =
-            result.error <= HALF_A_UNIT || self.is_wide_quotient(result).unwrap_or(false);
-        match is_nearest {
-            true => {
-                let node = self.nearest(&result.formula, result.fraction as i32);
-                node.map_err(|refusal| refusal.at(&result.formula.span))
-            }
-            false => Ok(None),
-        }
-    }
-
-    /// Returns whether a result is a quotient with more bits than a product with a reciprocal should have. Fails if the formula has no
-    /// finite values.
-    fn is_wide_quotient(&self, result: &StatedResult) -> Result<bool, PlanRefusal> {
-        if !matches!(result.formula.kind, Kind::Binary(Operator::Div, ..)) {
-            return Ok(false);
-        }
-        let values = self.range(&result.formula)?;
-        let largest = values.low.abs().max(values.high.abs());
-        Ok(largest * exp2(result.fraction as i32) >= exp2(WIDEST_RATIO))
-    }
-
-    /// Returns the node of the result with the index `number` in its stated width, or `node` itself if no width is stated.
-    /// Fails if the values of `node` exceed the width and the statement refuses such values.
-    fn in_stated_width(&mut self, number: usize, node: NodeId) -> Result<NodeId, PlanRefusal> {
-        let StatedResult { name, width, .. } = &self.statement.results[number];
-        let Some(StatedWidth { format, overflow }) = width else { return Ok(node) };
-        let own = self.plan.node(node).format;
-        let (low, high) = own.range();
-        let is_refused = matches!(overflow, StatedOverflow::Refuse);
-        if is_refused && !(format.holds(low) && format.holds(high)) {
-            let [low, high] = [low, high].map(|raw| own.to_f64(raw));
-            let message = format!(
-                "`{name}` has {} bits ({format}), and intervals show only that its values are from {low} to {high}, \
-                 which need {own}",
-                format.width()
-            );
-            let remedy = "give the result more bits, or set overflow = \"saturate\" if the values always fit or may \
-                          be limited, or \"wrap\"";
-            return Err(PlanRefusal::new(message, remedy));
-        }
-        self.plan.narrow(&format!("{name}_in_width"), node, *format, Rounding::Truncate)
-    }
-
-    /// Returns the node of the result with the index `number`, limited to its stated format if the result saturates. For any
-    /// other result, returns `node` itself. Fails if a node has too many bits.
-    fn saturated(&mut self, number: usize, node: NodeId) -> Result<NodeId, PlanRefusal> {
-        let StatedResult { name, width, .. } = &self.statement.results[number];
-        let Some(StatedWidth { format, overflow: StatedOverflow::Saturate(_) }) = width else {
-            return Ok(node);
-        };
-        let (low, high) = format.range();
-        let range = self.plan.node(node).range;
-        let mut limited = node;
-        if range.0 < low {
-            let least = self.plan.constant(&format!("{name}_least"), low, format.frac)?;
-            limited = self.plan.maximum(&format!("{name}_not_below"), limited, least)?;
-        }
-        if range.1 > high {
-            let most = self.plan.constant(&format!("{name}_most"), high, format.frac)?;
-            limited = self.plan.minimum(&format!("{name}_limited"), limited, most)?;
-        }
-        Ok(limited)
-    }
-
     /// Returns an interval that contains the values of a part, for all operands for which its value matters. Fails if the values
     /// have no finite limits.
     fn range(&self, part: &Expression) -> Result<Enclosure, PlanRefusal> {
@@ -540,110 +438,6 @@ impl<'s> Lowering<'s> {
         }
     }
 
-    /// Returns the part of `part` whose value a table reads: `core`, or a part that dominates it. A table over the values of `core`
-    /// would be large where a part is limited, or where a root, a reciprocal or a logarithm spans octaves. For example,
-    /// `sqrt(max(0, x)) + 3` gives `sqrt(max(0, x))`. Fails if a part has no finite values.
-    fn table_operand(
-        &mut self,
-        part: &Expression,
-        core: &Expression,
-    ) -> Result<Expression, PlanRefusal> {
-        let mut operand = core.clone();
-        let inner = dominators(part, core);
-        for (at, dominator) in inner.iter().enumerate() {
-            if is_limit_of(dominator, &operand) {
-                operand = (*dominator).clone();
-            } else if is_size_of(dominator, &operand) {
-                // A root or a logarithm of an absolute value is computed octave by octave.
-                let mut outer = inner[at + 1..].iter().chain([&part]);
-                if outer.any(|outer| {
-                    is_singular(outer, dominator) || is_logarithm_of_multiple(outer, dominator)
-                }) {
-                    operand = (*dominator).clone();
-                }
-            }
-        }
-        loop {
-            if is_singular(part, &operand) {
-                // The whole part is computed octave by octave.
-                return Ok(operand);
-            }
-            let mut widest = None;
-            for dominator in dominators(part, &operand) {
-                let is_sum = products_of(dominator, &operand).is_some();
-                if self.spans_octaves(dominator, &operand)?
-                    || is_sum && self.spans_octaves(part, dominator)?
-                {
-                    widest = Some(dominator.clone());
-                }
-            }
-            match widest {
-                Some(dominator) => operand = dominator,
-                None => return Ok(operand),
-            }
-        }
-    }
-
-    /// Returns whether `part` is singular at 0 as a function of `core`, and the values of `core` span several octaves. Fails if
-    /// `core` has no finite values.
-    fn spans_octaves(&self, part: &Expression, core: &Expression) -> Result<bool, PlanRefusal> {
-        if !is_singular(part, core) {
-            return Ok(false);
-        }
-        let values = self.range(core)?;
-        Ok(values.low >= 0.0 && values.high >= values.low * MANY_OCTAVES)
-    }
-
-    /// Returns whether a table over the values of `core` can compute `part`. It cannot if a case of a choice has no value outside
-    /// its condition, as in `if(x > 0, ln(x), -8)`, or if a remainder jumps and the core is too wide for a table. Fails if the
-    /// core has too many bits, no finite values, or no rule.
-    fn can_be_one_table(
-        &mut self,
-        part: &Expression,
-        core: &Expression,
-    ) -> Result<bool, PlanRefusal> {
-        let has_choice = part.has(&|kind| matches!(kind, Kind::If(..)));
-        let has_remainder = part.has(&|kind| matches!(kind, Kind::Binary(Operator::Mod, ..)));
-        if !has_choice && !has_remainder {
-            return Ok(true);
-        }
-        let node = self.part(core)?;
-        let format = self.plan.node(node).format;
-        if has_remainder && format.width() > WIDEST_OPERAND {
-            return Ok(false);
-        }
-        let function = part.substitute(core, &Expression::operand("x"), &part.span);
-        let domain = self.raw_domain(node, self.range(core)?, 0.0);
-        Ok(function_range(&function, format, domain).is_some())
-    }
-
-    /// Returns the node of `part`, which is a function of the value of `core` alone, by a rewriting or by a table. Fails if a part
-    /// has too many bits, no finite values, or no rule.
-    fn function_of(&mut self, part: &Expression, core: &Expression) -> Result<NodeId, PlanRefusal> {
-        let function = part.substitute(core, &Expression::operand("x"), &part.span);
-        let is_kept = self.guards.style.keeps_functions && is_short_operand(self.statement, core);
-        if !is_kept && let Some(node) = self.rewritten(part, core, &function)? {
-            return Ok(node);
-        }
-        let node = self.part(core)?;
-        let range = self.range(core)?;
-        let format = self.plan.node(node).format;
-        if let Kind::Binary(Operator::Div, a, b) = &part.kind
-            && b.varies()
-            && function_range(&function, format, self.raw_domain(node, range, 0.0)).is_none()
-        {
-            // A condition excludes the divisor 0 between the smallest and the largest divisor.
-            return self.quotient(a, b, part);
-        }
-        let node = self.rounding(format.frac.min(self.finest), |own, frac| {
-            if format.width() <= WIDEST_OPERAND {
-                return Ok(node);
-            }
-            own.plan.shorten_for_table("operand", node, frac)
-        })?;
-        self.function("curve", node, &function, range)
-    }
-
     /// Returns the node of a function for which a rewriting exists: a scaled direction, a power, a sine or a cosine, a
     /// logarithm, or an exponential function. `function` is the part `part` in which `x` replaces `core`. Returns `None` for
     /// any other function. Fails if a part has too many bits, no finite values, or no rule.
@@ -810,56 +604,6 @@ impl<'s> Lowering<'s> {
         }
     }
 
-    /// Returns whether the dividend and the divisor of a quotient are sums, products and choices of operands, which can be exact.
-    fn is_exact_quotient(quotient: &QuotientParts) -> bool {
-        [&quotient.dividend, &quotient.divisor].into_iter().all(has_no_function)
-    }
-
-    /// Returns the node of the remainder of a quotient p / q by the constant `modulus`, which is the remainder of p by q · `modulus`,
-    /// divided by q. `part` is the whole part. Fails if a part has too many bits, no finite values, or no rule.
-    fn remainder_of_quotient(
-        &mut self,
-        quotient: &QuotientParts,
-        modulus: &Expression,
-        part: &Expression,
-    ) -> Result<NodeId, PlanRefusal> {
-        let binary = |operator, a: &Expression, b: &Expression| {
-            let kind = Kind::Binary(operator, Arc::new(a.clone()), Arc::new(b.clone()));
-            Expression::new(kind, part.span.clone())
-        };
-        let QuotientParts { dividend, divisor } = quotient;
-        let modulus = match *modulus == number("1") {
-            true => divisor.clone(),
-            false => binary(Operator::Mul, modulus, divisor),
-        };
-        let remainder = binary(Operator::Mod, dividend, &modulus);
-        match divisor.varies() {
-            true => self.quotient(&remainder, divisor, part),
-            false => self.part(&binary(Operator::Div, &remainder, divisor)),
-        }
-    }
-
-    /// Returns the nodes of the greatest multiple of 2^`exponent` that is not above `a`, and of the remainder. Both are exact. For
-    /// example, 5.75 with the exponent 1 gives 4 and 1.75. Fails if a part has too many bits, no finite values, or no rule.
-    fn division(&mut self, a: &Expression, exponent: i32) -> Result<[NodeId; 2], PlanRefusal> {
-        let a = self.part(a)?;
-        if !self.is_exact(a) {
-            // A value just below an integer can be rounded to the integer, and the result would be wrong by a whole unit.
-            return Err(PlanRefusal::new(
-                "Glint computes an integer part or a remainder only of a value that is not rounded",
-                "use sums, differences and products of operands inside it, with constants such as 0.75",
-            ));
-        }
-        let scaled = self.plan.scale("scaled", a, -exponent)?;
-        if self.plan.node(scaled).format.frac <= 0 {
-            // Every value is a multiple of the divisor.
-            return Ok([a, self.plan.constant("zero", 0, 0)?]);
-        }
-        let [whole, fraction] = self.plan.split("remainder", scaled)?;
-        let whole = self.plan.scale("whole", whole, exponent)?;
-        Ok([whole, self.plan.scale("remainder", fraction, exponent)?])
-    }
-
     /// Returns the node of a factor of a product, shortened if it has more bits than a multiplier takes. Fails if a part has
     /// too many bits, no finite values, or no rule.
     fn factor(&mut self, part: &Expression) -> Result<NodeId, PlanRefusal> {
@@ -872,89 +616,6 @@ impl<'s> Lowering<'s> {
             own.plan.shorten("factor", node, frac, Rounding::Nearest)
         })
     }
-
-    /// Returns the node of a function of `node`, computed by polynomials. `range` must contain the values of `node` for all
-    /// operands for which a result is promised. Fails if `node` has only one value, or if the function is not finite for some
-    /// value.
-    fn function(
-        &mut self,
-        name: &str,
-        node: NodeId,
-        function: &Expression,
-        range: Enclosure,
-    ) -> Result<NodeId, PlanRefusal> {
-        if range.low == range.high
-            && let Some(value) = function_of_number(function, range.low)
-        {
-            return self.number(&value);
-        }
-        let operand = self.plan.node(node).format;
-        // The node may differ from its exact value by the roundings before it.
-        let slack = if self.is_exact(node) { 0.0 } else { self.largest_error(node) };
-        let mut domain = self.raw_domain(node, range, slack);
-        if function_range(function, operand, domain).is_none() {
-            // For example, a root below 0. The proof decides whether the node can have such values.
-            domain = self.raw_domain(node, range, 0.0);
-        }
-        let (first, last) = domain;
-        if last <= first {
-            return Err(PlanRefusal::new(
-                "this part has only one value",
-                "write the value as a number",
-            ));
-        }
-        let finest = self.finest;
-        self.rounding(finest + 2, |own, frac| own.approximation(name, node, function, domain, frac))
-    }
-
-    /// Returns the first and the last raw value that `node` can have if its exact value lies within `range`, and differs from the
-    /// node by at most `slack` units.
-    fn raw_domain(&self, node: NodeId, range: Enclosure, slack: f64) -> (i64, i64) {
-        let node = self.plan.node(node);
-        let unit = exp2(node.format.frac);
-        let (low, high) = node.range;
-        let first = ((range.low * unit - slack).ceil() as i128).max(low);
-        let last = ((range.high * unit + slack).floor() as i128).min(high);
-        (first as i64, last as i64)
-    }
-
-    /// Adds a function of `node` with `frac` fraction bits, for the raw values of `node` in `domain`, and returns the new node.
-    /// Fails if the function is not finite on the domain.
-    fn approximation(
-        &mut self,
-        name: &str,
-        node: NodeId,
-        function: &Expression,
-        domain: (i64, i64),
-        frac: i32,
-    ) -> Result<NodeId, PlanRefusal> {
-        let operand = self.plan.node(node).format;
-        let fraction = u32::try_from(frac).unwrap_or(0);
-        let target = TargetFunction {
-            curve: Curve::Formula(function.clone()),
-            domain,
-            operand,
-            outside: Outside::Anything,
-            fraction,
-            error: self.guards.style.table_error,
-        };
-        let values = function_range(function, operand, domain).ok_or_else(|| {
-            let [from, to] = [domain.0, domain.1].map(|raw| operand.to_f64(raw.into()));
-            let formula = function.python();
-            let message = format!(
-                "this is not finite, or has no value, for some of the operands: {formula} for x from {from} to {to}"
-            );
-            PlanRefusal::new(message, LIMIT_THE_OPERANDS)
-        })?;
-        let unit = exp2(fraction as i32);
-        let values = (
-            (values.low * unit - target.error).floor() as i128,
-            (values.high * unit + target.error).ceil() as i128,
-        );
-        let polynomials = self.found.get(&target);
-        let approximation = Approximation { function: target, polynomials };
-        self.plan.polynomial(name, node, approximation, values)
-    }
 }
 
 /// Returns 1 / `divisor`.
@@ -962,56 +623,4 @@ fn reciprocal_of(divisor: &Expression) -> Expression {
     let one = Arc::new(number("1"));
     let kind = Kind::Binary(Operator::Div, one, Arc::new(divisor.clone()));
     Expression::new(kind, divisor.span.clone())
-}
-
-/// Returns whether `part` is a logarithm, a root or a reciprocal of `core`, or a product of roots and reciprocals. None of these has a
-/// finite slope at 0.
-fn is_singular(part: &Expression, core: &Expression) -> bool {
-    let function = part.substitute(core, &Expression::operand("x"), &part.span);
-    root::power_of(&function).is_some_and(|power| power.is_singular())
-        || exponential::factor_of_logarithm(&function).is_some()
-}
-
-/// Returns whether a part is an operand with few enough bits for a table.
-fn is_short_operand(statement: &ExpressionStatement, part: &Expression) -> bool {
-    let Kind::Operand(name) = &part.kind else { return false };
-    let mut operands = statement.operands.iter();
-    operands.any(|operand| operand.name == *name && operand.format.width() <= WIDEST_OPERAND)
-}
-
-/// Returns whether a formula of the statement has a function of a single operand that is not computed by a few products. For
-/// example, `sqrt(x) * y` has one.
-pub(super) fn has_functions_of_operands(statement: &ExpressionStatement) -> bool {
-    let is_function = |part: &Expression| {
-        let core = core_of(part);
-        let is_by_products =
-            products_of(part, core).is_some_and(|products| products <= MOST_PRODUCTS);
-        is_short_operand(statement, core) && !is_by_products
-    };
-    statement.results.iter().any(|result| result.formula.count(&is_function) > 0)
-}
-
-/// Returns a function of x with a number in place of x. Returns `None` if the number is not finite.
-fn function_of_number(function: &Expression, number: f64) -> Option<Expression> {
-    let value = RBig::try_from(number).ok()?;
-    let value = shape::number(&value.to_string());
-    Some(function.substitute(&Expression::operand("x"), &value, &function.span))
-}
-
-/// Returns limits of the values of a function of x over the raw domain. Returns `None` if the limits are not finite.
-fn function_range(function: &Expression, operand: Format, domain: (i64, i64)) -> Option<Enclosure> {
-    const PIECES: i64 = 64;
-    let (first, last) = domain;
-    let length = last - first;
-    let mut total: Option<Enclosure> = None;
-    for piece in 0..PIECES {
-        let end = |at: i64| {
-            let way = i128::from(length) * i128::from(at) / i128::from(PIECES);
-            operand.to_f64(i128::from(first) + way)
-        };
-        let x = Enclosure::between(end(piece), end(piece + 1));
-        let value = function.enclose(&[("x", x)]).ok().filter(|value| value.is_finite())?;
-        total = Some(total.map_or(value, |total| total.hull(value)));
-    }
-    total
 }

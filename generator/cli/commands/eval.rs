@@ -12,6 +12,7 @@ use clap::Args;
 use serde::Serialize;
 use serde_json::{Value, json};
 
+use self::batch::BatchSubject;
 use self::function::NamedFunction;
 use super::{Loaded, load_one};
 use crate::failure::Failure;
@@ -31,6 +32,7 @@ Examples:
   glint eval sfu.toml opcode=log2 x=2            a function of a unit, by its own names and formats
   glint eval softmax4.toml v=0.5,0,0,-1          the numbers of a list; `v[0]=0.5` gives one of them
   glint eval my_core.toml --batch points.csv     a row of results for each row of operands
+  glint eval sfu.toml opcode=log2 --batch x.csv  the same for a function of a unit
   glint setup my_core.toml --batch lines.csv | glint eval my_core.toml --batch -
   glint eval my_core.toml --typical --json       a point with a visible highlight, for scripts")]
 pub struct Arguments {
@@ -69,7 +71,15 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
                 "the configuration and --batch name the same file: give --batch another file"
             )
         }
-        Some(path) => batch::batch(output, &one, &given, path),
+        Some(path) => {
+            let of_core = || {
+                let contract = one.core.contract.as_ref();
+                let results = contract.outputs().iter().map(|it| it.name.clone()).collect();
+                BatchSubject { contract, given: &given, results }
+            };
+            let subject = function.as_ref().map_or_else(of_core, NamedFunction::batch_subject);
+            batch::batch(output, &one, &subject, path)
+        }
         None => point(output, &one, function.as_ref(), &given, arguments.typical),
     }
 }

@@ -152,7 +152,29 @@ pub fn jump_if(condition: Signal<'_>, to: &str) -> StepSetting {
 }
 
 /// Jumps ahead to the microinstruction that the operand `selector` selects by its bits: number 0 of `to`, number 1, and so on. For
-/// example, the opcode of a unit selects the microprogram of a function: `dispatch(opcode.q(), &["add", "multiply"])`.
+/// example, an opcode selects whether a device adds or subtracts:
+///
+/// ```
+/// use glint_base::fixed::Format;
+/// use glint_rtl::dsl::{Designer, dispatch, end, step, valid};
+///
+/// let d = Designer::new("adder");
+/// let opcode = d.operand("opcode", Format::BIT);
+/// let [a, b] = ["a", "b"].map(|name| d.operand(name, Format::unsigned(8, 0)));
+/// let sum = d.add("sum", a.q(), b.q());
+/// let difference = d.sub("difference", a.q(), b.q());
+/// let mux = d.mux("chosen", [sum, difference]);
+/// let result = d.register("result", mux.out().format());
+/// result.takes(mux.out());
+/// d.output("result_out", result.q());
+/// d.microprogram([
+///     step("operands", [dispatch(opcode.q(), &["add", "subtract"])]),
+///     step("add", [mux.pick(sum), result.load(), dispatch(opcode.q(), &["result", "result"])]),
+///     step("subtract", [mux.pick(difference), result.load()]),
+///     step("result", [valid(), end()]),
+/// ]);
+/// assert!(d.finish().is_ok());
+/// ```
 ///
 /// `selector` must be the output of an operand's register, and `to` must have a name for each value of its bits. All dispatches of
 /// a microprogram have the same selector. [`Designer::finish`] reports a mistake otherwise.

@@ -1,7 +1,7 @@
 use super::{Delays, Goal, IntervalGoal, Options, PipelineError, PipelineErrorKind, pipeline};
 use crate::blocks::divider::Divider;
 use crate::dsl::fixture::design;
-use crate::dsl::{dispatch, jump_if, loop_while, step, wait_for_start};
+use crate::dsl::{dispatch, loop_while, step, wait_for_start};
 use crate::netlist::{Design, Driver, Net, NetId, NetlistRegister, Op, RegId};
 use glint_base::fixed::{Format, Overflow, Rounding};
 use glint_base::target::Timing;
@@ -126,10 +126,9 @@ fn two_functions() -> Design {
         doubled.takes(wrapped("twice", d.add("double", x.q(), x.q())));
         let result = d.choose("result", opcode.q(), [incremented.q(), doubled.q()]);
         d.output("result_out", result);
-        let one_bit = d.raw_constant("one_bit", 1, Format::BIT);
         vec![
             step("choose", [dispatch(opcode.q(), &["increment", "double"])]),
-            step("increment", [incremented.load(), jump_if(one_bit, "result")]),
+            step("increment", [incremented.load(), dispatch(opcode.q(), &["result", "result"])]),
             step("double", [doubled.load()]),
         ]
     })

@@ -1,4 +1,5 @@
-//! Rewrites the integer part of a quotient, floor(a / b), and the remainder a % b, so that both are exact.
+//! Rewrites integer parts and remainders so that they are exact. For example, floor(a) and a % 4 are bits of a value, and
+//! floor(a / b) and a % b come from a quotient.
 //!
 //! A product with a reciprocal from a table gives an estimate of the quotient with an error below a quarter. The estimate minus a
 //! quarter, rounded down, is the integer part or one less. The dividend minus this integer times the divisor is the remainder, or
@@ -10,6 +11,7 @@ use std::sync::Arc;
 use glint_base::fixed::{Format, Rounding, exp2};
 use glint_formula::{Comparison, Enclosure, Expression, Function, Kind, Operator, TextSpan};
 
+use super::nearest::has_no_function;
 use super::rational::{QuotientParts, quotient_of};
 use super::shape::number;
 use super::{FixedGuard, KnownPart, Lowering};
@@ -40,6 +42,60 @@ fn is_negative(part: &Expression) -> Comparison {
 }
 
 impl Lowering<'_> {
+    /// Returns whether the dividend and the divisor of a quotient are sums, products and choices of operands, which can be exact.
+    pub(super) fn is_exact_quotient(quotient: &QuotientParts) -> bool {
+        [&quotient.dividend, &quotient.divisor].into_iter().all(has_no_function)
+    }
+
+    /// Returns the node of the remainder of a quotient p / q by the constant `modulus`, which is the remainder of p by q · `modulus`,
+    /// divided by q. `part` is the whole part. Fails if a part has too many bits, no finite values, or no rule.
+    pub(super) fn remainder_of_quotient(
+        &mut self,
+        quotient: &QuotientParts,
+        modulus: &Expression,
+        part: &Expression,
+    ) -> Result<NodeId, PlanRefusal> {
+        let binary = |operator, a: &Expression, b: &Expression| {
+            let kind = Kind::Binary(operator, Arc::new(a.clone()), Arc::new(b.clone()));
+            Expression::new(kind, part.span.clone())
+        };
+        let QuotientParts { dividend, divisor } = quotient;
+        let modulus = match *modulus == number("1") {
+            true => divisor.clone(),
+            false => binary(Operator::Mul, modulus, divisor),
+        };
+        let remainder = binary(Operator::Mod, dividend, &modulus);
+        match divisor.varies() {
+            true => self.quotient(&remainder, divisor, part),
+            false => self.part(&binary(Operator::Div, &remainder, divisor)),
+        }
+    }
+
+    /// Returns the nodes of the greatest multiple of 2^`exponent` that is not above `a`, and of the remainder. Both are exact. For
+    /// example, 5.75 with the exponent 1 gives 4 and 1.75. Fails if a part has too many bits, no finite values, or no rule.
+    pub(super) fn division(
+        &mut self,
+        a: &Expression,
+        exponent: i32,
+    ) -> Result<[NodeId; 2], PlanRefusal> {
+        let a = self.part(a)?;
+        if !self.is_exact(a) {
+            // A value just below an integer can be rounded to the integer, and the result would be wrong by a whole unit.
+            return Err(PlanRefusal::new(
+                "Glint computes an integer part or a remainder only of a value that is not rounded",
+                "use sums, differences and products of operands inside it, with constants such as 0.75",
+            ));
+        }
+        let scaled = self.plan.scale("scaled", a, -exponent)?;
+        if self.plan.node(scaled).format.frac <= 0 {
+            // Every value is a multiple of the divisor.
+            return Ok([a, self.plan.constant("zero", 0, 0)?]);
+        }
+        let [whole, fraction] = self.plan.split("remainder", scaled)?;
+        let whole = self.plan.scale("whole", whole, exponent)?;
+        Ok([whole, self.plan.scale("remainder", fraction, exponent)?])
+    }
+
     /// Returns an equivalent comparison without a quotient on one side, if the divisor is not 0 wherever the comparison matters.
     /// For example, `x / y > 2` becomes `x > 2 * y`. Products of operands are exact, so that the comparison is decided without
     /// rounding. Returns `None` if no side is a quotient with such a divisor.

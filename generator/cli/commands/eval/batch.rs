@@ -31,19 +31,28 @@ struct PointResult {
     inside: bool,
 }
 
+/// What the rows of a CSV file are computed with: a core, or a function of a unit.
+pub struct BatchSubject<'a> {
+    pub contract: &'a dyn Contract,
+    /// The raw operands on the command line, which apply to all rows.
+    pub given: &'a [Option<i64>],
+    /// The names of the results, in the order of the contract.
+    pub results: Vec<String>,
+}
+
 /// Computes every row of a CSV file with the golden model's arithmetic and with the formula in f64. If the device computes
-/// lines, the report has all points of each line. The operands in `given` apply to all rows.
+/// lines, the report has all points of each line.
 ///
 /// # Errors
 /// Fails if the file cannot be read, if a column is unknown or given twice, or if a value is not valid.
 pub fn batch(
     output: OutputOptions,
     one: &Loaded,
-    given: &[Option<i64>],
+    subject: &BatchSubject,
     path: &Path,
 ) -> Result<bool> {
-    let contract = one.core.contract.as_ref();
-    let (mut text, mut json) = (headings(contract), Vec::new());
+    let BatchSubject { contract, given, .. } = *subject;
+    let (mut text, mut json) = (headings(subject), Vec::new());
     let for_people = output.is_for_people();
     let conditional = conditional_outputs(contract);
     let mut row = PointResult { conditional, ..PointResult::default() };
@@ -52,13 +61,13 @@ pub fn batch(
         if for_people {
             append(contract, row, &mut text);
         } else {
-            json.push(as_json(contract, row));
+            json.push(as_json(subject, row));
         }
     };
     rows::read(
         path,
         |headings| {
-            let columns = columns(one, given, headings.iter())?;
+            let columns = columns(contract, given, headings.iter())?;
             missing = missing_columns(contract, given, &columns);
             Ok(columns)
         },
@@ -100,11 +109,11 @@ impl CommandReport for EvaluatedPoints<'_> {
 /// Returns the index of the operand for each column. It is `None` for a column of real values, such as `real_cos_gamma`, which
 /// `glint setup` writes and this command ignores.
 fn columns<'a>(
-    one: &Loaded,
+    contract: &dyn Contract,
     given: &[Option<i64>],
     headings: impl Iterator<Item = &'a str>,
 ) -> Result<Vec<Option<usize>>> {
-    let known = one.core.contract.operands();
+    let known = contract.operands();
     let mut columns = Vec::new();
     for heading in headings {
         let at = match operands::position(known, heading) {
@@ -188,7 +197,8 @@ fn points(
 
 /// Returns the headings with a newline. Operands, `f` and formulas are real values. An output is a raw integer; if it has
 /// fraction bits, its heading begins with `raw_`.
-fn headings(contract: &dyn Contract) -> String {
+fn headings(subject: &BatchSubject) -> String {
+    let contract = subject.contract;
     let mut headings: Vec<String> =
         contract.operands().iter().map(|operand| operand.name.clone()).collect();
     let has_f = contract.highlight().is_some();
@@ -198,21 +208,21 @@ fn headings(contract: &dyn Contract) -> String {
     if has_f {
         headings.push("f".to_owned());
     }
-    for output in contract.outputs() {
+    for (output, name) in contract.outputs().iter().zip(&subject.results) {
         headings.push(match output.format.frac {
-            0 => output.name.clone(),
-            _ => format!("raw_{}", output.name),
+            0 => name.clone(),
+            _ => format!("raw_{name}"),
         });
     }
     if has_f {
         headings.push("formula_f".to_owned());
     }
-    for output in contract.outputs() {
-        headings.push(format!("formula_{}", output.name));
+    for name in &subject.results {
+        headings.push(format!("formula_{name}"));
     }
     headings.push("inside_the_domain".to_owned());
     for number in conditional_outputs(contract) {
-        headings.push(format!("inside_where_{}", contract.outputs()[number].name));
+        headings.push(format!("inside_where_{}", subject.results[number]));
     }
     headings.join(",") + "\n"
 }
@@ -267,14 +277,15 @@ fn decimal(value: f64, text: &mut String) {
     write!(text, "{value},").expect("a text takes all that is written");
 }
 
-fn as_json(contract: &dyn Contract, row: &PointResult) -> Value {
+fn as_json(subject: &BatchSubject, row: &PointResult) -> Value {
+    let contract = subject.contract;
     let mut operands = Map::new();
     for (operand, raw) in contract.operands().iter().zip(&row.operands) {
         operands.insert(operand.name.clone(), json!(raw));
     }
     let mut outputs = Map::new();
-    for (output, raw) in contract.outputs().iter().zip(&row.outputs) {
-        outputs.insert(output.name.clone(), json!(raw));
+    for (name, raw) in subject.results.iter().zip(&row.outputs) {
+        outputs.insert(name.clone(), json!(raw));
     }
     let exact: Vec<Option<f64>> =
         row.exact.iter().map(|value| (!value.is_nan()).then_some(*value)).collect();
@@ -286,7 +297,7 @@ fn as_json(contract: &dyn Contract, row: &PointResult) -> Value {
     });
     let mut inside_where = Map::new();
     for &number in &row.conditional {
-        let name = contract.outputs()[number].name.clone();
+        let name = subject.results[number].clone();
         inside_where.insert(name, json!(row.promised[number]));
     }
     if !inside_where.is_empty() {

@@ -1,5 +1,6 @@
 //! Evaluates a function of a unit by its own names and formats: `opcode=log2 x=2` in place of `opcode=4 a=512`.
 
+use super::batch::BatchSubject;
 use super::operands::{completed, given};
 use super::{ResultComparison, SignalValue};
 use crate::commands::none_of;
@@ -69,6 +70,12 @@ impl NamedFunction<'_> {
             operands.push(SignalValue::new(operand.name.clone(), operand.format, raw.into()));
         }
         operands
+    }
+
+    /// Returns the function with the operands on the command line, for many points.
+    pub(super) fn batch_subject(&self) -> BatchSubject<'_> {
+        let results = self.function.results.iter().map(|result| result.name.clone()).collect();
+        BatchSubject { contract: self.contract.as_ref(), given: &self.given, results }
     }
 
     pub(super) fn results(&self) -> Vec<ResultComparison> {
