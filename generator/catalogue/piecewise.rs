@@ -160,10 +160,10 @@ pub struct PolynomialDatapath<'d, 'p> {
 }
 
 impl<'d, 'p> PolynomialDatapath<'d, 'p> {
-    /// Makes the table, and the registers of the partial sums with the names `registers`, the whole polynomial first. The first name
-    /// is `None` if the polynomial gets no register for its value. Other names begin with `prefix`. `number` is the position of the operand in its domain, an integer of
-    /// [`glint_approximate::Segments::number_bits`] bits. It must be stable while the sums are loaded, and also one clock earlier
-    /// if the table is read at the rising clock edge.
+    /// Makes the table, and the registers of the whole polynomial and of the partial sums. The three names are theirs, the whole
+    /// polynomial first; `None` in its place makes no register for the value. Other names begin with `prefix`. `number` is the
+    /// position of the operand in its domain, an integer of [`glint_approximate::Segments::number_bits`] bits. It must be stable
+    /// while the sums are loaded, and also one clock earlier if the table is read at the rising clock edge.
     pub fn new(
         d: &'d Designer,
         prefix: &str,
