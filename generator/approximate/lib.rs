@@ -19,13 +19,14 @@ mod table;
 #[cfg(test)]
 mod tests;
 mod wide;
+mod writable;
 
 use std::collections::HashMap;
 use std::sync::{Arc, LazyLock, Mutex};
 
 use rayon::prelude::*;
 
-use glint_base::fixed::{Format, exp2};
+use glint_base::fixed::{Format, MAX_WIDTH, exp2};
 use glint_formula::{Enclosure, Expression, Fault, RBig};
 
 pub use reduction::{Identity, Reduction, Restore, Rule};
@@ -34,6 +35,7 @@ pub use samples::Samples;
 pub use search::{Wish, reachable_error};
 pub use segments::{Layout, SegmentOffset, Segments};
 pub use shared::{SharedWidths, find_with_widths, widths_with_prefix};
+pub use writable::{find_images, reachable_image_error};
 
 /// The largest degree is 3.
 const MOST_SUMS: usize = 4;
@@ -138,6 +140,8 @@ pub struct Piecewise {
     pub result: Format,
     /// The proved bound of the error, in units of the last bit of the result, or infinity if no proof was made.
     pub bound: f64,
+    /// Whether the words can be replaced at run time, by those of another function.
+    pub is_writable: bool,
 }
 
 /// Numbers the operands of a domain from the raw operand `origin`, which has the number 0.
@@ -362,6 +366,13 @@ impl Piecewise {
     /// Returns the raw result for the raw operand `raw` and the raw value `polynomial` of the polynomial.
     pub fn restored(&self, raw: i64, polynomial: i64) -> i64 {
         self.reduced(raw).1.result(polynomial)
+    }
+
+    /// Returns whether the product of every step fits a net, with the bit that its sum may need more.
+    fn has_narrow_products(&self) -> bool {
+        self.steps.iter().zip(&self.sums[1..]).all(|(step, sum)| {
+            sum.width() + 1 + step.offset + self.segments.extra_bit() < MAX_WIDTH
+        })
     }
 
     /// Returns the number of bits of the table. For example, `configs/function.toml`, for 1/√x from 1 to 2, has 16 words of 35

@@ -48,13 +48,13 @@ const WIDEST: u32 = 46;
 const STRICTER: [f64; 5] = [0.02, 0.1, 0.25, 0.5, 0.75];
 
 /// The cost of a step of Horner's rule without the table, in look-up tables: an adder, and the wiring of a multiplier.
-const STEP: f64 = 50.0;
+pub(super) const STEP: f64 = 50.0;
 
 /// The cost of an octave, in look-up tables: one more row of multiplexers in the shifter that aligns the offsets.
 const OCTAVE: f64 = 12.0;
 
 /// The errors to try if the allowed error cannot be reached, in units of the result's last bit.
-const NEAREST: [f64; 14] =
+pub(super) const NEAREST: [f64; 14] =
     [0.51, 0.55, 0.6, 0.7, 0.8, 0.9, 1.0, 1.5, 2.0, 4.0, 8.0, 16.0, 64.0, 256.0];
 
 /// Finds the cheapest approximation of `function` under the choices `wish`, and proves its error bound.

@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use super::minimax::minimax;
 use super::seen::AllowedResults;
 use super::{HornerStep, MOST_SUMS, Piecewise, Segments};
-use glint_base::fixed::{Format, MAX_WIDTH, exp2};
+use glint_base::fixed::{Format, exp2};
 use glint_base::interval::Interval;
 
 /// The number of points in a segment to which a polynomial is fitted.
@@ -423,8 +423,8 @@ impl<'s> Table<'s> {
         is_wide.then_some(generous)
     }
 
-    /// Returns the approximation with these words, not yet proved. Returns `None` if a product would have [`MAX_WIDTH`] bits or
-    /// more, or if no operand reads a word.
+    /// Returns the approximation with these words, not yet proved. Returns `None` if a product would be too wide for a
+    /// net, or if no operand reads a word.
     pub(super) fn finished(&self, widths: &Widths, words: Words) -> Option<Piecewise> {
         let AllowedResults { result: polynomial, whole, .. } = self.seen;
         let function = whole.map_or(self.seen.function, |it| it.0);
@@ -449,19 +449,14 @@ impl<'s> Table<'s> {
             sums: vec![*polynomial; widths.guard.len()],
             result: whole.map_or(*polynomial, |it| it.2),
             bound: f64::INFINITY,
+            is_writable: false,
         };
         let ends = limits_of_sums(&found, function.is_wide());
         for (k, sum) in found.sums.iter_mut().enumerate().skip(1) {
             let (low, high) = ends[k];
             *sum = Format::holding(low, high, found.coefficients[k].frac);
         }
-        for (step, sum) in found.steps.iter().zip(&found.sums[1..]) {
-            let product_width = sum.width() + 1 + step.offset + self.cut.extra_bit();
-            if product_width >= MAX_WIDTH {
-                return None;
-            }
-        }
-        Some(found)
+        found.has_narrow_products().then_some(found)
     }
 }
 

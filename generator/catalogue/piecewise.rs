@@ -375,7 +375,7 @@ fn table<'d>(
     }
     let last = it.words.len() - 1;
     let reached = usize::try_from(address.range().1).unwrap_or(last);
-    let mut signals = Vec::new();
+    let (mut signals, mut memories) = (Vec::new(), Vec::new());
     for part in &parts {
         let formats = &it.coefficients[part.clone()];
         let packed = |word: usize| {
@@ -397,10 +397,15 @@ fn table<'d>(
             _ => "coefficients of the polynomial of a segment, the constant term in the top bits",
         };
         let rom = d.rom(&name, address, format, &words, tables.synchronous).doc(doc);
+        let named = |k: usize| (format!("c{k}"), it.coefficients[k]);
+        memories.push((rom, part.clone().map(named).collect()));
         for (k, format) in part.clone().zip(formats) {
             below -= format.width();
             signals.push(rom.out().bits(below, *format).named(&format!("{prefix}c{k}")));
         }
+    }
+    if it.is_writable {
+        d.write_port(&memories);
     }
     signals
 }

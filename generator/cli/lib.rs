@@ -90,7 +90,7 @@ commands! {
     Generate generate; Cosim cosim; Merge merge; Worst worst; Mutate mutate; Eval eval; Setup setup;
     Describe describe; Schedule schedule; Estimate estimate; Synth synth; Tune tune; Certify certify;
     Datasheet datasheet; Compare compare; Render render; Verify verify;
-    List list; New new; NewDevice new_device; Schema schema; Explain explain;
+    Table table; List list; New new; NewDevice new_device; Schema schema; Explain explain;
 }
 
 #[derive(Args, Clone, Copy)]

@@ -11,7 +11,7 @@ use crate::cosim::exhaustive::{Backing, Clocks, Job, Places};
 use crate::cosim::{Lockstep, directed, trial};
 use crate::package::{
     self, ContractFacts, EmitInputs, FileKind, HandshakeTiming, InstanceExample, LineClocks,
-    OutputFiles, Surroundings, Vectors, WorkedExample,
+    OutputFiles, Surroundings, TableImage, Vectors, WorkedExample,
 };
 use crate::registry::{DesignError, Device, OpenedConfig};
 use glint_base::input;
@@ -340,8 +340,31 @@ impl Core {
             vectors: vectors.into(),
             around,
             sequential,
+            images: self.images()?,
         };
         package::emit(&self.design, &inputs)
+    }
+
+    /// Returns the words of the writable table for each further function that the configuration states.
+    ///
+    /// # Errors
+    /// Fails if the netlist of an image cannot be built.
+    pub fn images(&self) -> Result<Vec<TableImage>> {
+        let mut images = Vec::new();
+        for (name, opened) in self.opened.images()? {
+            images.push(Self::build(opened)?.table_image(&name));
+        }
+        Ok(images)
+    }
+
+    /// Returns the words of the writable table of this core, as the image `name`.
+    pub fn table_image(&self, name: &str) -> TableImage {
+        TableImage {
+            name: name.to_owned(),
+            formula: self.design.about.formula.clone(),
+            bound: self.contract.bounds().governing().units,
+            words: package::words_of(&self.design),
+        }
     }
 
     /// Returns an example of a Verilog instance for each module that a system can instantiate, the outermost wrapper first.

@@ -42,6 +42,10 @@ impl<P> Occupancy<P> {
         self.stages.get(stage.checked_sub(1)?).and_then(Option::as_ref)
     }
 
+    pub fn is_empty(&self) -> bool {
+        self.stages.iter().all(Option::is_none)
+    }
+
     /// Returns every point with the number of its stage, from 1 on.
     pub fn points(&self) -> impl Iterator<Item = (usize, &P)> {
         let stages = self.stages.iter().enumerate();

@@ -105,6 +105,9 @@ pub(super) fn plan_device(
             }
             Operation::Polynomial(_, approximation) if *is_held => {
                 let it = approximation.polynomials.as_ref().expect("polynomials that are found");
+                if it.is_writable {
+                    frame.write_port();
+                }
                 let names = plan.sum_names(NodeId(at));
                 let names: Vec<&str> = names.iter().map(String::as_str).collect();
                 let mut sums = Polynomial::new(&mut frame, &names, it);

@@ -21,7 +21,7 @@ use glint_plan::{
 
 use lists::{MOST_NUMBERS, OperandPorts, operand_entry, result_names};
 
-use super::function::End;
+use super::stated_function::End;
 use super::port_names::{self, NameFault, NamedTable};
 
 pub use lists::{result_doc, result_entry};

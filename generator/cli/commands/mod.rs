@@ -28,6 +28,7 @@ pub mod schema;
 mod settings;
 pub mod setup;
 pub mod synth;
+pub mod table;
 pub mod tune;
 pub mod verify;
 pub mod worst;

@@ -2,11 +2,11 @@
 //!
 //! The caller gives each instance the operands of a computation, and reads its results from the same lane.
 
-use anyhow::Result;
+use anyhow::{Context, Result, ensure};
 
 use super::ports::Ports;
 use glint_golden::Contract;
-use glint_rtl::netlist::Design;
+use glint_rtl::netlist::{Design, Role};
 use glint_rtl::sim::Simulator;
 
 /// A simulator with an instance of the design in each lane, after reset. `out_ready` of a pipeline is always high, so that
@@ -25,6 +25,34 @@ impl<const LANES: usize> Instances<LANES> {
             simulator.set_lanes(at, [1; LANES]);
         }
         Ok(Self { simulator, ports })
+    }
+
+    /// Writes words into the writable table, the same in all lanes. No instance may compute.
+    ///
+    /// # Errors
+    /// Fails as [`RustHdl::load_table`](super::batch::RustHdl::load_table) does.
+    pub(super) fn load_table(&mut self, design: &Design, words: &[Vec<i64>]) -> Result<()> {
+        let input = |role: Role| design.inputs().position(|port| port.role == role);
+        let lacks = || format!("`{}` has no table that can be written", design.name);
+        let write = input(Role::TableWrite).with_context(lacks)?;
+        let address = input(Role::TableAddress).with_context(lacks)?;
+        let ready = design.port(|role| role == Role::TableReady).with_context(lacks)?.net;
+        let inputs = design.inputs().enumerate();
+        let parts: Vec<usize> =
+            inputs.filter(|(_, port)| port.role == Role::TableWord).map(|(at, _)| at).collect();
+        for (number, word) in (0..).zip(words) {
+            ensure!(word.len() == parts.len(), "a word has {} parts", parts.len());
+            self.simulator.set_lanes(write, [1; LANES]);
+            self.simulator.set_lanes(address, [number; LANES]);
+            for (&part, &raw) in parts.iter().zip(word) {
+                self.simulator.set_lanes(part, [raw as u64; LANES]);
+            }
+            self.simulator.settle()?;
+            ensure!(self.simulator.lane(ready, 0) == 1, "the core is not ready to load a word");
+            self.simulator.clock()?;
+        }
+        self.simulator.set_lanes(write, [0; LANES]);
+        Ok(())
     }
 
     /// Starts computations in the next clock. Entry i of `computations` has the raw operands for lane i, in the order of

@@ -178,6 +178,10 @@ fn role(role: Role) -> &'static str {
         Role::SideIn => "side_in",
         Role::SideOut => "side_out",
         Role::OutReady => "out_ready",
+        Role::TableWrite => "table_write",
+        Role::TableAddress => "table_address",
+        Role::TableWord => "table_word",
+        Role::TableReady => "table_ready",
     }
 }
 

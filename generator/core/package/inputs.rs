@@ -1,6 +1,7 @@
 //! Defines the data that Glint needs in addition to the netlist to generate the files of a core.
 
 use super::surroundings::Surroundings;
+use super::table_image::TableImage;
 use crate::observation::{Computation, ContractFacts, Vectors, WorkedExample};
 use glint_rtl::netlist::{Design, HandshakeTiming};
 use glint_rtl::verilog::header::Origin;
@@ -19,6 +20,8 @@ pub struct EmitInputs {
     pub around: Surroundings,
     /// For a pipeline, the sequential design from which Glint made it, and from which it generates the model in C.
     pub sequential: Option<Design>,
+    /// The further functions for which the table of the core is planned.
+    pub images: Vec<TableImage>,
 }
 
 impl EmitInputs {

@@ -44,6 +44,7 @@ mod processor;
 pub mod seal;
 mod software;
 mod surroundings;
+mod table_image;
 mod tops;
 mod vendor;
 mod wrap;
@@ -68,8 +69,9 @@ pub use output_file::{OutputFile, digest};
 pub use output_files::OutputFiles;
 pub use points::{POINTS_FILE, PointsBench, RESULTS_FILE};
 pub use seal::{Seal, is_sealed, sealed, sealed_json, sealed_object};
-pub use software::check_recomputation;
+pub use software::{check_recomputation, image_file, image_header};
 pub use surroundings::{Surroundings, check_clock, check_rom_style};
+pub use table_image::{TableImage, TableLayout, words_of};
 
 /// Returns a Verilog test bench that computes the points (sets of operands) of a file. The simulation ends with `FAIL` if a
 /// computation takes `limit` clocks or more. For a pipeline, `limit` counts the clocks from the last point to the last result.

@@ -17,7 +17,7 @@ use glint_rtl::dsl::Designer;
 use glint_rtl::netlist::Design;
 use glint_rtl::pipeline::{self, PassResult};
 
-use super::{CLOCK_MHZ, DesignError, Device, pipeline_keys};
+use super::{CLOCK_MHZ, DesignError, Device, PartsResult, pipeline_keys};
 
 /// The key that asks for registers behind the results.
 const OUTPUT_REGISTERED: &str = "output.registered";
@@ -42,6 +42,17 @@ pub trait DeviceParts: Send + Sync {
     /// Returns the contract of each function that an opcode selects, in the order of [`Design::functions`]. Its operands and results
     /// have the formats of the function.
     fn function_contracts(&self, _config: &Config) -> Vec<Box<dyn Contract>> {
+        Vec::new()
+    }
+
+    /// Returns the parts of the same datapath for the function that `config` states, with other words in its writable table. `None` if
+    /// the device has no such table.
+    fn refitted(&self, _config: &Config) -> Option<PartsResult> {
+        None
+    }
+
+    /// Returns the name and the configuration of each further function that a writable table is planned for.
+    fn images(&self, _config: &Config) -> Vec<(String, Config)> {
         Vec::new()
     }
 }
@@ -100,6 +111,33 @@ impl OpenedConfig {
             return Ok(Self { device: self.device, config, parts: self.parts.clone() });
         }
         self.device.open(config)
+    }
+
+    /// Returns the same core with another function, which `config` states, in its writable table.
+    ///
+    /// # Errors
+    /// Fails if the core has no writable table, or if the table cannot hold the function. The error names a key to change.
+    pub fn refitted(&self, config: Config) -> Result<Self, ConfigError> {
+        let parts = self.parts.refitted(&config).unwrap_or_else(|| {
+            Err(ConfigError::new(
+                "device",
+                format!("the device `{}` has no table that can be written", self.device.name),
+                "use device = \"function\" with approximation.tables = \"writable\"",
+            ))
+        })?;
+        Ok(Self { device: self.device, config, parts })
+    }
+
+    /// Returns the name of each further function that the configuration states for a writable table, and the core with this function.
+    ///
+    /// # Errors
+    /// Fails as [`OpenedConfig::refitted`] does.
+    pub fn images(&self) -> Result<Vec<(String, Self)>, ConfigError> {
+        let mut images = Vec::new();
+        for (name, config) in self.parts.images(&self.config) {
+            images.push((name, self.refitted(config)?));
+        }
+        Ok(images)
     }
 
     pub fn contract(&self) -> Box<dyn Contract> {

@@ -29,6 +29,15 @@ impl DeviceParts for FunctionParts {
     fn contract(&self, config: &Config) -> Box<dyn Contract> {
         golden::function::contract(config, &self.0)
     }
+
+    fn refitted(&self, config: &Config) -> Option<PartsResult> {
+        let refitted = self.0.with_function_of(config);
+        Some(refitted.map(|plan| Arc::new(Self(plan)) as Arc<dyn DeviceParts>))
+    }
+
+    fn images(&self, config: &Config) -> Vec<(String, Config)> {
+        keys::images::configs(config)
+    }
 }
 
 /// Finds polynomials for the function. The error of a function without such polynomials names the key to change.

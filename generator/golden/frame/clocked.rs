@@ -11,6 +11,9 @@ use glint_base::fixed::mask;
 /// The signals of the handshake, which come before the signals of the device.
 const HANDSHAKE: [&str; 5] = ["valid", "busy", "done", "run", "word_address"];
 
+/// The last signal of the handshake of a device whose tables can be written.
+const TABLE_READY: &str = "table_ready";
+
 #[derive(Clone)]
 pub(super) struct ModelConstants {
     pub(super) program: Vec<FrameStep>,
@@ -28,6 +31,8 @@ pub(super) struct ModelConstants {
     written: Vec<Slot>,
     buffered: bool,
     flags: Vec<Slot>,
+    /// The number of signals of the handshake, which come first.
+    handshake: usize,
     pub(super) valid_delay: u32,
     inputs: Vec<String>,
     signals: Vec<String>,
@@ -68,6 +73,10 @@ impl Frame {
             written.push(operand.slot);
         }
         let mut signals: Vec<String> = HANDSHAKE.map(str::to_owned).into();
+        if self.has_write_port {
+            signals.push(TABLE_READY.to_owned());
+        }
+        let handshake = signals.len();
         let mut shown = Vec::new();
         for signal in &self.shown {
             signals.push(signal.name.clone());
@@ -86,6 +95,7 @@ impl Frame {
             edges: self.edges,
             taken: Vec::new(),
             flags: self.flags,
+            handshake,
             valid_delay: self.valid_delay,
         };
         ClockedModel::at_power_up(fixed, self.slots)
@@ -139,7 +149,7 @@ impl ClockedModel {
                 it.taken.push((slot, register));
                 it.shown[at].0 = register;
                 it.shown.push((register, mask));
-                it.signals.push(format!("{}_reg", it.signals[HANDSHAKE.len() + at]));
+                it.signals.push(format!("{}_reg", it.signals[it.handshake + at]));
             }
         }
         if slots == self.state.len() {
@@ -170,8 +180,10 @@ impl ClockedModel {
             clocks => self.pulses >> (clocks - 1) & 1 == 1,
         };
         let (run, done) = (self.run.into(), self.run && matches!(here.next, Next::End));
-        let (first, then) = self.values.split_at_mut(HANDSHAKE.len());
-        first.copy_from_slice(&[valid.into(), run, done.into(), run, self.address as u64]);
+        let (first, then) = self.values.split_at_mut(it.handshake);
+        let table_ready = (!self.run).into();
+        let all = [valid.into(), run, done.into(), run, self.address as u64, table_ready];
+        first.copy_from_slice(&all[..it.handshake]);
         if still {
             return;
         }

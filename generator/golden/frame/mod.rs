@@ -190,6 +190,7 @@ pub struct Frame {
     logic: Vec<(Slot, Value)>,
     edges: Vec<Does>,
     valid_delay: u32,
+    has_write_port: bool,
     /// The microinstructions of the parts, in the order of execution.
     pub(super) parts: Vec<FrameStep>,
 }
@@ -276,5 +277,10 @@ impl Frame {
     /// Delays `valid` by `clocks` clocks after the microinstructions that raise it. A reset clears the registers of this delay.
     pub fn delay_valid(&mut self, clocks: u32) {
         self.valid_delay = clocks;
+    }
+
+    /// Adds the output `table_ready`, which is 1 while no computation runs. The model itself never writes a table.
+    pub fn write_port(&mut self) {
+        self.has_write_port = true;
     }
 }

@@ -77,6 +77,7 @@ mod output_registers;
 mod program;
 mod registers;
 mod rom;
+mod write_port;
 mod rules;
 mod sequencer;
 mod shared;
@@ -153,6 +154,8 @@ pub(crate) struct Inner {
     registers_operand_logic: bool,
     /// The net that loads the operand registers from their buffers; `None` without buffers.
     taken: Option<NetId>,
+    /// The output that tells when a memory loads a written word; `None` without a write port.
+    table_ready: Option<NetId>,
     /// The numbers of the lines `valid_word` and `go_on` in the source's block diagram.
     sequencer_lines: Option<[u16; 2]>,
     diagnostics: Vec<Diagnostic>,
@@ -181,6 +184,7 @@ impl Designer {
             registers_outputs: false,
             registers_operand_logic: true,
             taken: None,
+            table_ready: None,
             sequencer_lines: None,
             diagnostics: Vec::new(),
             names: HashSet::new(),

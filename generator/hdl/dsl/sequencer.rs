@@ -151,12 +151,13 @@ impl Sequencer {
         d.port(valid, Role::Valid);
         d.port(busy, Role::Busy);
         d.port(done, Role::Done);
+        d.with(|inner| inner.partition = Partition::Datapath);
+        d.connect_write_port(busy);
         d.with(|inner| {
-            inner.partition = Partition::Datapath;
             // Inputs first, then the handshake, then results.
             inner.design.ports.sort_by_key(|port| match port.role {
                 role if role.is_input() => 0,
-                Role::Valid | Role::Busy | Role::Done => 1,
+                Role::Valid | Role::Busy | Role::Done | Role::TableReady => 1,
                 _ => 2,
             });
         });

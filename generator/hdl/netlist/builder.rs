@@ -81,6 +81,7 @@ impl NetlistRom {
             enable: None,
             shares: None,
             words,
+            write: None,
             doc: Vec::new(),
             comments: Vec::new(),
             block: None,

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::{Design, Driver, NetId, Op, Pipeline, RegId};
+use super::{Design, Driver, NetId, Op, Pipeline, RegId, WritePort};
 
 /// Registers of a pipeline that carry values from one stage to a later stage, with no reader in between. All its values travel
 /// between the same two stages.
@@ -129,8 +129,10 @@ impl Design {
             register.enable.iter().for_each(|it| readers[it.index()].push(NetReader::Other));
         }
         for rom in &self.roms {
-            let nets = std::iter::once(rom.address).chain(rom.enable);
-            nets.for_each(|it| readers[it.index()].push(NetReader::Other));
+            let mut nets = vec![rom.address];
+            nets.extend(rom.enable);
+            nets.extend(rom.write.iter().flat_map(WritePort::nets));
+            nets.iter().for_each(|it| readers[it.index()].push(NetReader::Other));
         }
         for net in &self.nets {
             if let Driver::Op(op) = &net.driver {

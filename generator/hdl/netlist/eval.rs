@@ -90,6 +90,8 @@ pub struct Interpreter<'a> {
     design: &'a Design,
     order: Vec<NetId>,
     values: Vec<[u64; 1]>,
+    /// The words of each ROM; a memory with a write port can change them.
+    words: Vec<Vec<u64>>,
 }
 
 impl<'a> Interpreter<'a> {
@@ -98,7 +100,12 @@ impl<'a> Interpreter<'a> {
     /// # Errors
     /// Fails if the design has a combinational loop. The error lists the nets along the loop.
     pub fn new(design: &'a Design) -> Result<Self, Vec<NetId>> {
-        Ok(Self { design, order: design.levelise()?, values: vec![[0]; design.nets.len()] })
+        Ok(Self {
+            design,
+            order: design.levelise()?,
+            values: vec![[0]; design.nets.len()],
+            words: design.roms.iter().map(|rom| rom.words.clone()).collect(),
+        })
     }
 
     /// Applies the bit patterns of all input ports, in the order of the ports, and evaluates every net. Bits above the width of a
@@ -126,7 +133,7 @@ impl<'a> Interpreter<'a> {
         }
     }
 
-    /// Performs a rising edge after [`Interpreter::settle`]: registers and synchronous ROMs load. If the input `rst_n` is 0,
+    /// Performs a rising edge after [`Interpreter::settle`]: registers, synchronous ROMs and written words load. If the input `rst_n` is 0,
     /// registers with a reset take their reset values.
     pub fn edge(&mut self) {
         let design = self.design;
@@ -146,6 +153,7 @@ impl<'a> Interpreter<'a> {
                 next.push((rom.data, self.read(RomId(at as u32))));
             }
         }
+        self.write();
         for (net, bits) in next {
             self.values[net.index()] = [bits & mask(design.width(net))];
         }
@@ -158,7 +166,21 @@ impl<'a> Interpreter<'a> {
 
     /// Returns the addressed word, or 0 behind the last word.
     fn read(&self, rom: RomId) -> u64 {
-        let rom = self.design.rom(rom);
-        rom.words.get(self.value(rom.address) as usize).copied().unwrap_or(0)
+        let address = self.value(self.design.rom(rom).address) as usize;
+        self.words[rom.index()].get(address).copied().unwrap_or(0)
+    }
+
+    /// Stores the words at the write ports whose enable is 1.
+    fn write(&mut self) {
+        for (at, rom) in self.design.roms.iter().enumerate() {
+            let Some(write) = &rom.write else { continue };
+            if self.value(write.enable) == 1 {
+                let word = write.word(self.design, |net| self.value(net));
+                let address = self.value(write.address) as usize;
+                if let Some(stored) = self.words[at].get_mut(address) {
+                    *stored = word;
+                }
+            }
+        }
     }
 }

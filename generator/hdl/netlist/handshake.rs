@@ -22,7 +22,10 @@ pub struct Handshake {
 impl Role {
     /// Returns whether the port is an output of the handshake.
     pub fn is_status(self) -> bool {
-        matches!(self, Self::Valid | Self::Busy | Self::Done | Self::InReady)
+        matches!(
+            self,
+            Self::Valid | Self::Busy | Self::Done | Self::InReady | Self::TableReady
+        )
     }
 }
 

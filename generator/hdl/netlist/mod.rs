@@ -21,6 +21,7 @@ mod settings;
 pub mod termination;
 mod timing;
 mod verify;
+mod write_port;
 
 pub use cell::Op;
 pub use control::{Control, Field, FieldKind, Microinstruction, Sequence};
@@ -37,6 +38,7 @@ pub(crate) use settings::passed_on;
 pub use settings::setting_of;
 pub use termination::latest_done;
 pub use timing::HandshakeTiming;
+pub use write_port::{TABLE_ADDRESS, TABLE_LOAD, TABLE_READY, TABLE_WRITE, WritePort};
 
 macro_rules! id {
     ($(#[$doc:meta])* $name:ident) => {
@@ -164,8 +166,10 @@ pub struct NetlistRom {
     pub enable: Option<NetId>,
     /// The first read port of this ROM's memory, if this ROM is the second one; both must have the same words.
     pub shares: Option<RomId>,
-    /// Bit patterns, from address 0.
+    /// Bit patterns, from address 0. A memory with a write port has them until the first write.
     pub words: Vec<u64>,
+    /// The port that replaces words at run time; `None` for a read-only memory.
+    pub write: Option<WritePort>,
     pub doc: Vec<String>,
     /// A comment for each word, or an empty list.
     pub comments: Vec<String>,
@@ -205,6 +209,14 @@ pub enum Role {
     SideIn,
     /// Input `out_ready` of a pipeline: the environment takes the results in this clock.
     OutReady,
+    /// Input `table_write`: the other inputs of the write port have a word.
+    TableWrite,
+    /// Input `table_address`: the address of the word to write.
+    TableAddress,
+    /// Input, a part of the word to write, such as `table_c0`.
+    TableWord,
+    /// Output `table_ready`: 1 if the core would load a word that is written in this clock.
+    TableReady,
     /// Output `in_ready` of a pipeline: 1 if the pipeline would accept a point in this clock.
     InReady,
     /// Output `side_out` of a pipeline: the value of `side_in` that came with the point whose results are on the outputs.
@@ -233,6 +245,9 @@ impl Role {
                 | Self::Point
                 | Self::SideIn
                 | Self::OutReady
+                | Self::TableWrite
+                | Self::TableAddress
+                | Self::TableWord
         )
     }
 }

@@ -5,7 +5,7 @@
 
 use std::collections::HashMap;
 
-use super::{Design, Driver, FieldKind, Net, NetId, Op, Role, Sequence};
+use super::{Design, Driver, FieldKind, Net, NetId, Op, Role, Sequence, WritePort};
 use glint_base::codes;
 use glint_base::diagnostic::{Diagnostic, SourceLocation};
 use glint_base::fixed::{MAX_WIDTH, mask};
@@ -75,6 +75,7 @@ impl Design {
         for rom in &self.roms {
             referred.extend([rom.address, rom.data]);
             referred.extend(rom.enable);
+            referred.extend(rom.write.iter().flat_map(WritePort::nets));
         }
         referred.extend(self.ports.iter().map(|port| port.net));
         referred.extend(self.control.fields.iter().map(|field| field.net));
@@ -284,6 +285,16 @@ impl Design {
             if rom.enable.is_some_and(|enable| self.width(enable) != 1) {
                 let message = format!("the enable of ROM `{}` is not one bit", rom.name);
                 found.push(Diagnostic::new(codes::WIDTH, message, rom.location));
+            }
+            if let Some(write) = &rom.write {
+                let parts: u32 = write.parts.iter().map(|&part| self.width(part)).sum();
+                if self.width(write.enable) != 1 || parts != width {
+                    let message = format!(
+                        "the write port of `{}` needs an enable of one bit and words of {width} bits",
+                        rom.name
+                    );
+                    found.push(Diagnostic::new(codes::WIDTH, message, rom.location));
+                }
             }
             let (comments, words) = (rom.comments.len(), rom.words.len());
             if comments != 0 && comments != words {

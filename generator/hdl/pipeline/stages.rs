@@ -10,7 +10,7 @@ use super::unroll::Unrolled;
 use super::{Delays, Goal, Options};
 use crate::netlist::{
     self, About, Checkpoint, Delayed, Design, Driver, Net, NetId, NetlistRom, Op, Pipeline, Port,
-    RegId, RegisterKind, Role, RomId, Stage, Topic,
+    RegId, RegisterKind, Role, RomId, Stage, TABLE_LOAD, TABLE_READY, Topic, WritePort,
 };
 use glint_base::fixed::Format;
 
@@ -184,6 +184,7 @@ impl StageBuilder<'_> {
                 }
             }
         }
+        self.write_ports();
         if options.side > 0 {
             self.port("side_in", options.side, Role::SideIn, "side data, delayed like the point");
         }
@@ -284,6 +285,7 @@ impl StageBuilder<'_> {
         for stage in 1..=latency {
             self.register(valid[stage], valid[stage - 1], self.advance, Some(0));
         }
+        self.table_ready(&valid, offered);
         self.pipeline.valid = valid.split_off(1);
         if let Some(mut side) = self.net_with(Role::SideIn) {
             let format = self.design.net(side).format;
@@ -565,6 +567,7 @@ impl StageBuilder<'_> {
         let name = if copy > 1 { format!("{}_{copy}", source.name) } else { source.name.clone() };
         let name = if shares.is_some() { format!("{name}_second") } else { name };
         let enable = self.advance.filter(|_| synchronous);
+        let write = source.write.as_ref().map(|write| self.write_port(write));
         self.design.roms.push(NetlistRom {
             name,
             address,
@@ -572,9 +575,52 @@ impl StageBuilder<'_> {
             synchronous,
             enable,
             shares,
+            write,
             ..source
         });
         data
+    }
+
+    /// Makes the inputs of the sequential design's write port.
+    fn write_ports(&mut self) {
+        for port in &self.sequential.ports {
+            if matches!(port.role, Role::TableWrite | Role::TableAddress | Role::TableWord) {
+                let net = self.sequential.net(port.net).clone();
+                let id = self.net(net.name, 0, net.format, Driver::Input);
+                self.design.nets[id.index()].doc = net.doc;
+                self.design.ports.push(Port { net: id, role: port.role });
+            }
+        }
+    }
+
+    /// Returns the write port of a memory, with the nets that have the same names as those of the sequential design.
+    fn write_port(&self, of: &WritePort) -> WritePort {
+        let here = |id: NetId| {
+            let name = &self.sequential.net(id).name;
+            self.design.find(name).expect("the pipeline has the nets of the write port")
+        };
+        WritePort {
+            enable: here(of.enable),
+            address: here(of.address),
+            parts: of.parts.iter().map(|&part| here(part)).collect(),
+        }
+    }
+
+    /// Makes the output `table_ready`, which is 1 while no stage has a point and none is offered, and the net that loads a word, if the
+    /// design has a write port. `valid` has the valid bits of the stages.
+    fn table_ready(&mut self, valid: &[NetId], offered: NetId) {
+        let Some(write) = self.net_with(Role::TableWrite) else { return };
+        let stages = valid[1..].iter().copied();
+        let parts: Vec<NetId> = stages.rev().chain([offered]).collect();
+        let format = Format::unsigned(parts.len() as i32, 0);
+        let points = self.inner("points", format, Driver::Op(Op::Concat(parts)));
+        let any = self.inner("any_point", Format::BIT, Driver::Op(Op::Any(points)));
+        let ready = self.net(TABLE_READY.to_owned(), 0, Format::BIT, Driver::Op(Op::Not(any)));
+        self.documented(ready, "no point is in the pipeline or offered, and a written word is loaded");
+        let load = Driver::Op(Op::And(write, ready));
+        let load = self.net(TABLE_LOAD.to_owned(), 0, Format::BIT, load);
+        self.pipeline.handshake.extend([ready, load]);
+        self.design.ports.push(Port { net: ready, role: Role::TableReady });
     }
 
     fn results(&mut self, unrolled: &Unrolled) {

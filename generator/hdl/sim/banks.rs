@@ -301,6 +301,7 @@ impl BankSplitter<'_> {
             wide: self.wide,
             choices: self.choices,
             words: self.compiler.words.clone(),
+            writes: self.compiler.writes(),
             places,
         }
     }

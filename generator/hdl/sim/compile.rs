@@ -8,7 +8,7 @@ use crate::netlist::{Design, Driver, NetId, NetlistRegister, Role};
 use crate::sim::banks;
 use crate::sim::compiler::Compiler;
 use crate::sim::program::{
-    CompiledDesign, Instruction, ReadEdge, RegisterEdge, Slot, Sources, drop_of,
+    CompiledDesign, Instruction, MemoryWrite, ReadEdge, RegisterEdge, Slot, Sources, drop_of,
 };
 use glint_base::diagnostic::Diagnostics;
 use glint_base::fixed::mask;
@@ -113,6 +113,22 @@ impl<'a> Compiler<'a> {
         // has a larger source number than its operands. The sorted order therefore remains an order of evaluation.
         self.steps.sort_by_key(|step| step.sources);
         banks::divide(&self, &reads, &registers)
+    }
+
+    /// Returns the memories with a write port.
+    pub(super) fn writes(&self) -> Vec<MemoryWrite> {
+        let design = self.design;
+        let mut writes = Vec::new();
+        for (rom, &words) in design.roms.iter().zip(&self.roms) {
+            let Some(write) = &rom.write else { continue };
+            writes.push(MemoryWrite {
+                words,
+                enable: write.enable,
+                address: write.address,
+                parts: write.parts.iter().map(|&part| (part, design.width(part))).collect(),
+            });
+        }
+        writes
     }
 
     /// Returns each register before the registers that it reads, except in circles. A value that is read before it is overwritten

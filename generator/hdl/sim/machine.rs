@@ -50,6 +50,48 @@ impl<const LANES: usize> Machine<LANES> {
     /// `inputs` must have the bit pattern of each input port, in order of declaration; bits beyond the width of a port are
     /// ignored.
     pub fn update(&mut self, edge: bool, inputs: Option<&[[u64; LANES]]>) -> bool {
+        let written = if edge { self.written_words() } else { Vec::new() };
+        let changed = self.update_at_level(edge, inputs);
+        if written.is_empty() {
+            return changed;
+        }
+        let words = &mut Arc::make_mut(&mut self.program).words;
+        for (at, word) in written {
+            words[at] = word;
+        }
+        self.changed = Sources::MAX;
+        self.update_at_level(false, None)
+    }
+
+    /// Returns the words that the write ports store at this edge, with their indices among the words of all ROMs.
+    ///
+    /// # Panics
+    /// Panics if the lanes, which share the words, write differently.
+    fn written_words(&self) -> Vec<(usize, u64)> {
+        let mut written = Vec::new();
+        for write in &self.program.writes {
+            let common = |net: NetId| {
+                let values = self.lanes(net);
+                assert!(values.iter().all(|value| *value == values[0]), "lanes write differently");
+                values[0]
+            };
+            if common(write.enable) == 0 {
+                continue;
+            }
+            let address = common(write.address);
+            let mut word = 0;
+            for &(part, width) in &write.parts {
+                word = word << width | common(part);
+            }
+            if address < u64::from(write.words.len) {
+                written.push((write.words.start as usize + address as usize, word));
+            }
+        }
+        written
+    }
+
+    /// Does the work of [`Machine::update`] with the widest vectors of this processor, without writes to memories.
+    fn update_at_level(&mut self, edge: bool, inputs: Option<&[[u64; LANES]]>) -> bool {
         #[cfg(target_arch = "x86_64")]
         match VectorLevel::here() {
             // SAFETY: this processor has AVX-512.

@@ -171,6 +171,16 @@ pub(super) struct ReadEdge {
     pub words: Span,
 }
 
+/// A memory with a write port: at the edge, the word at `address` becomes the one at the port if `enable` is 1.
+#[derive(Clone, Debug)]
+pub(super) struct MemoryWrite {
+    pub words: Span,
+    pub enable: NetId,
+    pub address: NetId,
+    /// The parts of the word and their widths, the highest bits first.
+    pub parts: Vec<(NetId, u32)>,
+}
+
 /// A register: at the edge, `q` gets the reset value if `rst_n` is 0, and otherwise `data` if `enable` is 1.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RegisterEdge {
@@ -208,6 +218,8 @@ pub struct CompiledDesign {
     pub(super) choices: Vec<Slot>,
     /// The words of all ROMs.
     pub(super) words: Vec<u64>,
+    /// The memories with a write port.
+    pub(super) writes: Vec<MemoryWrite>,
     /// For each net, its slot; `None` for an unnamed net that the compiler has optimised away.
     pub(super) places: Vec<Option<ValueSlot>>,
 }

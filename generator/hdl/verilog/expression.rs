@@ -7,7 +7,7 @@
 use super::bits::{BitRun, Bits};
 use super::plan::{NetForm, Plan, Reader};
 use super::text::{Names, constant_name, literal, together};
-use crate::netlist::{Driver, NetId, NetlistRom, Op};
+use crate::netlist::{Driver, NetId, NetlistRom, Op, WritePort};
 use glint_base::fixed::mask;
 
 /// A localparam, such as `COS_GAMMA_MOST` for `21'h100000`, with the note `1.0 in u1.20`.
@@ -137,8 +137,17 @@ impl<'a> Expressions<'a> {
 
     /// Returns the text of a ROM's address, with exactly as many bits as its number of words needs: 10 for 584 words.
     pub fn address(&mut self, rom: &NetlistRom) -> String {
+        self.exact_address(rom, rom.address)
+    }
+
+    /// Returns the address of the word that a write port replaces, as wide as the address of the memory.
+    pub fn write_address(&mut self, rom: &NetlistRom, write: &WritePort) -> String {
+        self.exact_address(rom, write.address)
+    }
+
+    fn exact_address(&mut self, rom: &NetlistRom, address: NetId) -> String {
         let width = super::plan::address_width(rom.words.len());
-        let bits = &self.plan.bits[rom.address.index()];
+        let bits = &self.plan.bits[address.index()];
         let exact =
             if bits.width() > width { bits.slice(0, width) } else { bits.extend(width, false) };
         self.bits(&exact)

@@ -152,6 +152,10 @@ fn ports(design: &Design) -> Vec<String> {
             Role::SideIn => "side data, delayed like the point".to_owned(),
             Role::SideOut => "side_in of the point on the outputs".to_owned(),
             Role::OutReady => "the receiver accepts the results".to_owned(),
+            Role::TableWrite => "writes a word of the table, if table_ready is high".to_owned(),
+            Role::TableAddress => "the address of the word".to_owned(),
+            Role::TableWord => "a part of the word".to_owned(),
+            Role::TableReady => "the table loads a word that is written".to_owned(),
         };
         let format = match net.format {
             Format::BIT => String::new(),

@@ -47,7 +47,7 @@ impl Interface {
         let mut roms = Vec::new();
         for (id, rom) in (0..).map(RomId).zip(&design.roms) {
             if plan.partition(rom.data) == partition {
-                clocked |= rom.synchronous;
+                clocked |= rom.synchronous || rom.write.is_some();
                 roms.push(id);
             }
         }

@@ -77,6 +77,18 @@ pub fn modules(plan: &Plan, naming: &Naming, origin: &Origin) -> Vec<ModuleFile>
     files
 }
 
+/// Returns the contents of the memories with a write port, as pairs of the memory's name and the text of its memory file. Fails as
+/// [`memory::contents`] does.
+pub fn writable_memories(design: &Design) -> Result<Vec<(String, String)>> {
+    let mut memories = Vec::new();
+    for (id, rom) in (0..).map(RomId).zip(&design.roms) {
+        if rom.write.is_some() && rom.shares.is_none() {
+            memories.push((rom.name.clone(), memory::contents(design, id)?));
+        }
+    }
+    Ok(memories)
+}
+
 /// Returns the memory files for the ROMs of a design as pairs of file name and text. There are none if the style of `naming` puts
 /// the words into the Verilog. The second read port of a memory has no file of its own. Fails as [`memory::contents`] does.
 pub fn memories(design: &Design, naming: &Naming) -> Result<Vec<(String, String)>> {

@@ -309,7 +309,24 @@ impl<'a> Builder<'a> {
             lines.extend(self.memory(id));
         }
         lines.extend(statement(4, &read));
+        lines.extend(self.write(id));
         lines
+    }
+
+    /// Returns the statement that writes a memory, if it has a write port.
+    fn write(&mut self, id: RomId) -> Vec<String> {
+        let Some(write) = &self.plan.design.rom(id).write else { return Vec::new() };
+        let memory = &self.naming.memories[id.index()];
+        let enable = self.expressions.whole(write.enable);
+        let address = self.expressions.write_address(self.plan.design.rom(id), write);
+        let parts: Vec<String> =
+            write.parts.iter().map(|&part| self.expressions.whole(part)).collect();
+        let word = match &parts[..] {
+            [part] => part.clone(),
+            _ => format!("{{{}}}", parts.join(", ")),
+        };
+        let text = format!("always @(posedge clk) if ({enable}) {memory}[{address}] <= {word};");
+        statement(4, &text)
     }
 
     /// Declares a memory and fills it: with its words in an `initial` block if `style.inline`, and otherwise from a memory file.

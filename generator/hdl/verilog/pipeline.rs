@@ -9,7 +9,7 @@ use super::plan::Plan;
 use super::rows::Row;
 use super::text::{ascii, comment, literal, range};
 use super::writer;
-use crate::netlist::{Design, Driver, NetId, Partition, Pipeline, Role, Unit};
+use crate::netlist::{Design, Driver, NetId, Partition, Pipeline, Role, TABLE_LOAD, Unit};
 
 /// The module of delay lines, under the name `delay`.
 const DELAY: &str = include_str!("delay.v");
@@ -151,6 +151,12 @@ fn handshake(plan: &Plan, naming: &Naming, pipeline: &Pipeline) -> Vec<String> {
             (None, first) => first.unwrap_or_default(),
         };
         lines.push(format!("assign {in_ready} = {taken};"));
+    }
+    let table_ready = port_name(design, Role::TableReady);
+    if !table_ready.is_empty() {
+        let table_write = port_name(design, Role::TableWrite);
+        lines.push(format!("assign {table_ready} = ~({in_valid} | (|{valid}));"));
+        lines.push(format!("wire {TABLE_LOAD} = {table_write} & {table_ready};"));
     }
     let when = match enable {
         Some(advance) => format!("if ({advance}) "),

@@ -12,7 +12,9 @@ use anyhow::{Result, ensure};
 
 use super::bits::{BitRun, Bits};
 use super::naming::remark;
-use crate::netlist::{DelayLine, Design, Driver, NetId, Op, Partition, RegId, Role, RomId};
+use crate::netlist::{
+    DelayLine, Design, Driver, NetId, Op, Partition, RegId, Role, RomId, WritePort,
+};
 use glint_base::diagnostic::Diagnostics;
 use glint_base::fixed::mask;
 
@@ -36,7 +38,7 @@ pub enum Reader {
     Cell(NetId),
     /// Reads its data and its enable.
     Register(RegId),
-    /// Reads its address.
+    /// Reads its address and its write port.
     Rom(RomId),
 }
 
@@ -142,7 +144,12 @@ impl<'a> Plan<'a> {
                 operands.extend(self.design.register(register).enable);
                 operands
             }
-            Reader::Rom(rom) => vec![self.design.rom(rom).address],
+            Reader::Rom(rom) => {
+                let rom = self.design.rom(rom);
+                let mut operands = vec![rom.address];
+                operands.extend(rom.write.iter().flat_map(WritePort::nets));
+                operands
+            }
         }
     }
 
@@ -160,7 +167,10 @@ impl<'a> Plan<'a> {
                 _ => bits.clone(),
             },
             Reader::Rom(rom) => {
-                let width = address_width(self.design.rom(rom).words.len());
+                let rom = self.design.rom(rom);
+                let is_address = operand == rom.address
+                    || rom.write.as_ref().is_some_and(|write| operand == write.address);
+                let width = if is_address { address_width(rom.words.len()) } else { bits.width() };
                 bits.slice(0, width.min(bits.width()))
             }
             Reader::Register(_) => bits.clone(),

@@ -92,6 +92,7 @@ pub(super) fn paged(tables: &[Arc<Piecewise>]) -> PagedTable {
         result: sums[0],
         sums,
         bound: f64::INFINITY,
+        is_writable: false,
     };
     PagedTable { polynomials: Arc::new(polynomials), number_bits, pages, page_bits }
 }

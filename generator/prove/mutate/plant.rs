@@ -117,6 +117,11 @@ fn redirect(design: &mut Design, from: NetId, to: NetId, except: &[NetId]) {
     for rom in &mut design.roms {
         redirect(&mut rom.address);
         rom.enable.as_mut().map(redirect);
+        if let Some(write) = &mut rom.write {
+            redirect(&mut write.enable);
+            redirect(&mut write.address);
+            write.parts.iter_mut().for_each(redirect);
+        }
     }
 }
 

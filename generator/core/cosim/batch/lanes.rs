@@ -38,6 +38,18 @@ impl RustHdl {
         }
         Ok(Self { teams })
     }
+
+    /// Writes words into the writable table of all instances, through its write port. For each address, `words` has the raw values of
+    /// the parts, in the order of the ports.
+    ///
+    /// # Errors
+    /// Fails if the design has no write port, if a word has another number of parts, or if the core is not ready to load a word.
+    pub fn load_table(&mut self, design: &Design, words: &[Vec<i64>]) -> Result<()> {
+        for team in &mut self.teams {
+            team.instances.load_table(design, words)?;
+        }
+        Ok(())
+    }
 }
 
 impl Engine for RustHdl {

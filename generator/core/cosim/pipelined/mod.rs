@@ -40,6 +40,8 @@ pub(super) struct Pipe {
     reference: Reference,
     stages: Occupancy<PipelinedPoint>,
     out_ready: bool,
+    /// Whether the environment offers a point in the latest clock.
+    offered: bool,
     /// Whether the pipeline took a point in the latest clock.
     pub(super) taken: bool,
 }
@@ -49,6 +51,7 @@ pub(super) struct Pipe {
 enum ComparedValue {
     OutValid,
     InReady,
+    TableReady,
     Side,
     Result(usize),
     Checkpoint(usize),
@@ -75,6 +78,10 @@ impl Pipe {
             nets.push(in_ready);
             columns.push((ComparedValue::InReady, latency));
         }
+        if let Some(table_ready) = design.port(|role| role == Role::TableReady) {
+            nets.push(table_ready.net);
+            columns.push((ComparedValue::TableReady, latency));
+        }
         if let Some(side_out) = ports.side_out {
             nets.push(side_out);
             columns.push((ComparedValue::Side, latency));
@@ -97,6 +104,7 @@ impl Pipe {
             reference: Reference::new(design, pipeline, model, ports, &results)?,
             stages: Occupancy::empty(latency, pipeline.interval),
             out_ready: true,
+            offered: false,
             taken: true,
         };
         Ok((pipe, nets, results))
@@ -114,9 +122,10 @@ impl Pipe {
     ) -> Result<()> {
         let rst_n = inputs[ports.reset] == 1;
         self.out_ready = ports.out_ready.is_none_or(|at| inputs[at] == 1);
+        self.offered = inputs[ports.start] == 1;
         self.taken = self.stages.takes(self.out_ready);
         let mut point = None;
-        if self.taken && rst_n && inputs[ports.start] == 1 {
+        if self.taken && rst_n && self.offered {
             let mut operands = vec![0; ports.operands.len()];
             ports.operands.iter().for_each(|port| operands[port.at] = port.raw(inputs));
             let patterns = ports.operands.iter().map(|port| inputs[port.data]);
@@ -144,6 +153,9 @@ impl Pipe {
         match column {
             ComparedValue::OutValid => Some(point.is_some().into()),
             ComparedValue::InReady => Some(self.stages.takes(self.out_ready).into()),
+            ComparedValue::TableReady => {
+                Some((!self.offered && self.stages.is_empty()).into())
+            }
             ComparedValue::Side => point.map(|point| point.side),
             ComparedValue::Result(at) => point.map(|point| point.expected.results[at]),
             ComparedValue::Checkpoint(at) => point.and_then(|point| point.expected.registers[at]),

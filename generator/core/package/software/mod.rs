@@ -11,6 +11,7 @@ mod recompute;
 mod registers;
 mod setup;
 mod stream;
+mod table;
 
 use anyhow::Result;
 
@@ -18,6 +19,7 @@ use super::emit_job::EmitJob;
 use super::output_files::OutputFiles;
 use super::tops::Top;
 pub use recompute::check as check_recomputation;
+pub use table::{image_file, image_header};
 
 /// Adds the software files that the configuration asks for.
 ///
@@ -40,6 +42,7 @@ pub fn files(job: &EmitJob, tops: &[Top], files: &mut OutputFiles) -> Result<()>
     if let Some((_, instructions)) = &job.instructions {
         instructions::file(job, instructions, files)?;
     }
+    table::files(job, files)?;
     if job.inputs.around.litex {
         litex::file(job, tops, files)?;
     }

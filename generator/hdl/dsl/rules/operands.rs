@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use crate::netlist::{Design, Driver, NetId, Role};
+use crate::netlist::{Design, Driver, NetId, Role, WritePort};
 use glint_base::codes;
 use glint_base::cone::reached;
 use glint_base::diagnostic::Diagnostic;
@@ -34,7 +34,10 @@ pub(in crate::dsl) fn read_by(design: &Design, id: NetId) -> Vec<NetId> {
         }
         Driver::Rom(rom) => {
             let rom = design.rom(rom);
-            [rom.address].into_iter().chain(rom.enable).collect()
+            let mut read = vec![rom.address];
+            read.extend(rom.enable);
+            read.extend(rom.write.iter().flat_map(WritePort::nets));
+            read
         }
         _ => design.combinational_inputs(id),
     }

@@ -129,6 +129,11 @@ impl<'e, 'a> Clock<'e, 'a> {
         let address = self.value(design.rom(rom).address);
         let net = design.net(design.rom(rom).data);
         let words = &design.rom(rom).words;
+        if design.rom(rom).write.is_some() {
+            // Its words are not known.
+            let read = Cell::Read { rom, address };
+            return self.graph().insert(read, net.format, net.format.range(), &label(net));
+        }
         // ROMs with the same words become reads of the first one, so that equal reads are merged.
         let first = design
             .roms

@@ -1,0 +1,254 @@
+//! `glint table`: finds the words with which the writable table of a core computes another function, and proves their error.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Result, bail, ensure};
+use clap::Args;
+use serde_json::{Value, json};
+
+use super::{Loaded, load_one};
+use crate::report::CommandReport;
+use crate::{OutputOptions, destination, say};
+use glint_base::config_error::ConfigError;
+use glint_base::program::Program;
+use glint_base::{identifier, input, text};
+use glint_config::{Config, Value as KeyValue};
+use glint_core::core::Core;
+use glint_core::cosim::batch::{Engine, Golden, Points, RustHdl};
+use glint_core::package::{TableImage, TableLayout, image_file, image_header};
+use glint_core::registry::Registry;
+use glint_keys::images;
+use glint_rtl::verilog;
+
+/// Find the words for another function in the writable table of a core, and prove their error
+///
+/// The datapath of the core stays as it is: the command fits coefficients of the same formats, and proves the error of the result at
+/// every operand. Then it loads the words through the write port of the core in the built-in simulator, and compares the results with the
+/// golden model. With --out, it writes the image as a C header, as a binary file, and as memory files for a core that starts with it.
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  glint table fog.toml \"exp(-3*x)\"                               does the table hold it, with which error?
+  glint table fog.toml \"exp(-3*x)\" --name smoke --out build      also writes build/fog_table_smoke.h and other files
+  glint table fog.toml squared                                   an image that the configuration names
+  glint table fog.toml \"sqrt(x)\" --error 4                       allows a larger error")]
+pub struct Arguments {
+    /// A configuration with `approximation.tables = \"writable\"`
+    config: PathBuf,
+    /// A formula of the operand x, or the name of an image in the table `images` of the configuration
+    #[arg(value_name = "FORMULA")]
+    formula: String,
+    /// The name of the image in the names of files and constants [default: the name in the configuration, or `image`]
+    #[arg(long)]
+    name: Option<String>,
+    /// The allowed error in units of the last place of the result [default: result.error of the configuration]
+    #[arg(long, value_name = "UNITS")]
+    error: Option<f64>,
+    /// Write the image into this directory
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Also replace files with other contents
+    #[arg(long, requires = "out")]
+    force: bool,
+}
+
+/// The largest number of operands that the command simulates. It takes evenly spaced ones of a larger domain.
+const MOST_SIMULATED: u64 = 1 << 16;
+
+/// Fails if the configuration has problems or no writable table, if the table cannot hold the function with the allowed error, or if a
+/// file cannot be written. Returns whether the simulated core, loaded with the image, equals the golden model.
+pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
+    let one = load_one(registry, &arguments.config)?;
+    let Some(layout) = TableLayout::of(&one.core.design) else {
+        bail!(
+            "{}: the core has no table that can be written; the device `function` has one with \
+             approximation.tables = \"writable\"",
+            one.path
+        );
+    };
+    let (name, config) = image_config(&one, arguments)?;
+    let formula = config.text("function.formula").to_owned();
+    let opened = one.core.opened.refitted(config).map_err(|error| unheld(&formula, &error))?;
+    let core = Core::build(opened)?;
+    ensure!(
+        TableLayout::of(&core.design).as_ref() == Some(&layout),
+        "the image needs another datapath, a mistake of Glint"
+    );
+    let image = core.table_image(&name);
+    let simulated = simulate(&one.core, &core, &image)?;
+    let mut files = Vec::new();
+    if let Some(out) = &arguments.out {
+        files = write(out, arguments, &one, &core, &layout, &image)?;
+    }
+    let holds = simulated.first_difference.is_none();
+    output.report(&FittedImage { one: &one, layout, image, core: &core, simulated, files })?;
+    Ok(holds)
+}
+
+/// Returns the error of a function that the table cannot hold. Its place in the formula is marked.
+fn unheld(formula: &str, error: &ConfigError) -> anyhow::Error {
+    let mut text = format!("the table cannot hold `{formula}`: {}", error.message);
+    if let Some(place) = error.place.as_ref().filter(|place| formula.is_char_boundary(place.start)) {
+        let before = formula[..place.start].chars().count();
+        let width = formula.get(place.clone()).map_or(1, |marked| marked.chars().count().max(1));
+        text += &format!("\n  {formula}\n  {}{}", " ".repeat(before), "^".repeat(width));
+    }
+    anyhow::anyhow!("{text}\n  = help: {}", error.remedy)
+}
+
+/// Returns the name of the image, and the configuration of the core with its function.
+fn image_config(one: &Loaded, arguments: &Arguments) -> Result<(String, Config)> {
+    let known = images::configs(one.core.config());
+    let known = known.into_iter().find(|(name, _)| *name == arguments.formula);
+    let (own_name, mut config) = known.unwrap_or_else(|| {
+        ("image".to_owned(), images::with_formula(one.core.config(), &arguments.formula))
+    });
+    if let Some(error) = arguments.error {
+        ensure!(
+            (0.5..=1024.0).contains(&error),
+            "--error {error} is not between 0.5 and 1024 units"
+        );
+        config.set("result.error", KeyValue::Number(error));
+    }
+    let name = arguments.name.clone().unwrap_or(own_name);
+    if let Err(reason) = identifier::check(&name) {
+        bail!("`{name}` cannot be the name of an image: {reason}");
+    }
+    Ok((name, config))
+}
+
+struct SimulatedImage {
+    operands: usize,
+    is_every: bool,
+    /// The raw operand, the simulated and the expected result at the first difference.
+    first_difference: Option<[i64; 3]>,
+}
+
+/// Loads the image into the simulated core `base`, and compares its results with the contract of the core `with_image`.
+fn simulate(base: &Core, with_image: &Core, image: &TableImage) -> Result<SimulatedImage> {
+    let contract = with_image.contract.as_ref();
+    let (first, last) = contract.operands()[0].domain;
+    let count = last.abs_diff(first) + 1;
+    let step = count.div_ceil(MOST_SIMULATED).max(1);
+    let mut points = Points::new(1);
+    let mut operands = Vec::new();
+    for raw in (first..=last).step_by(step as usize) {
+        operands.push(raw);
+        points.push([raw], 1);
+    }
+    let mut simulated = RustHdl::new(&base.design, contract)?;
+    simulated.load_table(&base.design, &image.words)?;
+    let found = simulated.compute(&points)?;
+    let expected = Golden(contract).compute(&points)?;
+    let differs = found.iter().zip(&expected).position(|(found, expected)| found != expected);
+    Ok(SimulatedImage {
+        operands: operands.len(),
+        is_every: step == 1,
+        first_difference: differs.map(|at| [operands[at], found[at], expected[at]]),
+    })
+}
+
+/// Writes the image, and returns the paths of the files.
+///
+/// # Errors
+/// Without `--force`, fails if a file is there already with other contents. Nothing is written then.
+fn write(
+    out: &Path,
+    arguments: &Arguments,
+    one: &Loaded,
+    core: &Core,
+    layout: &TableLayout,
+    image: &TableImage,
+) -> Result<Vec<String>> {
+    let name = &core.config().name;
+    let command = format!(
+        "{Program} table {} {:?} --name {}",
+        input::label(&one.path),
+        arguments.formula,
+        image.name
+    );
+    let header = image_header(name, &command, layout, image)?;
+    let mut files: Vec<(String, Vec<u8>)> = vec![
+        (image_file(name, &image.name), header.into_bytes()),
+        (format!("{name}_table_{}.bin", image.name), layout.binary(image)),
+    ];
+    for (memory, contents) in verilog::writable_memories(&core.design)? {
+        let own = format!("{name}_{}_{memory}.mem", image.name);
+        files.push((own, contents.into_bytes()));
+    }
+    if !arguments.force {
+        for (file, contents) in &files {
+            let path = out.join(file);
+            let is_same = std::fs::read(&path).map_or(!path.exists(), |found| found == *contents);
+            ensure!(
+                is_same,
+                "`{}` is there already with other contents: choose another --out or --name, or replace it with --force",
+                path.display()
+            );
+        }
+    }
+    let mut paths = Vec::new();
+    for (file, contents) in files {
+        let path = out.join(file);
+        destination::replace(&path, contents)?;
+        paths.push(path.display().to_string().replace('\\', "/"));
+    }
+    Ok(paths)
+}
+
+struct FittedImage<'a> {
+    one: &'a Loaded,
+    layout: TableLayout,
+    image: TableImage,
+    core: &'a Core,
+    simulated: SimulatedImage,
+    files: Vec<String>,
+}
+
+impl CommandReport for FittedImage<'_> {
+    fn json(&self) -> Result<Value> {
+        let Self { one, layout, image, simulated, files, .. } = self;
+        let parts = layout.parts.iter().map(|(port, format)| json!([port, format.to_string()]));
+        Ok(json!({
+            "ok": simulated.first_difference.is_none(),
+            "config": one.path,
+            "image": image.name,
+            "formula": image.formula,
+            "bound_in_units": image.bound,
+            "layout": format!("{:016x}", layout.digest),
+            "parts": parts.collect::<Vec<Value>>(),
+            "words": image.words,
+            "simulated_operands": simulated.operands,
+            "simulated_every_operand": simulated.is_every,
+            "files": files,
+        }))
+    }
+
+    fn print(&self) -> Result<()> {
+        let Self { one, layout, image, simulated, files, core } = self;
+        say!("{}: the table holds {}", one.path, image.formula);
+        let error = text::rounded_up(image.bound, 4);
+        let limit = core.config().number("result.error");
+        say!("  error: at most {error} units of the last place, below the allowed {limit}, proved at every operand");
+        let mut parts = Vec::new();
+        for (port, format) in &layout.parts {
+            parts.push(format!("{port} {format}"));
+        }
+        say!("  table: {} words of {} bits ({})", layout.words, layout.word_bits(), parts.join(", "));
+        let which = if simulated.is_every { "every operand" } else { "evenly spaced operands" };
+        match simulated.first_difference {
+            None => say!(
+                "  loaded in the built-in simulator: {which} ({}) equals the golden model",
+                text::grouped(simulated.operands as u64)
+            ),
+            Some([operand, found, expected]) => say!(
+                "  loaded in the built-in simulator: at the raw operand {operand}, the core gives {found}, and the golden model \
+                 {expected}"
+            ),
+        }
+        for file in files {
+            say!("  {file}");
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,177 @@
+//! Plans writable tables of the device `function`: the polynomials of several functions for one datapath.
+//!
+//! A configuration names the functions that the table must hold. `glint table` later fits others to the same datapath.
+
+use glint_approximate::{
+    Curve, Identity, Piecewise, Refusal, RefusalKind, TargetFunction, Wish, find_images,
+    reachable_image_error,
+};
+use glint_base::config_error::ConfigError;
+use glint_base::identifier;
+use glint_config::{Config, TableEntry, Value};
+use glint_formula::parse;
+
+use super::stated_function::{Keys, misread, stated_function};
+
+/// The value of `approximation.tables` for a table that can be written.
+const WRITABLE: &str = "writable";
+
+pub(super) fn are_tables_writable(keys: &Keys) -> bool {
+    keys.tables == WRITABLE
+}
+
+/// Checks the keys of a writable table; any other table is accepted.
+///
+/// # Errors
+/// Fails if the keys ask for segments, a degree or a range reduction that a writable table cannot have, or if an image has a bad name
+/// or a wrong formula.
+pub(super) fn check(keys: &Keys) -> Result<(), ConfigError> {
+    if !are_tables_writable(keys) {
+        return Ok(());
+    }
+    if keys.reduction != Identity::None {
+        return Err(ConfigError::new(
+            "approximation.reduction",
+            "a range reduction holds for one function, and a writable table gets others",
+            "remove approximation.reduction, or set approximation.tables to \"fixed\"",
+        ));
+    }
+    if !matches!(keys.segments.as_str(), "auto" | "uniform") {
+        return Err(ConfigError::new(
+            "approximation.segments",
+            "the segments of a writable table are equally long",
+            "set approximation.segments to \"uniform\", or approximation.tables to \"fixed\"",
+        ));
+    }
+    if keys.degree == "0" {
+        return Err(ConfigError::new(
+            "approximation.degree",
+            "a writable table has polynomials of degree 1 to 3",
+            "set approximation.degree to \"auto\", \"1\", \"2\" or \"3\"",
+        ));
+    }
+    check_names(&keys.images.0)?;
+    for image in &keys.images.0 {
+        image_function(keys, image)?;
+    }
+    Ok(())
+}
+
+/// Checks that the names of images are identifiers that differ in more than upper and lower case, because they are parts of file
+/// names.
+fn check_names(images: &[TableEntry]) -> Result<(), ConfigError> {
+    for (number, image) in images.iter().enumerate() {
+        let name = &image.name;
+        let key = key_of(image);
+        let remedy = "give the image another name";
+        if let Err(reason) = identifier::check(name) {
+            let message = format!("`{name}` cannot be the name of an image: {reason}");
+            return Err(ConfigError::new(key, message, remedy));
+        }
+        if images[..number].iter().any(|other| other.name.eq_ignore_ascii_case(name)) {
+            let message =
+                format!("another image has the name `{name}`, apart from upper and lower case");
+            return Err(ConfigError::new(key, message, remedy));
+        }
+    }
+    Ok(())
+}
+
+fn key_of(image: &TableEntry) -> String {
+    format!("images.{}", image.name)
+}
+
+/// Returns the function of an image, with the domain, the formats and the error of the configuration.
+fn image_function(keys: &Keys, image: &TableEntry) -> Result<TargetFunction, ConfigError> {
+    let text = image.text("formula").unwrap_or_default();
+    let formula = parse(text).and_then(|formula| formula.of_operand("x"));
+    let key = format!("{}.formula", key_of(image));
+    let formula = formula.map_err(|fault| ConfigError { key, ..misread("", fault) })?;
+    let own = stated_function(keys)?;
+    Ok(TargetFunction { curve: Curve::Formula(formula), ..own })
+}
+
+/// Finds one datapath for `function`, which the configuration states, and for all its images. Returns the polynomials of `function`.
+///
+/// # Errors
+/// Fails if no datapath keeps the error of all of them. The error names a key to change.
+pub(super) fn find_common(
+    keys: &Keys,
+    function: &TargetFunction,
+    wish: Wish,
+) -> Result<Piecewise, ConfigError> {
+    let mut functions = vec![function.clone()];
+    for image in &keys.images.0 {
+        functions.push(image_function(keys, image)?);
+    }
+    let found = find_images(&functions, wish).map_err(|refusal| unplanned(keys, refusal))?;
+    Ok(found.into_iter().next().expect("the image of the function itself"))
+}
+
+/// Returns the name and the configuration of each image: that of the core, with the formula of the image. A core without a writable
+/// table has none.
+pub fn configs(config: &Config) -> Vec<(String, Config)> {
+    let keys = Keys::of(config);
+    if !are_tables_writable(&keys) {
+        return Vec::new();
+    }
+    let mut configs = Vec::new();
+    for image in &keys.images.0 {
+        let formula = image.text("formula").unwrap_or_default();
+        configs.push((image.name.clone(), with_formula(config, formula)));
+    }
+    configs
+}
+
+/// Returns the configuration of a core with another formula, in place of its own formula or samples.
+pub fn with_formula(config: &Config, formula: &str) -> Config {
+    let mut changed = config.clone();
+    changed.set("function.formula", Value::Text(formula.to_owned()));
+    changed.set("function.samples", Value::Text(String::new()));
+    changed
+}
+
+/// Fits another function to the datapath of `table`.
+///
+/// # Errors
+/// Fails if the table cannot be written, or cannot hold the function with its error.
+pub(super) fn refit(table: &Piecewise, function: &TargetFunction) -> Result<Piecewise, ConfigError> {
+    if !table.is_writable {
+        return Err(ConfigError::new(
+            "approximation.tables",
+            "the table of this core is a ROM",
+            "set approximation.tables to \"writable\", and generate the core again",
+        ));
+    }
+    table.image(function).map_err(|refusal| unheld(table, function, refusal))
+}
+
+/// Turns the refusal of a datapath for all functions into an error of a key.
+fn unplanned(keys: &Keys, refusal: Refusal) -> ConfigError {
+    let (key, remedy) = match refusal.kind {
+        RefusalKind::NoValue => {
+            ("function.from", "exclude such operands: change function.from or function.to")
+        }
+        _ if keys.images.0.is_empty() => {
+            ("result.error", "allow a larger result.error, or set approximation.tables to \"fixed\"")
+        }
+        _ => ("result.error", "allow a larger result.error, or remove an image"),
+    };
+    ConfigError::new(key, refusal.message, remedy)
+}
+
+/// Turns the refusal of an image into an error of the formula.
+fn unheld(table: &Piecewise, function: &TargetFunction, refusal: Refusal) -> ConfigError {
+    let remedy = match refusal.kind {
+        RefusalKind::NoValue => {
+            "the table covers the whole domain of the core: choose a function with a value at each operand"
+                .to_owned()
+        }
+        _ => {
+            let larger = reachable_image_error(table, function)
+                .map_or(String::new(), |error| format!("allow an error of {error} units, or "));
+            format!("{larger}add the function to the table `images` of the configuration, and generate the core again")
+        }
+    };
+    ConfigError::new("function.formula", refusal.message, remedy).at(refusal.place)
+}
