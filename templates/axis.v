@@ -36,6 +36,9 @@ module ${ name }$_axis #(
 ) (
     input  wire aclk,
     input  wire aresetn,  // active low, synchronous
+<%- for port in table_ports %>
+    ${ port }$
+<%- endfor %>
     input  wire [${ in_high }$:0] s_axis_tdata,
 <%- if keep %>
     input  wire [${ in_high / 8 }$:0] s_axis_tkeep,

@@ -19,6 +19,9 @@ ${ line }$
 module ${ module.name }$_cfu (
     input  wire        clk,
     input  wire        reset,  // active high, synchronous
+<%- for port in module.table_ports %>
+    ${ port }$
+<%- endfor %>
     input  wire        cmd_valid,
     output wire        cmd_ready,
     input  wire [9:0]  cmd_payload_function_id,

@@ -19,6 +19,9 @@ module ${ module.name }$_pcpi #(
 ) (
     input  wire        clk,
     input  wire        resetn,  // active low, synchronous
+<%- for port in module.table_ports %>
+    ${ port }$
+<%- endfor %>
     input  wire        pcpi_valid,
     input  wire [31:0] pcpi_insn,
     input  wire [31:0] pcpi_rs1,

@@ -10,6 +10,9 @@
     ${ top }$ dut (
         .clk(clk),
         .reset(reset),
+<%- for port in table_ports %>
+        ${ port }$
+<%- endfor %>
         .cmd_valid(cmd_valid),
         .cmd_ready(cmd_ready),
         .cmd_payload_function_id(function_id),
@@ -69,6 +72,9 @@
     ${ top }$ dut (
         .clk(clk),
         .resetn(~reset),
+<%- for port in table_ports %>
+        ${ port }$
+<%- endfor %>
         .pcpi_valid(pcpi_valid),
         .pcpi_insn(pcpi_insn),
         .pcpi_rs1(pcpi_rs1),

@@ -7,7 +7,8 @@ ${ line }$
 // A write that starts a computation waits until the computation before it has ended, and so does a
 // read of a result. No other access waits. Before the first computation has ended, results read as
 // 0. The core loads all operands at once when it starts, so software may write new operands while
-// the core computes. A write in which no byte is enabled changes nothing. An access to an address
+// the core computes.<% if !writes_table.is_empty() %> A write to a register of the table waits while a word
+// waits for the end of a computation.<% endif %> A write in which no byte is enabled changes nothing. An access to an address
 // outside this map gets an error and changes nothing, and so does a write to a read-only register.
 // The two lowest bits of an address are ignored.
 //
@@ -41,12 +42,18 @@ module ${ name }$_registers (
     reg  interrupt_enable;
     reg  interrupt_pending;
     reg  finished;
+<%- if !writes_table.is_empty() %>
+    reg  table_pending;  // a word of the table waits until no computation runs
+<%- endif %>
 <%- for operand in operands %>
     reg  ${ operand.range }$ operand_${ operand.name }$;
 <%- endfor %>
 
     wire busy;
     wire done;
+<%- if !writes_table.is_empty() %>
+    wire table_ready;
+<%- endif %>
 <%- for line in result_wires %>
     ${ line }$
 <%- endfor %>
@@ -65,7 +72,15 @@ ${ line }$
     wire write_start = (write_at == ${ control }$) & write_bytes[0] & write_data[0];
     wire written_start = start_on_write & (write_at == start_word) & (|write_bytes);
     wire starts = write_start | (writable & written_start);
+<%- if writes_table.is_empty() %>
     assign write_answer = write & ~(starts & under_way);
+<%- else %>
+<%- for line in writes_table %>
+${ line }$
+<%- endfor %>
+    // The registers of the table keep their values until the core has loaded the word.
+    assign write_answer = write & ~(starts & under_way) & ~(writes_table & table_pending);
+<%- endif %>
     assign write_error = ~writable;
 
     always @(posedge clk) begin
@@ -76,6 +91,9 @@ ${ line }$
             interrupt_enable <= 1'b0;
             interrupt_pending <= 1'b0;
             finished <= 1'b0;
+<%- if !writes_table.is_empty() %>
+            table_pending <= 1'b0;
+<%- endif %>
         end else begin
             start <= write_answer & starts;
             if (write_answer & (write_at == ${ control }$)) begin
@@ -91,6 +109,13 @@ ${ line }$
                 interrupt_pending <= 1'b0;
             end
             finished <= done | (finished & ~start);
+<%- if !writes_table.is_empty() %>
+            if (write_answer & (write_at == ${ table_address }$) & (|write_bytes)) begin
+                table_pending <= 1'b1;
+            end else if (table_ready) begin
+                table_pending <= 1'b0;
+            end
+<%- endif %>
         end
     end
     assign irq = interrupt_enable & interrupt_pending;

@@ -59,16 +59,27 @@ module ${ name }$_registers_formal (
     wire [31:0] write_word = write_at;
     wire [31:0] read_word = read_at;
     wire write_mapped =
-            write_word >= ${ control_number }$ && write_word <= ${ last_operand_number }$;
+            write_word >= ${ control_number }$ && write_word <= ${ last_written_number }$;
     wire is_result =
             read_word >= ${ first_result_number }$ && read_word <= ${ last_result_number }$;
+<%- if let Some((first, last)) = table %>
+    wire is_table = write_word >= ${ first }$ && write_word <= ${ last }$;
+<%- endif %>
     wire asks_start = write_mapped
             && (dut.start_on_write && write_word == dut.start_word && write_bytes != 0
                 || write_word == ${ control_number }$ && write_bytes[0] && write_data[0]);
 
     always @* if (!$initstate) begin
         // A request waits only while a computation runs. There is no answer without a request.
+<%- if table.is_none() %>
         if (write && !write_answer) assert (asks_start && (dut.start || dut.core.run));
+<%- else %>
+        if (write && !write_answer) begin
+            assert (asks_start && (dut.start || dut.core.run) || is_table && dut.table_pending);
+        end
+        // The core gets the word that was written.
+        assert (dut.core.table_write == dut.table_pending);
+<%- endif %>
         if (read && !read_answer) assert (is_result && (dut.start || dut.core.run));
         if (!write) assert (!write_answer);
         if (!read) assert (!read_answer);
@@ -122,6 +133,19 @@ ${ line }$
         assert (dut.interrupt_pending == ($past(dut.core.run && dut.core.ends)
                 || $past(dut.interrupt_pending)
                 && !(took_pending && $past(write_bytes[0] && write_data[0]))));
+<%- if let Some((_, last)) = table %>
+        // A write to the address of the table asks for a word to be loaded, until the core is ready.
+        assert (dut.table_pending == (took && took_word == ${ last }$ && $past(write_bytes != 0)
+                || $past(dut.table_pending && !dut.core.table_ready)));
+        // A word does not change while it waits.
+        if ($past(dut.table_pending && !dut.core.table_ready)) begin
+<%- for operand in operands %>
+<%- if operand.is_of_table %>
+            assert ($stable(dut.operand_${ operand.name }$));
+<%- endif %>
+<%- endfor %>
+        end
+<%- endif %>
         assert (dut.finished == ($past(dut.core.run && dut.core.ends)
                 || $past(dut.finished) && !$past(dut.start)));
 <%- for operand in operands %>

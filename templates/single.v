@@ -14,6 +14,9 @@
 module ${ name }$_single (
     input  wire clk,
     input  wire rst_n,  // active low, synchronous
+<%- for port in table_ports %>
+    ${ port }$
+<%- endfor %>
 <%- for operand in operands %>
     input  wire ${ operand.range }$${ operand.name }$,
     input  wire ${ operand.name }$_write,

@@ -57,6 +57,9 @@ module ${ name }$_axis_tb #(
     ${ name }$_axis dut (
         .aclk(aclk),
         .aresetn(aresetn),
+<%- for port in table_ports %>
+        ${ port }$
+<%- endfor %>
         .s_axis_tdata(s_axis_tdata),
 <%- if keep %>
         .s_axis_tkeep(s_axis_tkeep),

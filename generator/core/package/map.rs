@@ -12,7 +12,7 @@ use super::inputs::EmitInputs;
 use super::wrap::single::{colliding_port, started};
 use glint_base::config_error::ConfigError;
 use glint_base::fixed::Format;
-use glint_rtl::netlist::{Design, Port, Role};
+use glint_rtl::netlist::{Design, Port, Role, TABLE_ADDRESS};
 use glint_rtl::verilog::text::ascii;
 
 /// The number of bits of a register.
@@ -110,6 +110,8 @@ pub struct Map {
     pub registers: Vec<BusRegister>,
     /// The operands in the order of the ports.
     pub operands: Vec<PortPlacement>,
+    /// The parts of a word of a writable table, and last its address: a write to the address writes the word into the table.
+    pub table: Vec<PortPlacement>,
     /// The results in the order of the ports.
     pub results: Vec<PortPlacement>,
 }
@@ -150,6 +152,12 @@ impl Map {
             }
         }
         let last_operand = place - 1;
+        let mut table = Vec::new();
+        for wanted in [Role::TableWord, Role::TableAddress] {
+            for port in design.inputs().filter(|port| port.role == wanted) {
+                table.push(placed(design, port, String::new(), &mut place));
+            }
+        }
         let results = results(design, &mut place);
         if operands.is_empty() || results.is_empty() {
             let what = if operands.is_empty() { "operand" } else { "result" };
@@ -163,19 +171,45 @@ impl Map {
         for operand in &operands {
             registers.extend(own(operand, Access::Write, &doc(design, &operand.name)));
         }
+        for port in &table {
+            let doc = match port.name.as_str() {
+                TABLE_ADDRESS => {
+                    "The word of the table to write; a write to this register writes the word, when no computation runs"
+                        .to_owned()
+                }
+                name => doc(design, name),
+            };
+            registers.extend(own(port, Access::Write, &doc));
+        }
         registers.extend(of_results(&results, design));
-        let map = Self { registers, operands, results };
+        let map = Self { registers, operands, table, results };
         map.check(name)?;
         Ok(map)
     }
 
+    /// Returns the ports that software writes through registers: the operands, then those of a writable table.
+    pub fn written(&self) -> impl Iterator<Item = &PortPlacement> {
+        self.operands.iter().chain(&self.table)
+    }
+
+    /// Returns the word address of the last register that software can write.
+    pub fn last_written(&self) -> u32 {
+        last_place(self.written())
+    }
+
+    /// Returns the word address of the last operand.
     pub fn last_operand(&self) -> u32 {
-        last_place(&self.operands)
+        last_place(self.operands.iter())
+    }
+
+    /// Returns the word addresses of the first and the last register of a writable table.
+    pub fn table_places(&self) -> Option<(u32, u32)> {
+        (!self.table.is_empty()).then(|| (self.last_operand() + 1, self.last_written()))
     }
 
     /// Returns the word address of the last register, which holds a result.
     pub fn last(&self) -> u32 {
-        last_place(&self.results)
+        last_place(self.results.iter())
     }
 
     /// Returns the number of bits of a byte address. For example, a map whose last register has word address 15 needs 6 bits.
@@ -203,8 +237,8 @@ fn registers_error(message: String, remedy: &str) -> ConfigError {
     ConfigError::new("interface.registers", message, remedy)
 }
 
-fn last_place(ports: &[PortPlacement]) -> u32 {
-    let parts = ports.iter().flat_map(|port| &port.parts);
+fn last_place<'p>(ports: impl Iterator<Item = &'p PortPlacement>) -> u32 {
+    let parts = ports.flat_map(|port| &port.parts);
     parts.map(|part| part.place).max().unwrap_or_default()
 }
 

@@ -9,7 +9,7 @@ use super::file_kind::FileKind;
 use super::output_files::OutputFiles;
 use super::processor::ProcessorInterface;
 use super::wrap::fields::Transfer;
-use glint_rtl::netlist::{Design, Role};
+use glint_rtl::netlist::{Design, Port, Role};
 use glint_rtl::verilog::text::ascii;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -133,7 +133,8 @@ pub fn tops(job: &EmitJob, files: &OutputFiles) -> Result<Vec<Top>> {
             });
         };
     if job.inputs.around.stream {
-        add("axis", Face::Stream, "between two AXI4-Streams".to_owned(), 0, stream_ports(job)?);
+        let ports = with_table(stream_ports(job)?, design);
+        add("axis", Face::Stream, "between two AXI4-Streams".to_owned(), 0, ports);
     }
     if let Some((bus, map)) = &job.registers {
         let ports = listed(&bus.ports.replace('#', &map.address_bits().to_string()));
@@ -142,7 +143,7 @@ pub fn tops(job: &EmitJob, files: &OutputFiles) -> Result<Vec<Top>> {
     }
     if let Some((interface, _)) = &job.instructions {
         let what = format!("behind {}", interface.title);
-        let ports = listed(interface.ports);
+        let ports = with_table(listed(interface.ports), design);
         add(interface.key, Face::Processor(interface), what, interface.reset_level, ports);
     }
     Ok(tops)
@@ -150,18 +151,27 @@ pub fn tops(job: &EmitJob, files: &OutputFiles) -> Result<Vec<Top>> {
 
 fn core_ports(design: &Design) -> Vec<TopPort> {
     let mut ports = listed("in clk");
-    for port in &design.ports {
-        let net = design.net(port.net);
-        let width = net.format.width();
-        ports.push(TopPort {
-            name: net.name.clone(),
-            input: port.role.is_input(),
-            width,
-            vector: width > 1,
-            signal: String::new(),
-            doc: ascii(&net.doc),
-        });
+    ports.extend(design.ports.iter().map(|port| core_port(design, port)));
+    ports
+}
+
+fn core_port(design: &Design, port: &Port) -> TopPort {
+    let net = design.net(port.net);
+    let width = net.format.width();
+    TopPort {
+        name: net.name.clone(),
+        input: port.role.is_input(),
+        width,
+        vector: width > 1,
+        signal: String::new(),
+        doc: ascii(&net.doc),
     }
+}
+
+/// Adds the write port of a table behind the clock and the reset.
+fn with_table(mut ports: Vec<TopPort>, design: &Design) -> Vec<TopPort> {
+    let of_table = design.ports.iter().filter(|port| port.role.is_of_table());
+    ports.splice(2..2, of_table.map(|port| core_port(design, port)));
     ports
 }
 

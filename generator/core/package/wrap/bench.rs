@@ -10,6 +10,7 @@ use glint_base::fill;
 use super::fields::{StreamField, Transfer};
 use super::points::{points, received, sent};
 use super::processor::ids;
+use super::table_ports;
 use crate::observation::Vectors;
 use crate::package::emit_job::EmitJob;
 use crate::package::file_kind::FileKind;
@@ -68,6 +69,7 @@ pub fn files(job: &EmitJob, vectors: &Vectors, files: &mut OutputFiles) -> Resul
             // Words of 32 bits that tuser needs.
             user_words: u32 = user_bits.div_ceil(32),
             offer_high: u32 = out_high + 1 + user_bits,
+            table_ports: Vec<String> = table_ports::tied(design),
         })?;
         files.add_verilog(FileKind::Bench, vec![format!("{name}_axis_tb")], text);
         add_python(job, "axis", &["streams_carry_every_point"], files)?;
@@ -88,6 +90,7 @@ pub fn files(job: &EmitJob, vectors: &Vectors, files: &mut OutputFiles) -> Resul
             // The bits of the opcode in the bench's variable `point`; empty without an opcode.
             opcode: String = opcode_bits(instructions, point_operands),
             ids: Vec<String> = ids(instructions),
+            table_ports: Vec<String> = table_ports::tied(design),
             results: Vec<String> =
                 results.fields.iter().map(|field| field_word(field, 0, "result")).collect(),
         })?;
@@ -227,7 +230,7 @@ fn opcode_bits(instructions: &Instructions, fields: &[StreamField]) -> String {
 /// Returns the bus registers of the results. If results share one register, the list has one entry, in which they are
 /// adjacent, each in whole bytes, as in a stream.
 fn of_results(map: &Map, fields: &[StreamField]) -> Vec<BenchRegister> {
-    if map.last() > map.last_operand() + 1 || fields.len() == 1 {
+    if map.last() > map.last_written() + 1 || fields.len() == 1 {
         return accesses(&map.results, fields, "result");
     }
     let all = StreamField {

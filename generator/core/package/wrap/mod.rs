@@ -8,6 +8,7 @@ pub(super) mod processor;
 mod registers;
 pub(super) mod single;
 mod stream;
+pub(super) mod table_ports;
 mod words;
 
 use anyhow::Result;
@@ -70,7 +71,8 @@ fn add_proof(
 }
 
 /// Returns the port connections of the core's instance, the clock first. `to` returns the net for a port. If it returns
-/// `None`, an input is connected to `1'b0`, and an output to the wire of [`core_wire`]. For example, `.busy(core_busy)`.
+/// `None`, an input is connected to `1'b0`, and an output to the wire of [`core_wire`]. For example, `.busy(core_busy)`. The write
+/// port of a table is connected to nets with the names of its ports.
 fn connected(
     design: &Design,
     clock: &str,
@@ -79,6 +81,7 @@ fn connected(
     let ports = design.ports.iter().map(|port| {
         let name = design.net(port.net).name.as_str();
         let to = to(port.role, name).unwrap_or_else(|| match port.role.is_input() {
+            _ if port.role.is_of_table() => name.to_owned(),
             true => "1'b0".to_owned(),
             false => format!("core_{name}"),
         });
@@ -121,7 +124,7 @@ impl CoreStub {
 fn stub_free(design: &Design) -> Vec<String> {
     let mut lines = Vec::new();
     for port in &design.ports {
-        if matches!(port.role, Role::Result | Role::Status) {
+        if matches!(port.role, Role::Result | Role::Status | Role::TableReady) {
             let net = design.net(port.net);
             let any = format!("(* anyseq *) reg {} any_{};", range(net.format.width()), net.name);
             lines.push(any.replace("  ", " "));

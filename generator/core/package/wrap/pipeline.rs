@@ -4,7 +4,7 @@ use anyhow::{Result, ensure};
 use glint_base::fill;
 
 use super::fields::{StreamField, Transfer, sink};
-use super::{add_proof, connected, seen_inside, stub_ports};
+use super::{add_proof, connected, seen_inside, stub_ports, table_ports};
 use crate::package::emit_job::EmitJob;
 use crate::package::file_kind::FileKind;
 use crate::package::output_files::OutputFiles;
@@ -79,6 +79,7 @@ pub fn modules(job: &EmitJob, pipeline: &Pipeline, files: &mut OutputFiles) -> R
         side: u32 = pipeline.side,
         packed: Vec<String> = separated(results.packed("core_")),
         connections: Vec<String>,
+        table_ports: Vec<String> = table_ports::declared(design),
         unused: Vec<String> = sink(&unused),
     })?;
     files.add_verilog(FileKind::StreamWrapper, vec![format!("{name}_axis")], text);

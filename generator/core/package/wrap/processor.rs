@@ -5,7 +5,7 @@ use anyhow::Result;
 
 use super::fields::sink;
 use super::single::started;
-use super::{CoreStub, add_proof, connected, core_wire, seen_inside};
+use super::{CoreStub, add_proof, connected, core_wire, seen_inside, table_ports};
 use crate::package::emit_job::EmitJob;
 use crate::package::file_kind::FileKind;
 use crate::package::instructions::{InstructionOperand, Instructions, OPCODE_BITS};
@@ -24,6 +24,8 @@ pub struct ProcessorModule {
     pub table: Vec<String>,
     pub result_wires: Vec<String>,
     pub connections: Vec<String>,
+    /// The ports of the write port of the core's table.
+    pub table_ports: Vec<String>,
     /// The declaration of a wire that says whether there is an instruction with the function id `taken`.
     pub known: Vec<String>,
     pub answers: Vec<ResultAnswer>,
@@ -86,7 +88,7 @@ fn processor_module(job: &EmitJob, instructions: &Instructions) -> ProcessorModu
     let mut unused = vec!["word_0".to_owned(), "word_1".to_owned()];
     let mut result_wires = Vec::new();
     for port in design.outputs() {
-        if matches!(port.role, Role::Valid | Role::Busy) {
+        if matches!(port.role, Role::Valid | Role::Busy | Role::TableReady) {
             continue;
         }
         result_wires.push(core_wire(design, port));
@@ -101,6 +103,7 @@ fn processor_module(job: &EmitJob, instructions: &Instructions) -> ProcessorModu
         table: table(instructions),
         result_wires,
         connections,
+        table_ports: table_ports::declared(design),
         known: known(instructions),
         answers: answers(instructions, "core_"),
         unused: sink(&unused),

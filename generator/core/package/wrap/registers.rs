@@ -23,6 +23,7 @@ struct OperandWords {
     name: String,
     range: String,
     zero: String,
+    is_of_table: bool,
     lanes: Vec<ByteLane>,
 }
 
@@ -58,14 +59,17 @@ fn block(job: &EmitJob, map: &Map) -> Result<String> {
     let connections = connected(design, "clk", |role, name| match role {
         Role::Reset => Some("rst_n".to_owned()),
         Role::Start | Role::Busy | Role::Done => Some(name.to_owned()),
-        Role::Operand { .. } => Some(format!("operand_{name}")),
+        Role::Operand { .. } | Role::TableAddress | Role::TableWord => {
+            Some(format!("operand_{name}"))
+        }
+        Role::TableWrite => Some("table_pending".to_owned()),
         Role::Strobe if map.operands.iter().any(|it| it.strobe == name) => Some("start".to_owned()),
         _ => None,
     });
     let mut unused = vec!["write_data".to_owned(), "write_bytes".to_owned()];
     let mut result_wires = Vec::new();
     for port in design.outputs() {
-        if matches!(port.role, Role::Busy | Role::Done) {
+        if matches!(port.role, Role::Busy | Role::Done | Role::TableReady) {
             continue;
         }
         result_wires.push(core_wire(design, port));
@@ -93,10 +97,15 @@ fn block(job: &EmitJob, map: &Map) -> Result<String> {
         enable: String = place(map::INTERRUPT_ENABLE),
         pending: String = place(map::INTERRUPT_PENDING),
         last_operand: String = place(map.last_operand()),
-        writable: Vec<String> = among("writable", "write_at", (map::CONTROL, map.last_operand())),
+        writable: Vec<String> = among("writable", "write_at", (map::CONTROL, map.last_written())),
         readable: Vec<String> = among("readable", "read_at", (0, map.last())),
+        writes_table: Vec<String> = map
+            .table_places()
+            .map_or_else(Vec::new, |places| among("writes_table", "write_at", places)),
+        // The register whose write loads a word.
+        table_address: String = place(map.last_written()),
         read_result: Vec<String> =
-            among("read_result", "read_at", (map.last_operand() + 1, map.last())),
+            among("read_result", "read_at", (map.last_written() + 1, map.last())),
         unused: Vec<String> = sink(&unused),
     })
 }
@@ -126,7 +135,7 @@ fn indented(text: &str) -> Vec<String> {
 fn operands(map: &Map) -> Vec<OperandWords> {
     let word_bits = map.address_bits() - 2;
     let mut words = Vec::new();
-    for operand in &map.operands {
+    for operand in map.written() {
         let width = operand.format.width();
         let mut lanes = Vec::new();
         for part in &operand.parts {
@@ -145,6 +154,7 @@ fn operands(map: &Map) -> Vec<OperandWords> {
             name: operand.name.clone(),
             range: range(width),
             zero: literal(0, width),
+            is_of_table: map.table.iter().any(|port| port.name == operand.name),
             lanes,
         });
     }
@@ -168,7 +178,7 @@ fn read(map: &Map, register: &BusRegister) -> Vec<String> {
         parts.push(literal(0, above));
     }
     let value = format!("{{{}}}", parts.join(", "));
-    let value = if register.place > map.last_operand() {
+    let value = if register.place > map.last_written() {
         format!("($past(dut.finished) ? {value} : 0)")
     } else {
         value
@@ -188,9 +198,9 @@ fn source(map: &Map, register: &BusRegister, bits: &RegisterBits) -> String {
         ("control", name) => format!("dut.{name}"),
         ("interrupt_enable" | "interrupt_pending", _) => format!("dut.{}", register.name),
         _ => {
-            let is_operand = register.place <= map.last_operand();
-            let ports = if is_operand { &map.operands } else { &map.results };
-            let found = ports.iter().find_map(|port| {
+            let is_operand = register.place <= map.last_written();
+            let mut ports = map.written().chain(&map.results);
+            let found = ports.find_map(|port| {
                 let mut parts = port.parts.iter();
                 let part = parts.find(|it| (it.place, it.at) == (register.place, bits.low))?;
                 Some((port, *part))
@@ -226,7 +236,12 @@ fn proof(job: &EmitJob, map: &Map) -> Result<String> {
     ];
     let mut inside: Vec<(String, u32)> =
         own.into_iter().map(|(net, width)| (net.to_owned(), width)).collect();
-    for operand in &map.operands {
+    if !map.table.is_empty() {
+        inside.push(("table_pending".to_owned(), 1));
+        inside.push(("core.table_ready".to_owned(), 1));
+        inside.push(("core.table_write".to_owned(), 1));
+    }
+    for operand in map.written() {
         let width = operand.format.width();
         inside.push((format!("operand_{}", operand.name), width));
         inside.push((format!("core.{}", operand.name), width));
@@ -241,8 +256,9 @@ fn proof(job: &EmitJob, map: &Map) -> Result<String> {
         word_high: u32 = word_bits - 1,
         word_count: u32 = map.last() + 1,
         control_number: u32 = map::CONTROL,
-        last_operand_number: u32 = map.last_operand(),
-        first_result_number: u32 = map.last_operand() + 1,
+        last_written_number: u32 = map.last_written(),
+        first_result_number: u32 = map.last_written() + 1,
+        table: Option<(u32, u32)> = map.table_places(),
         last_result_number: u32 = map.last(),
         operands: Vec<OperandWords> = operands(map),
         // The place of each register, and the word that a read of it gives.

@@ -8,7 +8,7 @@ use std::borrow::Cow;
 use anyhow::Result;
 use glint_base::fill;
 
-use super::{add_proof, connected, seen_inside, stub_ports};
+use super::{add_proof, connected, seen_inside, stub_ports, table_ports};
 use crate::package::emit_job::EmitJob;
 use crate::package::file_kind::FileKind;
 use crate::package::output_files::OutputFiles;
@@ -29,6 +29,7 @@ pub fn started(design: &Design) -> Cow<'_, Design> {
     for port in &design.ports {
         match port.role {
             Role::Reset => single.ports.push(port.clone()),
+            role if role.is_of_table() => single.ports.push(port.clone()),
             Role::Point => {
                 let name = format!("{}_write", design.net(port.net).name);
                 let strobe = bit(&mut single, name);
@@ -130,6 +131,7 @@ pub fn modules(job: &EmitJob, pipeline: &Pipeline, files: &mut OutputFiles) -> R
         operands: Vec<SinglePort> = ports_of(Role::Point),
         results: Vec<SinglePort> = ports_of(Role::Result),
         connections: Vec<String>,
+        table_ports: Vec<String> = table_ports::declared(design),
     })?;
     files.add_verilog(FileKind::SingleWrapper, vec![single.name.clone()], verilog);
     let mut inside = vec![("offered".to_owned(), 1), ("arrives".to_owned(), 1)];

@@ -5,7 +5,7 @@ use anyhow::{Context, Result};
 use glint_base::fill;
 
 use super::fields::{StreamField, Transfer, sink};
-use super::{add_proof, connected, core_wire, seen_inside, stub_free, stub_ports};
+use super::{add_proof, connected, core_wire, seen_inside, stub_free, stub_ports, table_ports};
 use crate::package::emit_job::EmitJob;
 use crate::package::file_kind::FileKind;
 use crate::package::output_files::OutputFiles;
@@ -100,6 +100,7 @@ pub fn modules(job: &EmitJob, files: &mut OutputFiles) -> Result<()> {
         result_wires: Vec<String>,
         packed: Vec<String> = separated(results.packed("core_")),
         connections: Vec<String>,
+        table_ports: Vec<String> = table_ports::declared(design),
         // The kind of net that drives the outputs: a register, or a wire from the buffer.
         output: &'a str = if line.is_some() { "wire" } else { "reg " },
         line: Option<&'a LineStream> = line.as_ref(),

@@ -70,13 +70,13 @@ pub fn words(design: &Design, map: &Map) -> Vec<Word> {
         "{31'd0, interrupt_enable}".to_owned(),
         "{31'd0, interrupt_pending}".to_owned(),
     ];
-    for operand in &map.operands {
+    for operand in map.written() {
         let parts = operand.parts.iter();
         reads.extend(
             parts.map(|part| extended(operand, part, &format!("operand_{}", operand.name), false)),
         );
     }
-    if map.last() > map.last_operand() + 1 || map.results.len() == 1 {
+    if map.last() > map.last_written() + 1 || map.results.len() == 1 {
         for result in &map.results {
             let parts = result.parts.iter();
             reads.extend(
@@ -90,7 +90,7 @@ pub fn words(design: &Design, map: &Map) -> Vec<Word> {
     let mut words = Vec::new();
     for (number, read) in (u64::from(map::CONSTANTS)..).zip(reads) {
         let index = literal(number, word_bits);
-        let is_result = number > u64::from(map.last_operand());
+        let is_result = number > u64::from(map.last_written());
         words.push(Word { number, index, read, is_result });
     }
     words
