@@ -29,6 +29,16 @@ ${ line }$
 
     // The reset is active in the first clock. The state before it is arbitrary.
     always @* if ($initstate) assume (!rst_n);
+<%- if let Some(load) = table_load %>
+
+    // The table loads a word only while no computation runs.
+    (* hierconn *) wire ${ load }$;
+    always @* if (!$initstate) begin
+        assert (table_ready == !busy);
+        if (busy) assert (!${ load }$);
+        if (table_write && table_ready) assert (${ load }$);
+    end
+<%- endif %>
 <%- if let Some(age) = age %>
 
     // The number of clocks since start.

@@ -50,6 +50,14 @@ ${ line }$
         if (!rst_n) ${ queue }$ <= ${ empty }$;
         else if (${ moves }$) ${ queue }$ <= ${ queue_next }$;
     end
+<%- if let Some(load) = table_load %>
+
+    // The table loads a word only while no point is in the pipeline or offered.
+    always @* if (!$initstate) begin
+        assert (table_ready == !(in_valid || ${ present }$ != ${ empty }$));
+        assert (${ load }$ == (table_write && table_ready));
+    end
+<%- endif %>
 <%- if let Some(side) = side %>
 
     // Follows one arbitrary point, which the free input ${ chosen }$ chooses: its stage and its

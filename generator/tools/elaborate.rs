@@ -10,7 +10,7 @@ use super::sources::YosysSources;
 
 /// Returns the module `top` with everything that it instantiates, as Yosys's JSON object of this module. The cells are under
 /// the key `cells`, and the nets under `netnames`. The netlist has word-level cells, registers and memories. Yosys optimises
-/// away only logic that nothing reads.
+/// away only logic that nothing reads. The inputs `held_low`, of one bit each, are 0 and no inputs of the result.
 ///
 /// # Errors
 /// Fails if a file cannot be written, or if Yosys refuses the files, takes longer than `limit`, or writes no netlist.
@@ -18,12 +18,20 @@ pub fn elaborate(
     yosys: &Tool,
     files: &[(String, String)],
     top: &str,
+    held_low: &[&str],
     limit: Duration,
 ) -> Result<Value> {
     const NETLIST: &str = "netlist.json";
     let sources = YosysSources::new(yosys, files, limit)?;
+    let mut hold = String::new();
+    for input in held_low {
+        hold += &format!("delete -input {top}/w:{input}; connect -set {input} 1'b0; opt_expr; ");
+    }
+    // Memories that are written only while such an input is 1 become read-only.
+    let read_only = if held_low.is_empty() { "" } else { "opt_mem; " };
     sources.run(&format!(
-        "hierarchy -check -top {top}; proc; flatten; memory_collect; opt_clean; write_json {NETLIST}"
+        "hierarchy -check -top {top}; proc; flatten; {hold}memory_collect; {read_only}opt_clean; \
+         write_json {NETLIST}"
     ))?;
     Ok(sources.json(NETLIST)?["modules"][top].take())
 }

@@ -14,7 +14,9 @@ use super::output_files::OutputFiles;
 use crate::observation::Computation;
 use glint_rtl::netlist::HandshakeTiming;
 use glint_rtl::netlist::termination::{self, Left};
-use glint_rtl::netlist::{Design, Driver, NetId, Op, Partition, RegId, Role, Sequence};
+use glint_rtl::netlist::{
+    Design, Driver, NetId, Op, Partition, RegId, Role, Sequence, TABLE_LOAD,
+};
 use glint_rtl::verilog::naming::Naming;
 use glint_rtl::verilog::rows::{Row, connections, separated};
 use glint_rtl::verilog::text::{Names, literal, range};
@@ -170,6 +172,8 @@ pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<()> {
         ..bounded_view(design, naming, &instance, &mut names, (&left, most), age)
     });
     let within = format!("{instance}.{}.*", naming.instance(Partition::Datapath));
+    let unit = naming.instance(Partition::Datapath);
+    let table_load = design.find(TABLE_LOAD).map(|_| format!("\\{instance}.{unit}.{TABLE_LOAD} "));
     let wrapper = fill!("formal.sv" {
         name: &'a str = &name,
         module: &'a str,
@@ -180,6 +184,8 @@ pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<()> {
         ports: Vec<String> = separated(inputs_of(design)),
         outputs: Vec<String> = outputs_of(design),
         connections: Vec<String> = connections(design),
+        // The path of the net that is 1 while a word of the table is loaded.
+        table_load: Option<String>,
         // Whether the microprogram never waits for a second `start`, so that `busy` is high from `start` to `done`.
         straight: bool = !waits,
         // Whether the core also accepts `start` in the clock of `done`.

@@ -11,7 +11,7 @@ use glint_base::fill;
 use super::emit_job::EmitJob;
 use super::formal::{Script, inputs_of, outputs_of};
 use super::output_files::OutputFiles;
-use glint_rtl::netlist::{NetId, Pipeline, Role};
+use glint_rtl::netlist::{NetId, Pipeline, Role, TABLE_LOAD};
 use glint_rtl::verilog::naming::Naming;
 use glint_rtl::verilog::rows::{connections, separated};
 use glint_rtl::verilog::text::{Names, literal, range};
@@ -86,6 +86,7 @@ pub fn files(job: &EmitJob, pipeline: &Pipeline, files: &mut OutputFiles) -> Res
             })
             .collect(),
     });
+    let table_load = design.find(TABLE_LOAD).map(|_| seen(TABLE_LOAD, ""));
     let (queue, followed, begins) =
         (names.fresh("queue"), names.fresh("followed"), names.fresh("begins"));
     let shifted = |register: &str, first: &str| match latency {
@@ -105,6 +106,7 @@ pub fn files(job: &EmitJob, pipeline: &Pipeline, files: &mut OutputFiles) -> Res
         outputs: Vec<String> = outputs_of(design),
         connections: Vec<String> = connections(design),
         inside: Vec<String>,
+        table_load: Option<String>,
         stages: usize = latency,
         // The net that has one bit for each stage: whether the stage holds a point.
         valid: String,

@@ -21,6 +21,7 @@ use glint_base::target::{COMPARED, Family};
 use glint_base::text::{counted, grouped};
 use glint_core::core::{BENCH_SEED, Core};
 use glint_core::package::{self, FileKind, OutputFile};
+use glint_rtl::netlist::Role;
 use glint_tools::gates;
 use glint_tools::gates::cells::{LIBERTY, Start};
 use glint_tools::synthesis::synthesise;
@@ -161,8 +162,13 @@ pub const TEXT: Check = Check {
             return Ok(Finding::without(CheckVerdict::NotApplicable, why));
         }
         let limit = if effort.full { effort.time_limit } else { EQUAL.min(effort.time_limit) };
+        // A word that the table loads would change the results of later points.
+        let writes = core.design.port(|role| role == Role::TableWrite);
+        let held_low: Vec<&str> =
+            writes.iter().map(|port| core.design.net(port.net).name.as_str()).collect();
+        let sources = subject.sources("")?;
         let text =
-            elaborate(&tools[0], &subject.sources("")?, &core.config().name, effort.time_limit)?;
+            elaborate(&tools[0], &sources, &core.config().name, &held_low, effort.time_limit)?;
         Ok(match equality::compare_text(&core.design, &text, &tools[1], limit)? {
             equality::TextVerdict::Equal(proof) => Finding::new(
                 CheckVerdict::Proved,
@@ -457,7 +463,9 @@ pub const GATES: Check = Check {
             .collect::<Result<_>>()?;
         let titles: Vec<&str> = families.iter().map(|family| family.title).collect();
         let mut failures: Vec<String> = failures.into_iter().flatten().collect();
-        let cells = Path::new(LIBERTY).is_file();
+        // Standard cells have no memory whose contents are known before they are written.
+        let is_written = subject.core.design.roms.iter().any(|rom| rom.write.is_some());
+        let cells = Path::new(LIBERTY).is_file() && !is_written;
         if cells {
             let rtl = subject.core.verilog()?;
             let names: Vec<String> = rtl.iter().map(|(name, _)| name.clone()).collect();
@@ -484,7 +492,15 @@ pub const GATES: Check = Check {
             "Every output is right on every clock.",
         )
         .failures(failures)
-        .open("Timing: the models of the cells have no delays. Families for which not all cells have models."))
+        .open(match is_written {
+            true => {
+                "Timing: the models of the cells have no delays. Families for which not all cells have models. Standard \
+                 cells, in which a table that can be written has no words at power-up."
+            }
+            false => {
+                "Timing: the models of the cells have no delays. Families for which not all cells have models."
+            }
+        }))
     },
 };
 
