@@ -27,11 +27,8 @@ pub fn elaborate(
     for input in held_low {
         hold += &format!("delete -input {top}/w:{input}; connect -set {input} 1'b0; opt_expr; ");
     }
-    // Memories that are written only while such an input is 1 become read-only.
-    let read_only = if held_low.is_empty() { "" } else { "opt_mem; " };
     sources.run(&format!(
-        "hierarchy -check -top {top}; proc; flatten; {hold}memory_collect; {read_only}opt_clean; \
-         write_json {NETLIST}"
+        "hierarchy -check -top {top}; proc; flatten; {hold}memory_collect; opt_clean; write_json {NETLIST}"
     ))?;
     Ok(sources.json(NETLIST)?["modules"][top].take())
 }

@@ -191,7 +191,9 @@ impl Module {
         let width = parameter(cell, "WIDTH")?;
         let places = parameter(cell, "ABITS")?;
         let reads = parameter(cell, "RD_PORTS")?;
-        let writes = parameter(cell, "WR_PORTS")?;
+        // A port that is never enabled writes nothing.
+        let is_enabled = connection(cell, "WR_EN")?.iter().any(|bit| *bit != Bit::Known(false));
+        let writes = if is_enabled { parameter(cell, "WR_PORTS")? } else { 0 };
         let read_data = connection(cell, "RD_DATA")?;
         let read_addresses = connection(cell, "RD_ADDR")?;
         let clocked = cell["parameters"]["RD_CLK_ENABLE"].as_str().unwrap_or("1");
