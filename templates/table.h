@@ -11,6 +11,10 @@
 
 #include <stddef.h>
 #include <stdint.h>
+<%- if !registers.is_empty() %>
+
+#include "${ name }$_registers.h"
+<%- endif %>
 
 #ifdef __cplusplus
 extern "C" {
@@ -125,6 +129,33 @@ ${ name }$_table_load(const ${ name }$_table_image *image, ${ name }$_table_writ
     }
     return ${ prefix }$_TABLE_OK;
 }
+
+<%- if !registers.is_empty() %>
+
+/* Does the same through the registers of the core at `base`. Writes nothing either if the core at
+ * `base` has another configuration. */
+static inline int
+${ name }$_table_load_registers(volatile uint32_t *base, const ${ name }$_table_image *image)
+{
+    const int answer = ${ name }$_table_check(image);
+    uint32_t word;
+    if (answer != ${ prefix }$_TABLE_OK) {
+        return answer;
+    }
+    if (${ name }$_read(base, ${ prefix }$_REG_CONFIGURATION) != ${ prefix }$_CONFIGURATION) {
+        return ${ prefix }$_TABLE_OTHER_CORE;
+    }
+    for (word = 0; word < ${ prefix }$_TABLE_WORDS; ++word) {
+        const ${ kind }$ *parts = image->words[word];
+<%- for (register, part, shift) in registers %>
+        ${ name }$_write(base, ${ prefix }$_REG_${ register }$, (uint32_t)(parts[${ part }$] >> ${ shift }$));
+<%- endfor %>
+        /* The core loads the word when no computation runs. The next write waits for that. */
+        ${ name }$_write(base, ${ prefix }$_REG_TABLE_ADDRESS, word);
+    }
+    return ${ prefix }$_TABLE_OK;
+}
+<%- endif %>
 
 #ifdef __cplusplus
 }

@@ -13,6 +13,10 @@ use glint_rtl::netlist::About;
 
 use crate::plan::{PlanOutput, describe_plan};
 
+/// A note on a table that can be written.
+const WRITABLE: &str = "The table can be written: raise table_write with an address and the coefficients until table_ready is \
+                        high. `glint table` finds the coefficients for another function, and proves their error.";
+
 /// `planned` must be the plan of the function that the configuration states.
 pub fn describe(d: &Designer, config: &Config, planned: &FunctionPlan) {
     let polynomials = &planned.polynomials;
@@ -39,18 +43,22 @@ fn about(keys: &Keys, proof: &str, it: &Piecewise) -> About {
             it.rom_bits()
         ),
     };
+    let mut notes = vec![
+        format!("The domain is x from {from} to {to}, {ends}.").into(),
+        format!(
+            "{reduced}{shape}. {proof}: the error is at most {} units of the last place.",
+            text::rounded_up(it.bound, 4)
+        )
+        .into(),
+    ];
+    if it.is_writable {
+        notes.push(WRITABLE.to_owned().into());
+    }
     About {
         device: "function".to_owned(),
         title: format!("{formula}, by piecewise polynomials"),
         formula: format!("result = {formula}"),
         source: "The configuration".to_owned(),
-        notes: vec![
-            format!("The domain is x from {from} to {to}, {ends}.").into(),
-            format!(
-                "{reduced}{shape}. {proof}: the error is at most {} units of the last place.",
-                text::rounded_up(it.bound, 4)
-            )
-            .into(),
-        ],
+        notes,
     }
 }

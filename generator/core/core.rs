@@ -58,6 +58,7 @@ impl Core {
     /// - A result depends on an earlier computation, the golden model never shows a result, or the formula gives a wrong number
     ///   of values.
     /// - The constraints ask for a faster clock than the pipeline was scheduled for.
+    /// - The configuration writes ROMs as functions, and the table of the core can be written.
     /// - The configuration sets `package.rom_style`, and no ROM of the core can have such an attribute.
     /// - The configuration asks for a program that recomputes results, and the contract does not allow one; see
     ///   [`Core::recomputation`].
@@ -98,6 +99,7 @@ impl Core {
             package::check_clock(config, pipeline)?;
         }
         package::check_rom_style(config, &design)?;
+        package::check_written_memories(config, &design)?;
         opened.check_golden()?;
         let contract = opened.contract();
         opened.check_contract(&design, contract.as_ref())?;

@@ -220,7 +220,7 @@ fn of_text(core: &Core, limit: u64, change: impl Fn(&str) -> String) -> TextVerd
         let text = if file.kind.is_verilog() { change(text) } else { text.to_owned() };
         files.push((name.to_owned(), text));
     }
-    let text = elaborate(&yosys, &files, &core.config().name, limit).expect("a netlist");
+    let text = elaborate(&yosys, &files, &core.config().name, &[], limit).expect("a netlist");
     compare_text(&core.design, &text, &z3, limit).expect("a verdict")
 }
 

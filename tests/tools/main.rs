@@ -39,6 +39,7 @@ mod soc;
 mod software;
 mod synth;
 mod synthesis;
+mod tables;
 mod vendor;
 mod verilog;
 mod video;

@@ -14,6 +14,7 @@ use super::inputs::EmitInputs;
 use super::map::BusRegister;
 use super::output_file::digest;
 use super::output_files::OutputFiles;
+use super::table_image::TableLayout;
 use super::wrap::fields::Transfer;
 use crate::observation::{Computation, ContractFacts, Quantity};
 use glint_rtl::netlist::{CoreFunction, Design, FunctionPort, HandshakeTiming, Pipeline, RegId};
@@ -37,6 +38,8 @@ struct Manifest<'a> {
     ports: Vec<PortFacts<'a>>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     functions: Vec<Value>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    table: Option<Value>,
     timing: &'a HandshakeTiming,
     #[serde(skip_serializing_if = "Option::is_none")]
     control: Option<Value>,
@@ -125,6 +128,7 @@ pub fn contents(job: &EmitJob, others: &OutputFiles) -> Result<String> {
         scale: "value = raw * 2^-fraction_bits",
         ports: facts::ports(design),
         functions: functions(design),
+        table: table(job),
         timing: &inputs.timing,
         control: design.pipeline.is_none().then(|| control(design)),
         pipeline: design.pipeline.as_ref().map(pipeline),
@@ -153,6 +157,23 @@ pub fn contents(job: &EmitJob, others: &OutputFiles) -> Result<String> {
         stream: inputs.around.stream.then(|| stream(job)).transpose()?,
     };
     Ok(serde_json::to_string_pretty(&manifest)? + "\n")
+}
+
+/// Returns the layout of a writable table, and the functions for which the core has images.
+fn table(job: &EmitJob) -> Option<Value> {
+    let layout = TableLayout::of(job.design)?;
+    let parts = layout.parts.iter().map(|(port, format)| {
+        json!({ "port": port, "format": format.to_string() })
+    });
+    let images = job.inputs.images.iter().map(|image| {
+        json!({ "name": image.name, "formula": image.formula, "bound": image.bound, "words": image.words })
+    });
+    Some(json!({
+        "layout": format!("{:016x}", layout.digest),
+        "words": layout.words,
+        "parts": parts.collect::<Vec<Value>>(),
+        "images": images.collect::<Vec<Value>>(),
+    }))
 }
 
 /// Returns the functions of a core that computes several. The place in the list is the opcode.

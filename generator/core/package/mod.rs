@@ -70,7 +70,7 @@ pub use output_files::OutputFiles;
 pub use points::{POINTS_FILE, PointsBench, RESULTS_FILE};
 pub use seal::{Seal, is_sealed, sealed, sealed_json, sealed_object};
 pub use software::{check_recomputation, image_file, image_header};
-pub use surroundings::{Surroundings, check_clock, check_rom_style};
+pub use surroundings::{Surroundings, check_clock, check_rom_style, check_written_memories};
 pub use table_image::{TableImage, TableLayout, words_of};
 
 /// Returns a Verilog test bench that computes the points (sets of operands) of a file. The simulation ends with `FAIL` if a

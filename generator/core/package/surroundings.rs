@@ -18,6 +18,9 @@ const CLOCK: &str = "package.clock_mhz";
 /// The key that says whether ROMs should be in memory blocks or in look-up tables.
 const ROM_STYLE: &str = "package.rom_style";
 
+/// The key that says where the contents of ROMs are.
+const MEMORIES: &str = "package.memories";
+
 /// Checks that the clock of the constraint files is not faster than the clock for which the pipeline is scheduled.
 ///
 /// # Errors
@@ -52,7 +55,7 @@ pub fn check_rom_style(config: &Config, design: &Design) -> Result<(), ConfigErr
     if style == "auto" {
         return Ok(());
     }
-    if config.choice("package.memories") == "case" {
+    if config.choice(MEMORIES) == "case" {
         let message = format!(
             "`{ROM_STYLE}` = \"{style}\" has no effect with package.memories = \"case\": a ROM is then a \
              Verilog function, which cannot have an attribute"
@@ -71,6 +74,23 @@ pub fn check_rom_style(config: &Config, design: &Design) -> Result<(), ConfigErr
         ),
         "remove the key",
     ))
+}
+
+/// Checks that the Verilog can write the table of the core.
+///
+/// # Errors
+/// Fails if the core has a table that can be written, and `package.memories` writes ROMs as functions.
+pub fn check_written_memories(config: &Config, design: &Design) -> Result<(), ConfigError> {
+    let is_written = design.roms.iter().any(|rom| rom.write.is_some());
+    if is_written && config.choice(MEMORIES) == "case" {
+        let message = format!(
+            "`{MEMORIES}` = \"case\" writes tables as Verilog functions, and the table of `{}` can be written",
+            design.name
+        );
+        let remedy = "set package.memories = \"files\" or \"inline\"";
+        return Err(ConfigError::new(MEMORIES, message, remedy));
+    }
+    Ok(())
 }
 
 /// The wrappers and packages that a configuration asks for in addition to the core.

@@ -5,8 +5,10 @@ use glint_base::{fill, text};
 
 use crate::package::emit_job::EmitJob;
 use crate::package::file_kind::FileKind;
+use crate::package::map::Map;
 use crate::package::output_files::OutputFiles;
 use crate::package::table_image::{TableImage, TableLayout};
+use glint_rtl::netlist::TABLE_ADDRESS;
 use glint_rtl::verilog::text::{ascii, constant_name};
 
 /// The first eight bytes of an image as a file, as a little-endian number in hexadecimal.
@@ -24,6 +26,7 @@ pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<()> {
         true => ("int32_t", "uint32_t"),
         false => ("int64_t", "uint64_t"),
     };
+    let registers = job.registers.as_ref().map_or_else(Vec::new, |(_, map)| part_registers(map));
     let header = fill!("table.h" {
         name: &'a str,
         title: String = plain(&job.design.about.title),
@@ -35,6 +38,8 @@ pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<()> {
         parts: Vec<String>,
         kind: &'a str,
         unsigned: &'a str,
+        // The registers of the parts, each with the number of the part and its lowest bit there.
+        registers: Vec<(String, usize, u32)>,
     })?;
     files.add(FileKind::Software, format!("{name}_table.h"), header);
     for image in &job.inputs.images {
@@ -42,6 +47,19 @@ pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<()> {
         files.add(FileKind::Software, image_file(name, &image.name), contents);
     }
     Ok(())
+}
+
+/// Returns the constant of each register that takes a part of a word, with the number of the part and its lowest bit in the register.
+fn part_registers(map: &Map) -> Vec<(String, usize, u32)> {
+    let mut registers = Vec::new();
+    for (number, port) in map.table.iter().enumerate() {
+        for part in port.parts.iter().filter(|_| port.name != TABLE_ADDRESS) {
+            let register = map.registers.iter().find(|register| register.place == part.place);
+            let name = register.map_or("", |register| &register.name);
+            registers.push((constant_name(name), number, part.low));
+        }
+    }
+    registers
 }
 
 /// Returns the name of the header of an image, such as `fog_table_exp2.h`.
