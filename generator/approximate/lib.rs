@@ -140,7 +140,7 @@ pub struct Piecewise {
     pub result: Format,
     /// The proved bound of the error, in units of the last bit of the result, or infinity if no proof was made.
     pub bound: f64,
-    /// Whether the words can be replaced at run time, by those of another function.
+    /// Whether the words can be replaced at run time, to give another function.
     pub is_writable: bool,
 }
 

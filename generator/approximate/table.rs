@@ -110,6 +110,8 @@ pub(super) struct Table<'s> {
     seen: &'s AllowedResults<'s>,
     cut: Segments,
     pieces: Vec<Option<CandidateSegment>>,
+    /// The smallest and the largest raw value of each coefficient, the constant first; empty without limits.
+    limits: Vec<(i64, i64)>,
 }
 
 /// Raw coefficients with the constant first, for each word that an operand reads.
@@ -117,9 +119,20 @@ pub(super) type Words = Vec<Option<Vec<i64>>>;
 
 impl<'s> Table<'s> {
     pub(super) fn new(seen: &'s AllowedResults<'s>, cut: Segments) -> Self {
-        let mut table = Self { seen, cut, pieces: Vec::new() };
+        let mut table = Self { seen, cut, pieces: Vec::new(), limits: Vec::new() };
         table.pieces = table.words().map(|word| table.piece(word)).collect();
         table
+    }
+
+    /// Limits the coefficients to the numbers of these formats, the constant first.
+    pub(super) fn within(self, formats: &[Format]) -> Self {
+        let limits = |format: &Format| (format.min_raw() as i64, format.max_raw() as i64);
+        Self { limits: formats.iter().map(limits).collect(), ..self }
+    }
+
+    /// Returns the nearest number that coefficient `k` can have.
+    fn limited(&self, k: usize, coefficient: i64) -> i64 {
+        self.limits.get(k).map_or(coefficient, |&(least, most)| coefficient.clamp(least, most))
     }
 
     /// Returns the indices up to the last word that an operand of the domain reads.
@@ -175,7 +188,7 @@ impl<'s> Table<'s> {
         degree: u32,
         worst: &mut Option<i64>,
     ) -> bool {
-        let table = Self { seen, cut, pieces: Vec::new() };
+        let table = Self { seen, cut, pieces: Vec::new(), limits: Vec::new() };
         if let Some(raw) = *worst
             && table.is_too_long(cut.place(seen.number(raw)).word, degree)
         {
@@ -312,8 +325,8 @@ impl<'s> Table<'s> {
         if k == 0 {
             let guard = widths.guard[0] as u32;
             let constant = self.constant(piece, &coefficients[1..], steps, guard);
-            coefficients[0] = constant.unwrap_or(0);
-            return constant.is_some();
+            coefficients[0] = self.limited(0, constant.unwrap_or(0));
+            return constant == Some(coefficients[0]);
         }
         let unit = exp2(-widths.guard[k]);
         let mut rests: Vec<f64> = Vec::with_capacity(piece.at.len());
@@ -326,7 +339,7 @@ impl<'s> Table<'s> {
         let nearest = (wanted + 0.5).floor();
         let other = if wanted < nearest { nearest - 1.0 } else { nearest + 1.0 };
         for coefficient in [nearest, other] {
-            coefficients[k] = coefficient as i64;
+            coefficients[k] = self.limited(k, coefficient as i64);
             let mut sums: Vec<i64> = Vec::with_capacity(piece.at.len());
             for (&offset, product) in piece.offsets.iter().zip(product) {
                 let sum = coefficients[k] + product;

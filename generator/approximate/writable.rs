@@ -145,8 +145,8 @@ impl Piecewise {
     /// proved bound for `function`. The function must have the domain and the operand format of these polynomials.
     ///
     /// # Errors
-    /// Fails if no coefficients of these widths keep the error of `function`, if a coefficient or a sum does not fit its format, or
-    /// if the function has no value at an operand.
+    /// Fails if no coefficients of these formats keep the error of `function`, if a sum or a result does not fit its format, or if the
+    /// function has no value at an operand.
     pub fn image(&self, function: &TargetFunction) -> Result<Self, Refusal> {
         let numbering = function.numbering_without_overhang();
         let misses = || {
@@ -166,22 +166,9 @@ impl Piecewise {
         let guard = self.coefficients.iter().map(|it| it.frac - self.result.frac).collect();
         let offset = self.steps.iter().map(|step| step.offset).collect();
         let widths = Widths { guard, offset };
-        let table = Table::new(&seen, self.segments);
+        let table = Table::new(&seen, self.segments).within(&self.coefficients);
         let words = table.fitted(&widths).ok_or_else(misses)?;
         let fitted = table.finished(&widths, words).ok_or_else(misses)?;
-        for (segment, word) in fitted.words.iter().enumerate() {
-            for (k, (raw, format)) in word.iter().zip(&self.coefficients).enumerate() {
-                if !format.holds(i128::from(*raw)) {
-                    let message = format!(
-                        "coefficient {k} of segment {segment} is {}, and its format {format} holds {} to {}",
-                        format.to_f64(i128::from(*raw)),
-                        format.to_f64(format.min_raw()),
-                        format.to_f64(format.max_raw())
-                    );
-                    return Err(Refusal::new(RefusalKind::ResultBits, message));
-                }
-            }
-        }
         let image = Self { words: fitted.words, bound: f64::INFINITY, ..self.clone() };
         let bound = image.prove(function)?;
         Ok(Self { bound, ..image })

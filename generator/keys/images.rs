@@ -108,8 +108,8 @@ pub(super) fn find_common(
     Ok(found.into_iter().next().expect("the image of the function itself"))
 }
 
-/// Returns the name and the configuration of each image: that of the core, with the formula of the image. A core without a writable
-/// table has none.
+/// Returns the name and the configuration of each image. The configuration is the core's own with the formula of the image. A core without
+/// a writable table has no images.
 pub fn configs(config: &Config) -> Vec<(String, Config)> {
     let keys = Keys::of(config);
     if !are_tables_writable(&keys) {

@@ -187,7 +187,7 @@ impl Map {
         Ok(map)
     }
 
-    /// Returns the ports that software writes through registers: the operands, then those of a writable table.
+    /// Returns the ports that software writes through registers: the operands, then the ports of a writable table.
     pub fn written(&self) -> impl Iterator<Item = &PortPlacement> {
         self.operands.iter().chain(&self.table)
     }

@@ -7,7 +7,7 @@ use super::processor::{PROCESSORS, ProcessorInterface};
 use glint_base::config_error::ConfigError;
 use glint_config::{Config, Schema, Shared};
 use glint_rtl::netlist::{Design, Pipeline};
-use glint_rtl::verilog::naming::Style;
+use glint_rtl::verilog::naming::{RomStyle, Style};
 
 /// The default clock frequency of the constraints for a sequential core, in MHz.
 const CLOCK_MHZ: f64 = 100.0;
@@ -153,10 +153,8 @@ impl Surroundings {
                 inline: keys.memories != "files",
                 case: keys.memories == "case",
                 rom_style: match keys.rom_style.as_str() {
-                    "block" => Some("rom_style = \"block\""),
-                    // Yosys reads the first attribute. For Yosys, distributed memory is memory that can be written, so the
-                    // attribute of a ROM is "logic".
-                    "distributed" => Some("ram_style = \"logic\", rom_style = \"distributed\""),
+                    "block" => Some(RomStyle::Block),
+                    "distributed" => Some(RomStyle::Distributed),
                     _ => None,
                 },
                 initial: keys.initial_values,

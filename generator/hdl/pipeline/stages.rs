@@ -593,7 +593,7 @@ impl StageBuilder<'_> {
         }
     }
 
-    /// Returns the write port of a memory, with the nets that have the same names as those of the sequential design.
+    /// Returns the write port of a memory, with nets of the same names as in the sequential design.
     fn write_port(&self, of: &WritePort) -> WritePort {
         let here = |id: NetId| {
             let name = &self.sequential.net(id).name;

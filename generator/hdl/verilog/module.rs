@@ -352,7 +352,9 @@ impl<'a> Builder<'a> {
             return lines;
         }
         let attribute = match style.rom_style {
-            Some(style) if rom.synchronous => format!("(* {style} *) "),
+            Some(style) if rom.synchronous => {
+                format!("(* {} *) ", style.attributes(rom.write.is_some()))
+            }
             _ => String::new(),
         };
         let (range, last) = (range(width), rom.words.len().saturating_sub(1));

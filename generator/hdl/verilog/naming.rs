@@ -39,10 +39,31 @@ pub struct Style {
     pub inline: bool,
     /// Whether a ROM is a case statement in a function.
     pub case: bool,
-    /// The attribute before the memories of synchronous ROMs, without `(*` and `*)`.
-    pub rom_style: Option<&'static str>,
+    /// Where a synchronous ROM should be; `None` lets the synthesiser decide.
+    pub rom_style: Option<RomStyle>,
     /// Whether an initial block sets registers to 0.
     pub initial: bool,
+}
+
+/// Where a memory should be in an FPGA.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RomStyle {
+    Block,
+    /// In look-up tables.
+    Distributed,
+}
+
+impl RomStyle {
+    /// Returns the attributes of a memory, without `(*` and `*)`. Yosys reads the first one. For Yosys, distributed memory is memory
+    /// that can be written, so that the attribute of a ROM in look-up tables is `logic`.
+    pub fn attributes(self, is_written: bool) -> &'static str {
+        match (self, is_written) {
+            (Self::Block, false) => "rom_style = \"block\"",
+            (Self::Block, true) => "ram_style = \"block\"",
+            (Self::Distributed, false) => "ram_style = \"logic\", rom_style = \"distributed\"",
+            (Self::Distributed, true) => "ram_style = \"distributed\"",
+        }
+    }
 }
 
 impl Naming {

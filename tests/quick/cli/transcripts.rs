@@ -60,6 +60,7 @@ transcripts! {
     schedule
     setup
     synth
+    table
     tune
     usage
     verify
