@@ -15,11 +15,13 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString};
 
 use arrays::{OperandColumn, ResultColumns};
-use glint::config::{ConfigSource, Problems};
+use glint::config::{ConfigSource, Problems, Value};
 use glint::core::Core;
 use glint::cosim::batch::{Engine, Golden, Points, RustHdl};
 use glint::golden::Contract;
 use glint::hdl::netlist::CoreFunction;
+use glint::keys::images;
+use glint::package::words_of;
 use glint::registry::{OpenedConfig, Registry};
 use glint::render::{self, BuiltIn, Light, Material, Object, Scene, Settings, Vector, View};
 use glint::synth::{TARGETS, Target};
@@ -105,6 +107,29 @@ impl PyCore {
     #[getter]
     fn device(&self) -> &str {
         self.core.device().name
+    }
+
+    /// Returns the core with another function of x in its writable table, with an error below `error` units if it is given.
+    fn image(&self, formula: &str, error: Option<f64>) -> PyResult<Self> {
+        let made = || -> Result<Self> {
+            ensure!(
+                !words_of(&self.core.design).is_empty(),
+                "`{}` has no table that can be written: set approximation.tables to \"writable\"",
+                self.core.config().name
+            );
+            let mut config = images::with_formula(self.core.config(), formula);
+            if let Some(error) = error {
+                config.set("result.error", Value::Number(error));
+            }
+            let core = Core::build(self.core.opened.refitted(config)?)?;
+            Ok(Self { core: Arc::new(core) })
+        };
+        made().map_err(wrong)
+    }
+
+    /// Returns the words of the writable table, the raw coefficients of each address; none without such a table.
+    fn table(&self) -> Vec<Vec<i64>> {
+        words_of(&self.core.design)
     }
 
     /// Returns the operands: name, fraction bits, integer bits, sign, domain in raw integers, colour, a sentence.

@@ -163,10 +163,7 @@ class Computation:
 
     def _ports_of_list(self, name):
         """The operands that are the numbers of the list `name`; none if it is no list."""
-        if name in self.operands:
-            return []
-        ports = [port for port in self.operands if re.fullmatch(f"{re.escape(name)}(_[0-9]+|[a-z])", port)]
-        return ports if len(ports) > 1 else []
+        return [] if name in self.operands else _ports_of_list(name, self.operands)
 
     def _values(self, results):
         return [np.ldexp(raw.astype(np.float64), -port.fraction) for raw, port in zip(results, self.outputs.values())]
@@ -175,7 +172,19 @@ class Computation:
         results = [array.reshape(shape) if shape else array.item() for array in results]
         if mask is not None:
             results = [np.ma.array(array, mask=mask) for array in results]
-        return results[0] if len(results) == 1 else dict(zip(self.outputs, results))
+        return results[0] if len(results) == 1 else Results(zip(self.outputs, results))
+
+
+class Results(dict):
+    """Results by output. The name of a list gives an array whose last axis has its numbers: `w_out`, for `w_0_out`, `w_1_out` and so on."""
+
+    def __missing__(self, name):
+        ports = _ports_of_list(name, self)
+        if not ports:
+            raise KeyError(f"there is no output {name!r}; the outputs are {', '.join(self)}")
+        columns = [self[port] for port in ports]
+        masked = any(isinstance(column, np.ma.MaskedArray) for column in columns)
+        return (np.ma if masked else np).stack(columns, axis=-1)
 
 
 class Core(Computation):
@@ -192,17 +201,23 @@ class Core(Computation):
         path = None if config is None else os.fspath(config)
         self._set(_glint.Core(path, device, {key: _plain(key, value) for key, value in keys.items()}))
 
-    def _set(self, core):
+    def _set(self, core, image=None):
         self._core = core
+        # Of an image: the configuration of the core whose table it was made for, the formula and the error.
+        self._image = image
         self._set_ports()
         #: The functions of a unit by name; none of another device.
         self.functions = {name: UnitFunction(function) for name, function in self._core.functions()}
 
     def __getstate__(self):
-        return self.toml()
+        return self._image or self.toml()
 
-    def __setstate__(self, toml):
-        self._set(_glint.Core.from_toml(toml))
+    def __setstate__(self, state):
+        if isinstance(state, str):
+            self._set(_glint.Core.from_toml(state))
+            return
+        toml, formula, error = state
+        self._set(_glint.Core.from_toml(toml).image(formula, error), state)
 
     @property
     def name(self):
@@ -235,6 +250,22 @@ class Core(Computation):
     def cosim(self, points=10_000, seed=1):
         """Golden model against the simulated netlist on every clock of so many results; the first difference, or none."""
         return self._core.cosim(points, seed)
+
+    def image(self, formula, error=None):
+        """The core with another function of x in its table: the same datapath, other words in `table`, and a proved bound of its own.
+
+        The table must be writable (`approximation.tables`). An error is raised if it cannot hold the function with an error below
+        `error` units, or below `result.error` of the configuration.
+        """
+        core = Core.__new__(Core)
+        toml = self._image[0] if self._image else self.toml()
+        core._set(self._core.image(formula, error), (toml, formula, error))
+        return core
+
+    @property
+    def table(self):
+        """The words of a writable table: an array with the raw coefficients of each address, the constant first."""
+        return np.array(self._core.table(), dtype=np.int64)
 
     def verilog(self):
         """The Verilog and the contents of the memories, by file name."""
@@ -307,6 +338,14 @@ class UnitFunction(Computation):
 
     def __repr__(self):
         return f"<glint.UnitFunction {self.name}: opcode {self.opcode}>"
+
+
+def _ports_of_list(name, ports):
+    """The ports that are the numbers of the list `name`; none if it is no list. The list `w_out` has `w_0_out`, `w_1_out` and so on."""
+    whole = re.fullmatch("(.+?)(_out)?", name)
+    base, end = whole[1], whole[2] or ""
+    numbers = [port for port in ports if re.fullmatch(f"{re.escape(base)}(_[0-9]+|[a-z]){end}", port)]
+    return numbers if len(numbers) > 1 else []
 
 
 def _array(name, operand, raw):

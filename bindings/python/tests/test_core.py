@@ -197,6 +197,40 @@ def test_the_last_axis_of_a_list_has_its_numbers():
         core(v=v, v_1=0, n=n)
 
 
+def test_a_list_of_results_is_an_array():
+    core = glint.expression({"p": {"formula": "v / 2", "size": 3}, "s": "v[0] + v[2]"}, operands={"v": {"size": 3, "bits": 8, "fraction": 4}}, fraction=5)
+    out = core(v=[[1, 2, 3], [4, 5, 6]])
+    assert out["p_out"].tolist() == [[0.5, 1.0, 1.5], [2.0, 2.5, 3.0]]
+    assert out["p_1_out"].tolist() == [1.0, 2.5]
+    assert out["s_out"].tolist() == [4.0, 10.0]
+    assert core(v=[1, 2, 3])["p_out"].tolist() == [0.5, 1.0, 1.5]
+    masked = core(v=np.ma.array([[1, 2, 3], [4, 5, 6]], mask=[[False] * 3, [True] * 3]))
+    assert masked["p_out"].mask.tolist() == [[False] * 3, [True] * 3]
+    assert core.error(v=[1, 2, 3])["p_out"].tolist() == [0, 0, 0]
+    with pytest.raises(KeyError, match="there is no output 'q'; the outputs are p_0_out, p_1_out, p_2_out, s_out"):
+        out["q"]
+
+
+def test_a_table_gets_another_function():
+    keys = {"function.formula": "exp(-x)", "function.from": 0, "function.to": 4, "operand.fraction": 10, "result.fraction": 12}
+    core = glint.Core(device="function", **keys, **{"approximation.tables": "writable", "images.squared": "exp(-x^2)"})
+    image = core.image("exp(-x^2)")
+    x = np.arange(4096) / 1024
+    assert np.abs(image(x) - np.exp(-x * x)).max() <= image.bound / 4096
+    assert image.bound < 1 and image.simulate(x).tolist() == image(x).tolist()
+    assert image.table.shape == core.table.shape and (image.table != core.table).any()
+    # The Verilog is the same; only the contents of the memory differ.
+    own, others = core.verilog(), image.verilog()
+    datapath = f"{core.name}_datapath.v"
+    assert own[datapath] == others[datapath]
+    again = pickle.loads(pickle.dumps(image))
+    assert again(x).tolist() == image(x).tolist() and (again.table == image.table).all()
+    with pytest.raises(ValueError, match="the results of this function need the format"):
+        core.image("sin(x)")
+    with pytest.raises(ValueError, match="has no table that can be written"):
+        glint.Core(device="rough").image("x")
+
+
 def test_a_core_tells_what_it_is():
     core = glint.Core(device="rough", architecture="pipelined")
     assert core.interval == 1 and core.latency == len(core.schedule())
