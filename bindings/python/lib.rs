@@ -15,12 +15,11 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString};
 
 use arrays::{OperandColumn, ResultColumns};
-use glint::config::{ConfigSource, Problems, Value};
+use glint::config::{ConfigSource, Problems};
 use glint::core::Core;
 use glint::cosim::batch::{Engine, Golden, Points, RustHdl};
 use glint::golden::Contract;
 use glint::hdl::netlist::CoreFunction;
-use glint::keys::images;
 use glint::package::words_of;
 use glint::registry::{OpenedConfig, Registry};
 use glint::render::{self, BuiltIn, Light, Material, Object, Scene, Settings, Vector, View};
@@ -112,15 +111,11 @@ impl PyCore {
     /// Returns the core with another function of x in its writable table, with an error below `error` units if it is given.
     fn image(&self, formula: &str, error: Option<f64>) -> PyResult<Self> {
         let made = || -> Result<Self> {
-            ensure!(
-                !words_of(&self.core.design).is_empty(),
-                "`{}` has no table that can be written: set approximation.tables to \"writable\"",
-                self.core.config().name
-            );
-            let mut config = images::with_formula(self.core.config(), formula);
-            if let Some(error) = error {
-                config.set("result.error", Value::Number(error));
-            }
+            let config = self.core.opened.image_config(formula, error);
+            let config = config.with_context(|| {
+                let name = &self.core.config().name;
+                format!("`{name}` has no table that can be written (docs/tables.md)")
+            })?;
             let core = Core::build(self.core.opened.refitted(config)?)?;
             Ok(Self { core: Arc::new(core) })
         };

@@ -20,12 +20,12 @@ pub struct SharedWidths {
 }
 
 impl SharedWidths {
-    /// Returns the widths of a table. Returns `None` if its segments differ in length, if it has a range reduction, or if its last
-    /// segment is longer than the others.
+    /// Returns the widths of a table. Returns `None` if its segments differ in length, if it has a range reduction, if its last
+    /// segment is longer than the others, or if it can be written.
     pub fn of(found: &Piecewise) -> Option<Self> {
         let cut = found.segments;
         let is_plain = cut.layout == Layout::Uniform && cut.overhang == 0 && cut.octaves == 0;
-        if !is_plain || found.reduction.is_some() {
+        if !is_plain || found.reduction.is_some() || found.is_writable {
             return None;
         }
         let fraction = found.result.frac;

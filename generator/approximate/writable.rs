@@ -84,12 +84,8 @@ fn narrowest(
     if function.is_wide() {
         return Err(unkept("a table that can be written has at most 2^26 operands"));
     }
-    let wish = Wish {
-        degree: Some(degree),
-        layout: Some(Layout::Uniform),
-        prefix,
-        ..Wish::default()
-    };
+    let wish =
+        Wish { degree: Some(degree), layout: Some(Layout::Uniform), prefix, ..Wish::default() };
     let found = search::attempt_numbered(function, wish, function.numbering_without_overhang())?;
     let widths = found.as_ref().and_then(SharedWidths::of);
     widths.ok_or_else(|| unkept(&format!("degree {degree} does not keep the error")))

@@ -353,18 +353,19 @@ impl Core {
     /// Fails if the netlist of an image cannot be built.
     pub fn images(&self) -> Result<Vec<TableImage>> {
         let mut images = Vec::new();
-        for (name, opened) in self.opened.images()? {
-            images.push(Self::build(opened)?.table_image(&name));
+        for (image, opened) in self.opened.images()? {
+            images.push(Self::build(opened)?.table_image(&image.name, &image.formula));
         }
         Ok(images)
     }
 
-    /// Returns the words of the writable table of this core, as the image `name`.
-    pub fn table_image(&self, name: &str) -> TableImage {
+    /// Returns the words of the writable table of this core as the image `name`, for a function with the text `formula`.
+    pub fn table_image(&self, name: &str, formula: &str) -> TableImage {
+        let contract = self.opened.written_contract();
         TableImage {
             name: name.to_owned(),
-            formula: self.design.about.formula.clone(),
-            bound: self.contract.bounds().governing().units,
+            formula: formula.to_owned(),
+            bound: contract.bounds().governing().units,
             words: package::words_of(&self.design),
         }
     }

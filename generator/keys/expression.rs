@@ -21,8 +21,8 @@ use glint_plan::{
 
 use lists::{MOST_NUMBERS, OperandPorts, operand_entry, result_names};
 
-use super::stated_function::End;
 use super::port_names::{self, NameFault, NamedTable};
+use super::stated_function::End;
 
 pub use lists::{result_doc, result_entry};
 

@@ -151,4 +151,3 @@ pub fn operand(polynomials: &Piecewise) -> StatedOperand {
         doc: String::new(),
     }
 }
-

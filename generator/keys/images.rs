@@ -108,26 +108,41 @@ pub(super) fn find_common(
     Ok(found.into_iter().next().expect("the image of the function itself"))
 }
 
-/// Returns the name and the configuration of each image. The configuration is the core's own with the formula of the image. A core without
-/// a writable table has no images.
-pub fn configs(config: &Config) -> Vec<(String, Config)> {
+/// A further function that a configuration states for a writable table.
+pub struct StatedImage {
+    pub name: String,
+    pub formula: String,
+    /// The configuration of the core with this formula in place of its own.
+    pub config: Config,
+}
+
+/// Returns the images of a configuration. A core without a writable table has none.
+pub fn stated(config: &Config) -> Vec<StatedImage> {
     let keys = Keys::of(config);
     if !are_tables_writable(&keys) {
         return Vec::new();
     }
-    let mut configs = Vec::new();
+    let mut images = Vec::new();
     for image in &keys.images.0 {
         let formula = image.text("formula").unwrap_or_default();
-        configs.push((image.name.clone(), with_formula(config, formula)));
+        images.push(StatedImage {
+            name: image.name.clone(),
+            formula: formula.to_owned(),
+            config: self::config(config, formula, None),
+        });
     }
-    configs
+    images
 }
 
-/// Returns the configuration of a core with another formula, in place of its own formula or samples.
-pub fn with_formula(config: &Config, formula: &str) -> Config {
+/// Returns the configuration of a core with another formula, in place of its own formula or samples, and with another allowed error if
+/// it is given.
+pub fn config(config: &Config, formula: &str, error: Option<f64>) -> Config {
     let mut changed = config.clone();
     changed.set("function.formula", Value::Text(formula.to_owned()));
     changed.set("function.samples", Value::Text(String::new()));
+    if let Some(error) = error {
+        changed.set("result.error", Value::Number(error));
+    }
     changed
 }
 
@@ -135,7 +150,10 @@ pub fn with_formula(config: &Config, formula: &str) -> Config {
 ///
 /// # Errors
 /// Fails if the table cannot be written, or cannot hold the function with its error.
-pub(super) fn refit(table: &Piecewise, function: &TargetFunction) -> Result<Piecewise, ConfigError> {
+pub(super) fn refit(
+    table: &Piecewise,
+    function: &TargetFunction,
+) -> Result<Piecewise, ConfigError> {
     if !table.is_writable {
         return Err(ConfigError::new(
             "approximation.tables",
@@ -152,9 +170,10 @@ fn unplanned(keys: &Keys, refusal: Refusal) -> ConfigError {
         RefusalKind::NoValue => {
             ("function.from", "exclude such operands: change function.from or function.to")
         }
-        _ if keys.images.0.is_empty() => {
-            ("result.error", "allow a larger result.error, or set approximation.tables to \"fixed\"")
-        }
+        _ if keys.images.0.is_empty() => (
+            "result.error",
+            "allow a larger result.error, or set approximation.tables to \"fixed\"",
+        ),
         _ => ("result.error", "allow a larger result.error, or remove an image"),
     };
     ConfigError::new(key, refusal.message, remedy)

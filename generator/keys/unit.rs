@@ -4,12 +4,21 @@
 //! parts and results. The order of the entries is the order of the opcodes. For example, `functions.rcp.results.r.formula = "1 / x"`
 //! states a function `rcp`.
 
+use std::sync::Arc;
+
+use glint_approximate::{Refusal, TargetFunction, Wish, find_images};
 use glint_base::config_error::ConfigError;
 use glint_base::identifier;
-use glint_config::{Config, Key, Problems, Schema, Shared, TableEntries, TableEntry, Value};
-use glint_plan::{ExpressionStatement, MOST_FUNCTIONS, StatedOverflow, UnitPlan, find_unit};
+use glint_config::{
+    Config, Key, Problems, Schema, Shared, TableEntries, TableEntry, TextPattern, Value,
+};
+use glint_plan::{
+    ExpressionStatement, MOST_FUNCTIONS, PlanRefusal, ProvedPlan, StatedFunction, StatedOverflow,
+    UnitPlan, find_unit, target_function,
+};
 
-use super::expression;
+use super::images::StatedImage;
+use super::{expression, images};
 
 /// The longest name of a function, as for modules.
 const LONGEST_NAME: usize = 60;
@@ -19,11 +28,31 @@ const OPERANDS: &str = "operands";
 const PARTS: &str = "let";
 const RESULTS: &str = "results";
 
+/// The table of further formulas. A function that has it has a table that can be written.
+const IMAGES: &str = "images";
+
 glint_config::keys! {
     pub struct Keys {
-        functions: TableEntries = Key::records("functions", &example_functions(), expression::Keys::keys(), None, 1..=MOST_FUNCTIONS,
-            "The functions, in the order of their opcodes. Each has the tables operands, let and results of the device expression."),
+        functions: TableEntries = Key::records("functions", &example_functions(), function_fields(), None, 1..=MOST_FUNCTIONS,
+            "The functions, in the order of their opcodes. Each has the tables operands, let and results of the device expression. \
+             One function of one operand may have a table images with further formulas of the operand: its table of \
+             coefficients can then be written, and is planned for all of them."),
     }
+}
+
+fn function_fields() -> Vec<Key> {
+    let mut fields = expression::Keys::keys();
+    let formula =
+        Key::text("formula", "x^2", TextPattern::Formula, "A formula of the function's operand.");
+    fields.push(Key::records(
+        IMAGES,
+        &[],
+        vec![formula],
+        Some("formula"),
+        0..=16,
+        "Further formulas for the table of the function, which can then be written.",
+    ));
+    fields
 }
 
 /// Returns the functions of a unit whose configuration states none: the reciprocal `rcp` and the reciprocal square root
@@ -53,7 +82,9 @@ pub fn schema() -> Schema {
 }
 
 fn check(config: &Config, problems: &mut Problems) {
-    if let Err(error) = statements(config) {
+    let functions = Keys::of(config).functions.0;
+    let checked = statements(&functions).and_then(|_| image_functions(&functions));
+    if let Err(error) = checked {
         problems.push_error(error);
     }
 }
@@ -123,11 +154,10 @@ fn check_names(functions: &[TableEntry]) -> Result<(), ConfigError> {
 ///
 /// # Errors
 /// Fails if a name, an operand, a formula or an allowed error is wrong, or if a result wraps.
-fn statements(config: &Config) -> Result<Vec<ExpressionStatement>, ConfigError> {
-    let functions = Keys::of(config).functions.0;
-    check_names(&functions)?;
+fn statements(functions: &[TableEntry]) -> Result<Vec<ExpressionStatement>, ConfigError> {
+    check_names(functions)?;
     let mut statements = Vec::new();
-    for function in &functions {
+    for function in functions {
         statements.push(statement(function).map_err(|error| within(function, error))?);
     }
     Ok(statements)
@@ -146,23 +176,193 @@ fn statement(function: &TableEntry) -> Result<ExpressionStatement, ConfigError> 
     Ok(statement)
 }
 
+/// Returns the opcode of the function whose table can be written, if there is one.
+///
+/// # Errors
+/// Fails if several functions have such a table.
+fn written_opcode(functions: &[TableEntry]) -> Result<Option<usize>, ConfigError> {
+    let mut opcodes = (0..functions.len()).filter(|at| functions[*at].field(IMAGES).is_some());
+    let (first, second) = (opcodes.next(), opcodes.next());
+    match second {
+        None => Ok(first),
+        Some(second) => Err(ConfigError::new(
+            format!("functions.{}.{IMAGES}", functions[second].name),
+            "one function of a unit has a table that can be written",
+            "remove the images of all functions but one, or make a unit for each",
+        )),
+    }
+}
+
+/// Returns the function with another formula in place of that of its first result.
+fn with_formula(function: &TableEntry, text: &str) -> TableEntry {
+    let mut changed = function.clone();
+    for (table, value) in &mut changed.fields {
+        let Value::Table(entries) = value else { continue };
+        let Some(result) = entries.0.first_mut().filter(|_| *table == RESULTS) else { continue };
+        result.fields.retain(|(field, _)| *field != "formula");
+        result.fields.push(("formula", Value::Text(text.to_owned())));
+    }
+    changed
+}
+
+/// Returns the entries of the images of a function: their names and formulas.
+fn images_of(function: &TableEntry) -> Vec<(String, String)> {
+    let Some(Value::Table(entries)) = function.field(IMAGES) else { return Vec::new() };
+    let entry = |entry: &TableEntry| {
+        (entry.name.clone(), entry.text("formula").unwrap_or_default().to_owned())
+    };
+    entries.0.iter().map(entry).collect()
+}
+
+/// Returns the opcode of the function whose table can be written, with this function and its images, as functions of x. Returns `None` if
+/// the unit has no such function.
+///
+/// # Errors
+/// Fails if several functions have such a table, if the function has another form than a polynomial of one operand, or if an image has a
+/// bad name or a wrong formula.
+fn image_functions(
+    functions: &[TableEntry],
+) -> Result<Option<(usize, Vec<TargetFunction>)>, ConfigError> {
+    let Some(opcode) = written_opcode(functions)? else { return Ok(None) };
+    let function = &functions[opcode];
+    let target = |entry: &TableEntry| {
+        let statement = statement(entry)?;
+        target_function(&statement)
+            .map_err(|refusal| ConfigError::new(String::new(), refusal.message, refusal.remedy))
+    };
+    let mut targets = vec![target(function).map_err(|error| within(function, error))?];
+    let images = images_of(function);
+    let keys: Vec<String> = images
+        .iter()
+        .map(|(name, _)| format!("functions.{}.{IMAGES}.{name}", function.name))
+        .collect();
+    for (at, (name, formula)) in images.iter().enumerate() {
+        let key = keys[at].clone();
+        let remedy = "give the image another name";
+        if let Err(reason) = identifier::check(name) {
+            let message = format!("`{name}` cannot be the name of an image: {reason}");
+            return Err(ConfigError::new(key, message, remedy));
+        }
+        if images[..at].iter().any(|(other, _)| other.eq_ignore_ascii_case(name)) {
+            let message =
+                format!("another image has the name `{name}`, apart from upper and lower case");
+            return Err(ConfigError::new(key, message, remedy));
+        }
+        let stated = target(&with_formula(function, formula));
+        targets.push(stated.map_err(|error| ConfigError { key, ..error })?);
+    }
+    Ok(Some((opcode, targets)))
+}
+
 /// Plans the functions with tables of the same widths, proves an error bound for each result, and merges the plans. This can take
 /// some seconds.
 ///
 /// # Errors
 /// Fails if a statement is wrong, or if a function or the unit has no plan. The error names the function.
 pub fn plan(config: &Config) -> Result<UnitPlan, ConfigError> {
-    let keys = Keys::of(config);
-    let statements = statements(config)?;
-    let names: Vec<String> =
-        keys.functions.0.iter().map(|function| function.name.clone()).collect();
-    let is_sequential = Shared::of(config).architecture == "sequential";
-    find_unit(&names, &statements, is_sequential).map_err(|(number, refusal)| {
-        let function = &keys.functions.0[number];
+    let functions = Keys::of(config).functions.0;
+    let mut stated = Vec::new();
+    for (function, statement) in functions.iter().zip(statements(&functions)?) {
+        stated.push(StatedFunction { name: function.name.clone(), statement, table: None });
+    }
+    if let Some((opcode, targets)) = image_functions(&functions)? {
+        let found = find_images(&targets, Wish::default());
+        let found = found.map_err(|refusal| unplanned(&functions[opcode], refusal))?;
+        let own = found.into_iter().next().expect("the image of the function itself");
+        let target = targets.into_iter().next().expect("the function itself");
+        stated[opcode].table = Some((target, Arc::new(own)));
+    }
+    find_unit(&stated, is_sequential(config)).map_err(|(number, refusal)| {
+        let function = &functions[number];
         let error = keys_of(function).map_or_else(
             |error| error,
-            |keys| expression::refused(&keys, &statements[number], refusal),
+            |keys| expression::refused(&keys, &stated[number].statement, refusal),
         );
         within(function, error)
     })
+}
+
+fn is_sequential(config: &Config) -> bool {
+    Shared::of(config).architecture == "sequential"
+}
+
+/// Turns the refusal of polynomials for a function and its images into an error of the function.
+fn unplanned(function: &TableEntry, refusal: Refusal) -> ConfigError {
+    let remedy = "allow a larger error, or remove an image";
+    within(function, ConfigError::new(IMAGES, refusal.message, remedy))
+}
+
+/// Returns the name and the opcode of the function whose table can be written.
+pub fn written_function(config: &Config) -> Option<(String, usize)> {
+    let functions = Keys::of(config).functions.0;
+    let opcode = written_opcode(&functions).ok().flatten()?;
+    Some((functions[opcode].name.clone(), opcode))
+}
+
+/// Returns the images of the function whose table can be written.
+pub fn stated_images(config: &Config) -> Vec<StatedImage> {
+    let Some((_, opcode)) = written_function(config) else { return Vec::new() };
+    let function = &Keys::of(config).functions.0[opcode];
+    let mut images = Vec::new();
+    for (name, formula) in images_of(function) {
+        let config = image_config(config, &formula, None);
+        images.push(StatedImage { name, formula, config });
+    }
+    images
+}
+
+/// Returns the configuration with another formula of the function whose table can be written, and with another allowed error if it is
+/// given.
+pub fn image_config(config: &Config, formula: &str, error: Option<f64>) -> Config {
+    let mut changed = config.clone();
+    let Some((_, opcode)) = written_function(config) else { return changed };
+    let mut functions = Keys::of(config).functions;
+    functions.0[opcode] = with_formula(&functions.0[opcode], formula);
+    if let Some(error) = error {
+        functions.0[opcode] = with_error(&functions.0[opcode], error);
+    }
+    changed.set("functions", Value::Table(functions));
+    changed
+}
+
+/// Returns the function with another allowed error of its first result.
+fn with_error(function: &TableEntry, error: f64) -> TableEntry {
+    let mut changed = function.clone();
+    for (table, value) in &mut changed.fields {
+        let Value::Table(entries) = value else { continue };
+        let Some(result) = entries.0.first_mut().filter(|_| *table == RESULTS) else { continue };
+        result.fields.retain(|(field, _)| !matches!(*field, "error" | "error_relative"));
+        result.fields.push(("error", Value::Number(error)));
+    }
+    changed
+}
+
+/// Plans the unit of `config`, which differs from the configuration of `unit` only in the formula of the function whose table can be
+/// written, and in its allowed error. The datapath is the one of `unit`.
+///
+/// # Errors
+/// Fails if the unit has no such function, or if its table cannot hold the formula with the allowed error.
+pub fn refit(config: &Config, unit: &UnitPlan) -> Result<UnitPlan, ConfigError> {
+    let functions = Keys::of(config).functions.0;
+    let Some((opcode, targets)) = image_functions(&functions)? else {
+        return Err(ConfigError::new(
+            "functions",
+            "no function of the unit has a table that can be written",
+            "give a function the table images, for example images.half = \"x / 2\"",
+        ));
+    };
+    let function = &functions[opcode];
+    let own = &unit.functions[opcode].planned.plan;
+    let mut tables = own.approximations().into_iter();
+    let table = tables.find_map(|approximation| approximation.polynomials.clone());
+    let table = table.expect("the table of the function");
+    let polynomials = images::refit(&table, &targets[0])
+        .map_err(|error| within(function, ConfigError { key: RESULTS.to_owned(), ..error }))?;
+    let refused = |refusal: PlanRefusal| {
+        within(function, ConfigError::new(RESULTS, refusal.message, refusal.remedy))
+    };
+    let statement = statement(function).map_err(|error| within(function, error))?;
+    let planned =
+        ProvedPlan::of_table(statement, &targets[0], &Arc::new(polynomials)).map_err(refused)?;
+    unit.with_function(opcode, planned, is_sequential(config)).map_err(refused)
 }

@@ -62,6 +62,7 @@ mod schedule;
 mod statement;
 mod unit;
 mod uses;
+mod written;
 
 pub use find::{ProofKind, ProvedPlan, find};
 pub use node::{Approximation, NodeId, Operation, PlanNode};
@@ -73,7 +74,8 @@ pub use schedule::SMALLEST_BLOCK;
 pub use statement::{
     ExpressionStatement, StatedOperand, StatedOverflow, StatedResult, StatedWidth,
 };
-pub use unit::{MOST_FUNCTIONS, UnitFunction, UnitPlan, find_unit};
+pub use unit::{MOST_FUNCTIONS, StatedFunction, UnitFunction, UnitPlan, find_unit};
+pub use written::target_function;
 
 #[cfg(test)]
 mod tests;

@@ -10,7 +10,7 @@ mod tables;
 
 use std::sync::Arc;
 
-use glint_approximate::Outside;
+use glint_approximate::{Outside, Piecewise, TargetFunction};
 use glint_base::fixed::Format;
 
 use super::find::{ProvedPlan, find_set};
@@ -28,6 +28,14 @@ const RESULT_NAMES: [&str; 8] = ["r", "s", "t", "u", "v", "w", "x", "y"];
 
 /// The number of operands for which [`find_unit`] compares each function with its own plan.
 const COMPARED: u64 = 4096;
+
+/// A function of a unit, as the user states it.
+pub struct StatedFunction {
+    pub name: String,
+    pub statement: ExpressionStatement,
+    /// The function and its polynomials, if its table can be written.
+    pub table: Option<(TargetFunction, Arc<Piecewise>)>,
+}
 
 /// A function of a unit: its name, and its plan with the proved error.
 #[derive(Clone, Debug)]
@@ -62,29 +70,74 @@ pub struct UnitPlan {
 /// # Panics
 /// Panics if there are no functions, or more than [`MOST_FUNCTIONS`].
 pub fn find_unit(
-    names: &[String],
-    statements: &[ExpressionStatement],
+    stated: &[StatedFunction],
     shares_tables: bool,
 ) -> Result<UnitPlan, (usize, PlanRefusal)> {
-    assert!((1..=MOST_FUNCTIONS).contains(&names.len()), "{} functions", names.len());
+    assert!((1..=MOST_FUNCTIONS).contains(&stated.len()), "{} functions", stated.len());
+    UnitPlan::of_functions(planned_functions(stated)?, shares_tables)
+}
+
+/// Plans the functions with fixed tables together, and each function whose table can be written alone.
+fn planned_functions(stated: &[StatedFunction]) -> Result<Vec<UnitFunction>, (usize, PlanRefusal)> {
+    let (mut numbers, mut statements) = (Vec::new(), Vec::new());
+    for (number, function) in stated.iter().enumerate() {
+        if function.table.is_none() {
+            numbers.push(number);
+            statements.push(function.statement.clone());
+        }
+    }
+    let found = find_set(&statements).map_err(|(at, refusal)| (numbers[at], refusal))?;
+    let mut found = found.into_iter();
     let mut functions = Vec::new();
-    for (name, planned) in names.iter().zip(find_set(statements)?) {
-        functions.push(UnitFunction { name: name.clone(), planned: Arc::new(planned) });
+    for (number, function) in stated.iter().enumerate() {
+        let planned = match &function.table {
+            None => found.next().expect("a plan of each function"),
+            Some((target, polynomials)) => {
+                ProvedPlan::of_table(function.statement.clone(), target, polynomials)
+                    .map_err(|refusal| (number, refusal))?
+            }
+        };
+        functions.push(UnitFunction { name: function.name.clone(), planned: Arc::new(planned) });
     }
-    let operands = operand_ports(&functions);
-    let results = result_ports(&functions);
-    let plan = merge::merged(&functions, &operands, &results, shares_tables)
-        .map_err(|refusal| (0, refusal))?;
-    if !reads_opcode(&plan) {
-        let message = "all functions of the unit compute the same results";
-        let remedy = "keep one of them, as a configuration of the device expression";
-        return Err((0, PlanRefusal::new(message, remedy)));
+    Ok(functions)
+}
+
+impl UnitPlan {
+    /// Merges the plans of the functions, and compares the merged plan with them. Fails as [`find_unit`] does.
+    fn of_functions(
+        functions: Vec<UnitFunction>,
+        shares_tables: bool,
+    ) -> Result<Self, (usize, PlanRefusal)> {
+        let operands = operand_ports(&functions);
+        let results = result_ports(&functions);
+        let plan = merge::merged(&functions, &operands, &results, shares_tables)
+            .map_err(|refusal| (0, refusal))?;
+        if !reads_opcode(&plan) {
+            let message = "all functions of the unit compute the same results";
+            let remedy = "keep one of them, as a configuration of the device expression";
+            return Err((0, PlanRefusal::new(message, remedy)));
+        }
+        let unit = Self { functions, plan, operands, results };
+        for opcode in 0..unit.functions.len() {
+            unit.compare(opcode).map_err(|refusal| (opcode, refusal))?;
+        }
+        Ok(unit)
     }
-    let unit = UnitPlan { functions, plan, operands, results };
-    for opcode in 0..unit.functions.len() {
-        unit.compare(opcode).map_err(|refusal| (opcode, refusal))?;
+
+    /// Returns the unit with another plan of one function, such as one whose table has other words.
+    ///
+    /// # Errors
+    /// Fails as [`find_unit`] does.
+    pub fn with_function(
+        &self,
+        opcode: usize,
+        planned: ProvedPlan,
+        shares_tables: bool,
+    ) -> Result<Self, PlanRefusal> {
+        let mut functions = self.functions.clone();
+        functions[opcode].planned = Arc::new(planned);
+        Self::of_functions(functions, shares_tables).map_err(|(_, refusal)| refusal)
     }
-    Ok(unit)
 }
 
 /// Returns whether a result depends on the opcode, which is operand 0.
@@ -263,10 +316,21 @@ mod tests {
         statements.into_iter().map(|(name, statement)| (name.to_owned(), statement)).unzip()
     }
 
+    fn stated(names: &[String], statements: &[ExpressionStatement]) -> Vec<StatedFunction> {
+        let functions = names.iter().zip(statements);
+        functions
+            .map(|(name, statement)| StatedFunction {
+                name: name.clone(),
+                statement: statement.clone(),
+                table: None,
+            })
+            .collect()
+    }
+
     #[test]
     fn a_unit_computes_what_its_functions_compute_alone() {
         let (names, statements) = functions(8);
-        let unit = find_unit(&names, &statements, true).unwrap();
+        let unit = find_unit(&stated(&names, &statements), true).unwrap();
         let mut compared = 0;
         for (opcode, name) in names.iter().enumerate() {
             let statement = &unit.functions[opcode].planned.statement;
@@ -300,7 +364,7 @@ mod tests {
     #[test]
     fn functions_of_a_unit_share_its_operations() {
         let (names, statements) = functions(12);
-        let unit = find_unit(&names, &statements, false).unwrap();
+        let unit = find_unit(&stated(&names, &statements), false).unwrap();
         let separate: f64 =
             unit.functions.iter().map(|function| function.planned.plan.total_cells()).sum();
         let merged = unit.plan.total_cells();

@@ -2,22 +2,21 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Result, bail, ensure};
+use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 use serde_json::{Value, json};
 
 use super::{Loaded, load_one};
 use crate::report::CommandReport;
-use crate::{OutputOptions, destination, say};
+use crate::{OutputOptions, destination, say, wrong_usage};
 use glint_base::config_error::ConfigError;
 use glint_base::program::Program;
 use glint_base::{identifier, input, text};
-use glint_config::{Config, Value as KeyValue};
 use glint_core::core::Core;
 use glint_core::cosim::batch::{Engine, Golden, Points, RustHdl};
 use glint_core::package::{TableImage, TableLayout, image_file, image_header};
 use glint_core::registry::Registry;
-use glint_keys::images;
+use glint_keys::images::StatedImage;
 use glint_rtl::verilog;
 
 /// Find the words for another function in the writable table of a core, and prove their error
@@ -31,13 +30,14 @@ Examples:
   glint table fog.toml \"exp(-3*x)\"                               does the table hold it, with which error?
   glint table fog.toml \"exp(-3*x)\" --name smoke --out build      also writes build/fog_table_smoke.h and other files
   glint table fog.toml squared                                   an image that the configuration names
+  glint table sfu.toml fog \"exp(-3*d)\"                          the function fog of a unit, whose operand is d
   glint table fog.toml \"sqrt(x)\" --error 4                       allows a larger error")]
 pub struct Arguments {
-    /// A configuration with `approximation.tables = \"writable\"`
+    /// A configuration with a table that can be written
     config: PathBuf,
-    /// A formula of the operand x, or the name of an image in the table `images` of the configuration
-    #[arg(value_name = "FORMULA")]
-    formula: String,
+    /// A formula of the operand, or the name of an image that the configuration states; of a unit after the name of the function
+    #[arg(value_name = "[FUNCTION] FORMULA", num_args = 1..=2, required = true)]
+    formula: Vec<String>,
     /// The name of the image in the names of files and constants [default: the name in the configuration, or `image`]
     #[arg(long)]
     name: Option<String>,
@@ -62,19 +62,18 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     let Some(layout) = TableLayout::of(&one.core.design) else {
         bail!(
             "{}: the core has no table that can be written; the device `function` has one with \
-             approximation.tables = \"writable\"",
+             approximation.tables = \"writable\", and a unit with images of a function",
             one.path
         );
     };
-    let (name, config) = image_config(&one, arguments)?;
-    let formula = config.text("function.formula").to_owned();
-    let opened = one.core.opened.refitted(config).map_err(|error| unheld(&formula, &error))?;
-    let core = Core::build(opened)?;
+    let wanted = wanted_image(&one, arguments)?;
+    let opened = one.core.opened.refitted(wanted.config);
+    let core = Core::build(opened.map_err(|error| unheld(&wanted.formula, &error))?)?;
     ensure!(
         TableLayout::of(&core.design).as_ref() == Some(&layout),
         "the image needs another datapath, a mistake of Glint"
     );
-    let image = core.table_image(&name);
+    let image = core.table_image(&wanted.name, &wanted.formula);
     let simulated = simulate(&one.core, &core, &image)?;
     let mut files = Vec::new();
     if let Some(out) = &arguments.out {
@@ -88,7 +87,8 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
 /// Returns the error of a function that the table cannot hold. Its place in the formula is marked.
 fn unheld(formula: &str, error: &ConfigError) -> anyhow::Error {
     let mut text = format!("the table cannot hold `{formula}`: {}", error.message);
-    if let Some(place) = error.place.as_ref().filter(|place| formula.is_char_boundary(place.start)) {
+    if let Some(place) = error.place.as_ref().filter(|place| formula.is_char_boundary(place.start))
+    {
         let before = formula[..place.start].chars().count();
         let width = formula.get(place.clone()).map_or(1, |marked| marked.chars().count().max(1));
         text += &format!("\n  {formula}\n  {}{}", " ".repeat(before), "^".repeat(width));
@@ -96,25 +96,46 @@ fn unheld(formula: &str, error: &ConfigError) -> anyhow::Error {
     anyhow::anyhow!("{text}\n  = help: {}", error.remedy)
 }
 
-/// Returns the name of the image, and the configuration of the core with its function.
-fn image_config(one: &Loaded, arguments: &Arguments) -> Result<(String, Config)> {
-    let known = images::configs(one.core.config());
-    let known = known.into_iter().find(|(name, _)| *name == arguments.formula);
-    let (own_name, mut config) = known.unwrap_or_else(|| {
-        ("image".to_owned(), images::with_formula(one.core.config(), &arguments.formula))
-    });
-    if let Some(error) = arguments.error {
-        ensure!(
-            (0.5..=1024.0).contains(&error),
-            "--error {error} is not between 0.5 and 1024 units"
-        );
-        config.set("result.error", KeyValue::Number(error));
+/// Returns the image that the arguments name, or one with the formula of the arguments.
+///
+/// # Errors
+/// Fails if the arguments name another function than the one with the table, if the allowed error is not between 0.5 and 1024 units, or if the
+/// name of the image is no identifier.
+fn wanted_image(one: &Loaded, arguments: &Arguments) -> Result<StatedImage> {
+    let opened = &one.core.opened;
+    let (function, formula) = match &arguments.formula[..] {
+        [function, formula] => (Some(function), formula),
+        rest => (None, &rest[0]),
+    };
+    let written = opened.written_function().map(|(name, _)| name);
+    if let Some(function) = function
+        && written.as_ref() != Some(function)
+    {
+        match written {
+            Some(written) => wrong_usage!(
+                "the table of `{function}` cannot be written; the table of `{written}` can"
+            ),
+            None => wrong_usage!(
+                "`{}` has no functions with names: give only a formula, in quotes if it has blanks",
+                one.path
+            ),
+        }
     }
+    let error = arguments.error;
+    if let Some(error) = error.filter(|error| !(0.5..=1024.0).contains(error)) {
+        wrong_usage!("--error {error} is not between 0.5 and 1024 units");
+    }
+    let stated = opened.stated_images().into_iter().find(|image| image.name == *formula);
+    let (own_name, formula) = match stated {
+        Some(image) => (image.name, image.formula),
+        None => ("image".to_owned(), formula.clone()),
+    };
     let name = arguments.name.clone().unwrap_or(own_name);
     if let Err(reason) = identifier::check(&name) {
-        bail!("`{name}` cannot be the name of an image: {reason}");
+        wrong_usage!("`{name}` cannot be the name of an image: {reason}");
     }
-    Ok((name, config))
+    let config = opened.image_config(&formula, error).context("a table that can be written")?;
+    Ok(StatedImage { name, formula, config })
 }
 
 struct SimulatedImage {
@@ -127,24 +148,36 @@ struct SimulatedImage {
 /// Loads the image into the simulated core `base`, and compares its results with the contract of the core `with_image`.
 fn simulate(base: &Core, with_image: &Core, image: &TableImage) -> Result<SimulatedImage> {
     let contract = with_image.contract.as_ref();
-    let (first, last) = contract.operands()[0].domain;
-    let count = last.abs_diff(first) + 1;
-    let step = count.div_ceil(MOST_SIMULATED).max(1);
-    let mut points = Points::new(1);
+    let own = with_image.opened.written_contract();
+    let operand = &own.operands()[0];
+    let (first, last) = operand.domain;
+    let step = (last.abs_diff(first) + 1).div_ceil(MOST_SIMULATED).max(1);
+    let count = contract.operands().len();
+    let mut points = Points::new(count);
     let mut operands = Vec::new();
     for raw in (first..=last).step_by(step as usize) {
         operands.push(raw);
-        points.push([raw], 1);
+        let point = match with_image.opened.written_function() {
+            None => vec![raw],
+            Some((_, opcode)) => {
+                let mut point = vec![0; count];
+                point[0] = opcode as i64;
+                point[1] = operand.format.bits(raw.into()) as i64;
+                point
+            }
+        };
+        points.push(point, 1);
     }
     let mut simulated = RustHdl::new(&base.design, contract)?;
     simulated.load_table(&base.design, &image.words)?;
     let found = simulated.compute(&points)?;
     let expected = Golden(contract).compute(&points)?;
     let differs = found.iter().zip(&expected).position(|(found, expected)| found != expected);
+    let outputs = contract.outputs().len();
     Ok(SimulatedImage {
         operands: operands.len(),
         is_every: step == 1,
-        first_difference: differs.map(|at| [operands[at], found[at], expected[at]]),
+        first_difference: differs.map(|at| [operands[at / outputs], found[at], expected[at]]),
     })
 }
 
@@ -164,7 +197,7 @@ fn write(
     let command = format!(
         "{Program} table {} {:?} --name {}",
         input::label(&one.path),
-        arguments.formula,
+        image.formula,
         image.name
     );
     let header = image_header(name, &command, layout, image)?;
@@ -228,13 +261,20 @@ impl CommandReport for FittedImage<'_> {
         let Self { one, layout, image, simulated, files, core } = self;
         say!("{}: the table holds {}", one.path, image.formula);
         let error = text::rounded_up(image.bound, 4);
-        let limit = core.config().number("result.error");
-        say!("  error: at most {error} units of the last place, below the allowed {limit}, proved at every operand");
+        let limit = core.opened.written_contract().bounds().governing().limit;
+        say!(
+            "  error: at most {error} units of the last place, below the allowed {limit}, proved at every operand"
+        );
         let mut parts = Vec::new();
         for (port, format) in &layout.parts {
             parts.push(format!("{port} {format}"));
         }
-        say!("  table: {} words of {} bits ({})", layout.words, layout.word_bits(), parts.join(", "));
+        say!(
+            "  table: {} words of {} bits ({})",
+            layout.words,
+            layout.word_bits(),
+            parts.join(", ")
+        );
         let which = if simulated.is_every { "every operand" } else { "evenly spaced operands" };
         match simulated.first_difference {
             None => say!(

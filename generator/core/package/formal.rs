@@ -14,9 +14,7 @@ use super::output_files::OutputFiles;
 use crate::observation::Computation;
 use glint_rtl::netlist::HandshakeTiming;
 use glint_rtl::netlist::termination::{self, Left};
-use glint_rtl::netlist::{
-    Design, Driver, NetId, Op, Partition, RegId, Role, Sequence, TABLE_LOAD,
-};
+use glint_rtl::netlist::{Design, Driver, NetId, Op, Partition, RegId, Role, Sequence, TABLE_LOAD};
 use glint_rtl::verilog::naming::Naming;
 use glint_rtl::verilog::rows::{Row, connections, separated};
 use glint_rtl::verilog::text::{Names, literal, range};

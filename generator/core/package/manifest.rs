@@ -162,9 +162,10 @@ pub fn contents(job: &EmitJob, others: &OutputFiles) -> Result<String> {
 /// Returns the layout of a writable table, and the functions for which the core has images.
 fn table(job: &EmitJob) -> Option<Value> {
     let layout = TableLayout::of(job.design)?;
-    let parts = layout.parts.iter().map(|(port, format)| {
-        json!({ "port": port, "format": format.to_string() })
-    });
+    let parts = layout
+        .parts
+        .iter()
+        .map(|(port, format)| json!({ "port": port, "format": format.to_string() }));
     let images = job.inputs.images.iter().map(|image| {
         json!({ "name": image.name, "formula": image.formula, "bound": image.bound, "words": image.words })
     });

@@ -13,6 +13,7 @@ use glint_base::config_error::ConfigError;
 use glint_base::diagnostic::Diagnostics;
 use glint_config::{Config, Shared, Value};
 use glint_golden::{Contract, Model};
+use glint_keys::images::StatedImage;
 use glint_rtl::dsl::Designer;
 use glint_rtl::netlist::Design;
 use glint_rtl::pipeline::{self, PassResult};
@@ -51,9 +52,25 @@ pub trait DeviceParts: Send + Sync {
         None
     }
 
-    /// Returns the name and the configuration of each further function that a writable table is planned for.
-    fn images(&self, _config: &Config) -> Vec<(String, Config)> {
+    /// Returns the further functions that a writable table is planned for.
+    fn images(&self, _config: &Config) -> Vec<StatedImage> {
         Vec::new()
+    }
+
+    /// Returns the configuration with another formula for a writable table, and with another allowed error if it is given. `None` if the
+    /// device has no such table.
+    fn image_config(
+        &self,
+        _config: &Config,
+        _formula: &str,
+        _error: Option<f64>,
+    ) -> Option<Config> {
+        None
+    }
+
+    /// Returns the name and the opcode of the function with a writable table, if the device has several functions.
+    fn written_function(&self, _config: &Config) -> Option<(String, usize)> {
+        None
     }
 }
 
@@ -128,14 +145,39 @@ impl OpenedConfig {
         Ok(Self { device: self.device, config, parts })
     }
 
-    /// Returns the name of each further function that the configuration states for a writable table, and the core with this function.
+    /// Returns the configuration with another formula for the writable table, and with another allowed error if it is given. `None` if the
+    /// device has no such table.
+    pub fn image_config(&self, formula: &str, error: Option<f64>) -> Option<Config> {
+        self.parts.image_config(&self.config, formula, error)
+    }
+
+    /// Returns the further functions that the configuration states for a writable table.
+    pub fn stated_images(&self) -> Vec<StatedImage> {
+        self.parts.images(&self.config)
+    }
+
+    /// Returns the name and the opcode of the function with a writable table, if the core has several functions.
+    pub fn written_function(&self) -> Option<(String, usize)> {
+        self.parts.written_function(&self.config)
+    }
+
+    /// Returns the contract of the function with a writable table, in the formats of this function.
+    pub fn written_contract(&self) -> Box<dyn Contract> {
+        match self.written_function() {
+            Some((_, opcode)) => self.function_contracts().swap_remove(opcode),
+            None => self.contract(),
+        }
+    }
+
+    /// Returns each further function that the configuration states for a writable table, and the core with this function.
     ///
     /// # Errors
     /// Fails as [`OpenedConfig::refitted`] does.
-    pub fn images(&self) -> Result<Vec<(String, Self)>, ConfigError> {
+    pub fn images(&self) -> Result<Vec<(StatedImage, Self)>, ConfigError> {
         let mut images = Vec::new();
-        for (name, config) in self.parts.images(&self.config) {
-            images.push((name, self.refitted(config)?));
+        for image in self.stated_images() {
+            let opened = self.refitted(image.config.clone())?;
+            images.push((image, opened));
         }
         Ok(images)
     }

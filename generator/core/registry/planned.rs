@@ -8,6 +8,7 @@ use glint_config::Config;
 use glint_golden::{self as golden, Contract, Model};
 use glint_keys as keys;
 use glint_keys::function::FunctionPlan;
+use glint_keys::images::StatedImage;
 use glint_keys::shading::LightParts;
 use glint_plan::{ProvedPlan, UnitPlan};
 use glint_rtl::dsl::Designer;
@@ -35,8 +36,13 @@ impl DeviceParts for FunctionParts {
         Some(refitted.map(|plan| Arc::new(Self(plan)) as Arc<dyn DeviceParts>))
     }
 
-    fn images(&self, config: &Config) -> Vec<(String, Config)> {
-        keys::images::configs(config)
+    fn images(&self, config: &Config) -> Vec<StatedImage> {
+        keys::images::stated(config)
+    }
+
+    fn image_config(&self, config: &Config, formula: &str, error: Option<f64>) -> Option<Config> {
+        let is_writable = self.0.polynomials.is_writable;
+        is_writable.then(|| keys::images::config(config, formula, error))
     }
 }
 
@@ -84,6 +90,24 @@ impl DeviceParts for UnitParts {
     fn function_contracts(&self, config: &Config) -> Vec<Box<dyn Contract>> {
         let functions = self.0.functions.iter();
         functions.map(|it| golden::expression::contract(config, &it.planned)).collect()
+    }
+
+    fn refitted(&self, config: &Config) -> Option<PartsResult> {
+        let refitted = keys::unit::refit(config, &self.0);
+        Some(refitted.map(|plan| Arc::new(Self(Arc::new(plan))) as Arc<dyn DeviceParts>))
+    }
+
+    fn images(&self, config: &Config) -> Vec<StatedImage> {
+        keys::unit::stated_images(config)
+    }
+
+    fn image_config(&self, config: &Config, formula: &str, error: Option<f64>) -> Option<Config> {
+        keys::unit::written_function(config)?;
+        Some(keys::unit::image_config(config, formula, error))
+    }
+
+    fn written_function(&self, config: &Config) -> Option<(String, usize)> {
+        keys::unit::written_function(config)
     }
 }
 

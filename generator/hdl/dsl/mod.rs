@@ -77,11 +77,11 @@ mod output_registers;
 mod program;
 mod registers;
 mod rom;
-mod write_port;
 mod rules;
 mod sequencer;
 mod shared;
 mod signal;
+mod write_port;
 
 use std::cell::RefCell;
 use std::collections::{HashMap, HashSet};

@@ -21,10 +21,14 @@ impl Designer {
     #[track_caller]
     pub fn write_port(&self, memories: &[(Rom<'_>, Vec<(String, Format)>)]) {
         if self.with(|inner| inner.table_ready.is_some()) {
-            self.error(codes::MEMORY, "a core has at most one write port for its memories".to_owned());
+            self.error(
+                codes::MEMORY,
+                "a core has at most one write port for its memories".to_owned(),
+            );
             return;
         }
-        let words = memories.iter().map(|(rom, _)| self.with(|it| it.design.rom(rom.id).words.len()));
+        let words =
+            memories.iter().map(|(rom, _)| self.with(|it| it.design.rom(rom.id).words.len()));
         let most = words.max().unwrap_or(1).max(2);
         let address_bits = usize::BITS - (most - 1).leading_zeros();
         let input = |name: &str, format: Format, role: Role, doc: &str| {
@@ -33,9 +37,11 @@ impl Designer {
             self.port(net, role);
             net
         };
-        let write = input(TABLE_WRITE, Format::BIT, Role::TableWrite, "writes the table at table_address");
+        let write =
+            input(TABLE_WRITE, Format::BIT, Role::TableWrite, "writes the table at table_address");
         let address = Format::unsigned(address_bits as i32, 0);
-        let address = input(TABLE_ADDRESS, address, Role::TableAddress, "the word of the table to write");
+        let address =
+            input(TABLE_ADDRESS, address, Role::TableAddress, "the word of the table to write");
         let ready = self.add_named(TABLE_READY, Format::BIT, Driver::Undriven);
         self.set_doc(ready, "no computation runs, and the table loads a word that is written");
         let enable = self.add_named(TABLE_LOAD, Format::BIT, Driver::Op(Op::And(write, ready)));

@@ -22,18 +22,12 @@ pub struct Handshake {
 impl Role {
     /// Returns whether the port belongs to the write port of a table.
     pub fn is_of_table(self) -> bool {
-        matches!(
-            self,
-            Self::TableWrite | Self::TableAddress | Self::TableWord | Self::TableReady
-        )
+        matches!(self, Self::TableWrite | Self::TableAddress | Self::TableWord | Self::TableReady)
     }
 
     /// Returns whether the port is an output of the handshake.
     pub fn is_status(self) -> bool {
-        matches!(
-            self,
-            Self::Valid | Self::Busy | Self::Done | Self::InReady | Self::TableReady
-        )
+        matches!(self, Self::Valid | Self::Busy | Self::Done | Self::InReady | Self::TableReady)
     }
 }
 

@@ -616,7 +616,10 @@ impl StageBuilder<'_> {
         let points = self.inner("points", format, Driver::Op(Op::Concat(parts)));
         let any = self.inner("any_point", Format::BIT, Driver::Op(Op::Any(points)));
         let ready = self.net(TABLE_READY.to_owned(), 0, Format::BIT, Driver::Op(Op::Not(any)));
-        self.documented(ready, "no point is in the pipeline or offered, and a written word is loaded");
+        self.documented(
+            ready,
+            "no point is in the pipeline or offered, and a written word is loaded",
+        );
         let load = Driver::Op(Op::And(write, ready));
         let load = self.net(TABLE_LOAD.to_owned(), 0, Format::BIT, load);
         self.pipeline.handshake.extend([ready, load]);

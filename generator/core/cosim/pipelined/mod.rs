@@ -153,9 +153,7 @@ impl Pipe {
         match column {
             ComparedValue::OutValid => Some(point.is_some().into()),
             ComparedValue::InReady => Some(self.stages.takes(self.out_ready).into()),
-            ComparedValue::TableReady => {
-                Some((!self.offered && self.stages.is_empty()).into())
-            }
+            ComparedValue::TableReady => Some((!self.offered && self.stages.is_empty()).into()),
             ComparedValue::Side => point.map(|point| point.side),
             ComparedValue::Result(at) => point.map(|point| point.expected.results[at]),
             ComparedValue::Checkpoint(at) => point.and_then(|point| point.expected.registers[at]),
