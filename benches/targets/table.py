@@ -25,7 +25,7 @@ PAGE = ROOT / "docs/targets.md"
 START, END = "<!-- measured families -->\n", "<!-- end -->"
 CORES = ["divide", "hypot", "sincos", "atan2", "gauss"]
 # The clock in MHz that the page recommends for each family.
-CLOCKS = {"ecp5": 100, "ice40": 35, "ice40-hx": 50, "xilinx7": 100, "gowin": 80, "gowin-gw1n": 50, "nexus": 100, "gatemate": 45}
+CLOCKS = {"ecp5": 100, "ice40": 35, "ice40-hx": 45, "xilinx7": 100, "gowin": 80, "gowin-gw1n": 50, "nexus": 95, "gatemate": 35}
 
 
 class Failed(Exception):

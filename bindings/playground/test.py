@@ -280,6 +280,29 @@ results.angle = { formula = "atan2(y, x) / pi", fraction = 9, error = 0.8, where
 """
 
 
+def functions_of_a_unit_are_edited(page, glint):
+    """The tables of a function of a unit have cards within its card."""
+    changed(page, 'device = "unit"\n')
+    expect(page.locator("[id='key-functions.rcp.operands.x.bits']")).to_have_value("12")
+    formula = page.locator("[id='key-functions.rsqrt.results.r.formula']")
+    expect(formula).to_have_value("1 / sqrt(x)")
+    type_into(page, "functions.rsqrt.results.r.formula", "sqrt(x)")
+    line = 'functions.rsqrt.results.r = { formula = "sqrt(x)", fraction = 8, error = 1, where = "x > 0" }\n'
+    expect(page.locator("#toml")).to_have_value(re.compile(re.escape(line)), timeout=LIMIT)
+    settled(page)
+    text = page.locator("#toml").input_value()
+    _, files = native(glint, text, "generate", "core.toml")
+    assert verilog(page) == files["rtl_out/core/core.v"].decode()
+    # A function is renamed, and its tables with it.
+    page.locator("[id='name-functions.rsqrt']").fill("root")
+    page.locator("[id='name-functions.rsqrt']").press("Enter")
+    expect(page.locator("[id='key-functions.root.operands.x.fraction']")).to_have_value("8")
+    expect(page.locator("#toml")).to_have_value(re.compile(r"functions\.root\.operands\.x = "), timeout=LIMIT)
+    # An operand is added within a function.
+    page.get_by_role("button", name="Add to functions.root.operands").click()
+    expect(page.locator("[id='key-functions.root.operands.o2'] .wrong")).to_contain_text("no result depends", timeout=LIMIT)
+
+
 def bounds_and_estimates_are_those_of_the_native_program(page, glint):
     """Each result has its own bound, and each FPGA family its estimate."""
     changed(page, POLAR)
@@ -492,6 +515,7 @@ def main():
         a_wrong_key_gets_the_message_of_the_command_line(page, glint)
         views_of_choices(page)
         entries_are_edited(page, glint)
+        functions_of_a_unit_are_edited(page, glint)
         bounds_and_estimates_are_those_of_the_native_program(page, glint)
         errors_are_shown_over_the_operands(page)
         no_picture_of_the_last_device_stays(page)

@@ -1,5 +1,6 @@
 // The entries of a table in the form, such as the operands of an expression: a card for each entry, with an input for each field that
-// the entry has. The cards change at once, so that an entry which Glint refuses can be edited further.
+// the entry has. A field that is itself a table, such as the operands of a function of a unit, has cards within the card. The cards change
+// at once, so that an entry which Glint refuses can be edited further.
 
 import { element } from "./dom.js";
 import { pairs } from "./toml.js";
@@ -28,6 +29,10 @@ export function showEntries(list, value) {
   }
   for (const [at, [, entry]] of entries.entries()) {
     for (const input of fieldInputs(cardsOf(list)[at])) {
+      if (input.className === "entries") {
+        showEntries(input, entry[fieldName(input)]);
+        continue;
+      }
       if (input === document.activeElement) continue;
       if (input.type === "checkbox") input.checked = entry[input.name];
       else input.value = entry[input.name];
@@ -36,15 +41,18 @@ export function showEntries(list, value) {
   limit(list);
 }
 
-const cardsOf = (list) => [...list.querySelectorAll(".entry")];
-const nameInput = (card) => card.querySelector(".name input");
-const fieldInputs = (card) => [...card.querySelectorAll(".field > input, .field > select")];
+// A card contains the cards of its own tables, so that its parts are found among its children.
+const cardsOf = (list) => [...list.querySelectorAll(":scope > .entry")];
+const nameInput = (card) => card.querySelector(":scope > .name input");
+const fieldInputs = (card) => [...card.querySelectorAll(":scope > .fields > .field > :is(input, select, .entries)")];
+const fieldName = (input) => input.name ?? input.key.name.split(".").at(-1);
 
 function readEntries(list) {
-  return cardsOf(list).map((card) => [nameInput(card).value, Object.fromEntries(fieldInputs(card).map((it) => [it.name, valueOf(it)]))]);
+  return cardsOf(list).map((card) => [nameInput(card).value, Object.fromEntries(fieldInputs(card).map((it) => [fieldName(it), valueOf(it)]))]);
 }
 
 function valueOf(input) {
+  if (input.className === "entries") return readEntries(input);
   if (input.type === "checkbox") return input.checked;
   return input.type === "number" ? input.valueAsNumber : input.value;
 }
@@ -56,9 +64,10 @@ function addEntry(list) {
   const first = kind.fields.find((it) => it.name === kind.shorthand);
   const [, fields] = entries.at(-1) ?? ["", first ? { [first.name]: first.default } : {}];
   const names = entries.map(([it]) => it);
+  const letter = name.split(".").at(-1)[0];
   let number = entries.length + 1;
-  while (names.includes(`${name[0]}${number}`)) number += 1;
-  const made = card(list, `${name[0]}${number}`, fields);
+  while (names.includes(`${letter}${number}`)) number += 1;
+  const made = card(list, `${letter}${number}`, fields);
   list.lastElementChild.before(made);
   nameInput(made).focus();
   limit(list);
@@ -69,7 +78,7 @@ function addEntry(list) {
 function limit(list) {
   const cards = cardsOf(list);
   list.lastElementChild.disabled = cards.length >= list.key.kind.most;
-  for (const card of cards) card.querySelector(".remove").disabled = cards.length <= list.key.kind.least;
+  for (const card of cards) card.querySelector(":scope > .name .remove").disabled = cards.length <= list.key.kind.least;
 }
 
 function card(list, name, entry) {
@@ -99,7 +108,7 @@ function fieldAdder(list, card) {
   const button = element("button", { type: "button", textContent: "Add field" });
   button.onclick = () => {
     const field = list.key.kind.fields.find((it) => it.name === choice.value);
-    card.querySelector(".fields").append(fieldOf(list, card, field.name, field.default));
+    card.querySelector(":scope > .fields").append(fieldOf(list, card, field.name, field.default));
     label(list, card);
     fieldInputs(card).at(-1).focus();
     list.edited();
@@ -109,17 +118,24 @@ function fieldAdder(list, card) {
 
 function fieldOf(list, card, name, value) {
   const field = list.key.kind.fields.find((it) => it.name === name);
-  const input = inputOf(field, value);
-  Object.assign(input, { name, title: field.doc, onchange: list.edited });
+  const isTable = field.kind.is === "entries";
+  const input = isTable ? tableOf(list, card, field, value) : inputOf(field, value);
+  if (!isTable) Object.assign(input, { name, title: field.doc, onchange: list.edited });
   const drop = element("button", { type: "button", className: "drop", textContent: "×" });
-  const made = element("div", { className: WIDE.includes(name) ? "field wide" : "field" }, element("label", { textContent: name, title: field.doc }), input, drop);
+  const made = element("div", { className: isTable || WIDE.includes(name) ? "field wide" : "field" }, element("label", { textContent: name, title: field.doc }), input, drop);
   drop.onclick = () => {
     made.remove();
     label(list, card);
-    card.querySelector(".adder select").focus();
+    card.querySelector(":scope > .adder select").focus();
     list.edited();
   };
   return made;
+}
+
+// The cards of a table within an entry.
+function tableOf(list, card, field, value) {
+  const name = `${list.key.name}.${nameInput(card).value}.${field.name}`;
+  return entriesOf({ ...field, name }, value, () => list.edited());
 }
 
 function inputOf({ kind: { is, min, max, options } }, value) {
@@ -138,13 +154,20 @@ function label(list, card) {
   card.querySelector(".name label").htmlFor = nameInput(card).id;
   card.querySelector(".remove").ariaLabel = `remove ${name}`;
   for (const input of fieldInputs(card)) {
-    input.id = `${id}.${input.name}`;
+    const field = fieldName(input);
+    input.id = `${id}.${field}`;
     input.previousElementSibling.htmlFor = input.id;
-    input.nextElementSibling.ariaLabel = `remove ${input.name} of ${name}`;
+    input.nextElementSibling.ariaLabel = `remove ${field} of ${name}`;
+    if (input.className === "entries") {
+      input.key.name = `${list.key.name}.${name}.${field}`;
+      input.ariaLabel = input.key.name;
+      input.lastElementChild.textContent = `Add to ${input.key.name}`;
+      for (const inner of cardsOf(input)) label(input, inner);
+    }
   }
-  const given = fieldInputs(card).map((it) => it.name);
+  const given = fieldInputs(card).map(fieldName);
   const others = list.key.kind.fields.filter((it) => !given.includes(it.name));
-  const adder = card.querySelector(".adder");
+  const adder = card.querySelector(":scope > .adder");
   adder.hidden = others.length === 0;
   const choice = adder.querySelector("select");
   choice.ariaLabel = `a field to add to ${name}`;

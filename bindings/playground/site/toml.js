@@ -21,13 +21,33 @@ export function pairs(entries) {
 // An entry in TOML. The value of the shorthand stands for an entry without other fields, as in `s = "x^2"`.
 function entryLiteral({ kind }, entry) {
   const given = Object.entries(entry);
-  const text = ([name, value]) => literal(kind.fields.find((it) => it.name === name) ?? { kind: {} }, value);
+  const text = ([name, value]) => literal(fieldOf({ kind }, name), value);
   if (given.length === 1 && given[0][0] === kind.shorthand) return text(given[0]);
   return `{ ${given.map((it) => `${it[0]} = ${text(it)}`).join(", ")} }`;
 }
 
+// The lines of an entry: one line, or a line for each entry of its own tables.
+function entryLines(key, name, [entryName, entry]) {
+  const own = `${name}.${entryName}`;
+  const tables = Object.entries(entry).filter(([field]) => isTable(key, field));
+  if (tables.length === 0) return [`${own} = ${entryLiteral(key, entry)}`];
+  const inner = ([field, value]) => pairs(value).flatMap((it) => entryLines(fieldOf(key, field), `${own}.${field}`, it));
+  const plain = Object.entries(entry).filter(([field]) => !isTable(key, field));
+  const text = ([field, value]) => `${own}.${field} = ${literal(fieldOf(key, field), value)}`;
+  return [...plain.map(text), ...tables.flatMap(inner)];
+}
+
+const fieldOf = ({ kind }, name) => kind.fields.find((it) => it.name === name) ?? { kind: {} };
+const isTable = (key, field) => fieldOf(key, field).kind.is === "entries";
+
+// Tables as pairs at every depth, so that values can be compared.
+function asPairs(key, value) {
+  if (key.kind.is !== "entries") return value;
+  return pairs(value).map(([name, entry]) => [name, Object.entries(entry).map(([field, it]) => [field, asPairs(fieldOf(key, field), it)])]);
+}
+
 function isDefault(key, value) {
-  const comparable = (it) => JSON.stringify(key.kind.is === "entries" ? pairs(it) : it);
+  const comparable = (it) => JSON.stringify(asPairs(key, it));
   return comparable(value) === comparable(key.default);
 }
 
@@ -39,7 +59,7 @@ export function toml(device, name, keys, values) {
   const dotted = given.filter((key) => key.kind.is === "entries").map((key) => key.name);
   for (const key of given) {
     if (key.kind.is === "entries") {
-      for (const [name, entry] of pairs(values[key.name])) tables.get("").push(`${key.name}.${name} = ${entryLiteral(key, entry)}`);
+      for (const entry of pairs(values[key.name])) tables.get("").push(...entryLines(key, key.name, entry));
       continue;
     }
     const at = key.name.lastIndexOf(".");

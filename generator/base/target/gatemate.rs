@@ -13,7 +13,8 @@
 //!
 //! The chip has no DSP blocks: a product is an array of its logic cells (CPEs). A CPE counts as two look-up tables; half a CPE is
 //! a small tree of tables, with four inputs together. The delays contain a reserve for longer wires: 0.5 ns for
-//! every clock, 1.1 ns for every carry chain, and 1 ns for every address bit of a table beyond the third.
+//! every clock, 0.4 ns for every level of look-up tables, 1.1 ns for every carry chain, and 1.5 ns for every address bit of a table beyond the
+//! third.
 
 use super::{BlockMemory, Chip, Estimate, FabricProduct, Family, Timing};
 
@@ -36,8 +37,8 @@ pub const GATEMATE: Family = Family {
         row_bits: 66,
         register: 3.1,
         input: 3.0,
-        logic: 2.1,
-        word_bit: 5.5,
+        logic: 2.5,
+        word_bit: 6.0,
         carry: 2.9,
         carry_bit: 0.01,
         product: 10.9,
