@@ -193,7 +193,7 @@ fn written_opcode(functions: &[TableEntry]) -> Result<Option<usize>, ConfigError
     }
 }
 
-/// Returns the function with another formula in place of that of its first result.
+/// Returns the function with another formula of its first result.
 fn with_formula(function: &TableEntry, text: &str) -> TableEntry {
     let mut changed = function.clone();
     for (table, value) in &mut changed.fields {

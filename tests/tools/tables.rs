@@ -153,7 +153,7 @@ fn software_finds_damaged_images() {
     let core = core("interface.registers = \"axi-lite\"\n");
     let dir = Emitted::new(&core, 60, 1).tree();
     let software = dir.path().join("software/fog");
-    put(software.join("table.c"), &fs::read_to_string("tests/tools/tables/table.c").sure());
+    put(software.join("table.c"), fs::read_to_string("tests/tools/tables/table.c").sure());
     let layout = TableLayout::of(&core.design).expect("a table that can be written");
     let images = core.images().sure();
     fs::write(software.join("squared.bin"), layout.binary(&images[0])).sure();

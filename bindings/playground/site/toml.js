@@ -21,7 +21,7 @@ export function pairs(entries) {
 // An entry in TOML. The value of the shorthand stands for an entry without other fields, as in `s = "x^2"`.
 function entryLiteral({ kind }, entry) {
   const given = Object.entries(entry);
-  const text = ([name, value]) => literal(fieldOf({ kind }, name), value);
+  const text = ([name, value]) => literal(fieldNamed({ kind }, name), value);
   if (given.length === 1 && given[0][0] === kind.shorthand) return text(given[0]);
   return `{ ${given.map((it) => `${it[0]} = ${text(it)}`).join(", ")} }`;
 }
@@ -31,19 +31,19 @@ function entryLines(key, name, [entryName, entry]) {
   const own = `${name}.${entryName}`;
   const tables = Object.entries(entry).filter(([field]) => isTable(key, field));
   if (tables.length === 0) return [`${own} = ${entryLiteral(key, entry)}`];
-  const inner = ([field, value]) => pairs(value).flatMap((it) => entryLines(fieldOf(key, field), `${own}.${field}`, it));
+  const inner = ([field, value]) => pairs(value).flatMap((it) => entryLines(fieldNamed(key, field), `${own}.${field}`, it));
   const plain = Object.entries(entry).filter(([field]) => !isTable(key, field));
-  const text = ([field, value]) => `${own}.${field} = ${literal(fieldOf(key, field), value)}`;
+  const text = ([field, value]) => `${own}.${field} = ${literal(fieldNamed(key, field), value)}`;
   return [...plain.map(text), ...tables.flatMap(inner)];
 }
 
-const fieldOf = ({ kind }, name) => kind.fields.find((it) => it.name === name) ?? { kind: {} };
-const isTable = (key, field) => fieldOf(key, field).kind.is === "entries";
+const fieldNamed = ({ kind }, name) => kind.fields.find((it) => it.name === name) ?? { kind: {} };
+const isTable = (key, field) => fieldNamed(key, field).kind.is === "entries";
 
 // Tables as pairs at every depth, so that values can be compared.
 function asPairs(key, value) {
   if (key.kind.is !== "entries") return value;
-  return pairs(value).map(([name, entry]) => [name, Object.entries(entry).map(([field, it]) => [field, asPairs(fieldOf(key, field), it)])]);
+  return pairs(value).map(([name, entry]) => [name, Object.entries(entry).map(([field, it]) => [field, asPairs(fieldNamed(key, field), it)])]);
 }
 
 function isDefault(key, value) {
