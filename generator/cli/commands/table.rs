@@ -35,7 +35,7 @@ Examples:
 pub struct Arguments {
     /// A configuration with a table that can be written
     config: PathBuf,
-    /// A formula of the operand, or the name of an image that the configuration states; of a unit after the name of the function
+    /// A formula of the operand, or the name of an image that the configuration states. With a unit, the name of the function can come first
     #[arg(value_name = "[FUNCTION] FORMULA", num_args = 1..=2, required = true)]
     formula: Vec<String>,
     /// The name of the image in the names of files and constants [default: the name in the configuration, or `image`]
