@@ -22,6 +22,7 @@ use glint_plan::{
 use lists::{MOST_NUMBERS, OperandPorts, operand_entry, result_names};
 
 use super::port_names::{self, NameFault, NamedTable};
+use super::power_bases;
 use super::stated_function::End;
 
 pub use lists::{result_doc, result_entry};
@@ -718,6 +719,7 @@ fn resolved(
     keys: &Keys,
     known: &KnownNames,
 ) -> Result<Expression, ConfigError> {
+    power_bases::check(formula, key)?;
     let mut unknown = None;
     formula.walk(&mut |part| {
         let (Kind::Operand(name) | Kind::Word(name, _)) = &part.kind else { return };

@@ -50,7 +50,8 @@ pub(super) fn check(keys: &Keys) -> Result<(), ConfigError> {
             "set approximation.degree to \"auto\", \"1\", \"2\" or \"3\"",
         ));
     }
-    check_names(&keys.images.0)?;
+    let names: Vec<&str> = keys.images.0.iter().map(|image| image.name.as_str()).collect();
+    check_names(&names, &|name| format!("images.{name}"))?;
     for image in &keys.images.0 {
         image_function(keys, image)?;
     }
@@ -58,34 +59,31 @@ pub(super) fn check(keys: &Keys) -> Result<(), ConfigError> {
 }
 
 /// Checks that the names of images are identifiers that differ in more than upper and lower case, because they are parts of file
-/// names.
-fn check_names(images: &[TableEntry]) -> Result<(), ConfigError> {
-    for (number, image) in images.iter().enumerate() {
-        let name = &image.name;
-        let key = key_of(image);
+/// names. `key` returns the configuration key of an image for errors.
+///
+/// # Errors
+/// Fails for the first wrong name.
+pub(super) fn check_names(names: &[&str], key: &dyn Fn(&str) -> String) -> Result<(), ConfigError> {
+    for (number, name) in names.iter().enumerate() {
         let remedy = "give the image another name";
         if let Err(reason) = identifier::check(name) {
             let message = format!("`{name}` cannot be the name of an image: {reason}");
-            return Err(ConfigError::new(key, message, remedy));
+            return Err(ConfigError::new(key(name), message, remedy));
         }
-        if images[..number].iter().any(|other| other.name.eq_ignore_ascii_case(name)) {
+        if names[..number].iter().any(|other| other.eq_ignore_ascii_case(name)) {
             let message =
                 format!("another image has the name `{name}`, apart from upper and lower case");
-            return Err(ConfigError::new(key, message, remedy));
+            return Err(ConfigError::new(key(name), message, remedy));
         }
     }
     Ok(())
-}
-
-fn key_of(image: &TableEntry) -> String {
-    format!("images.{}", image.name)
 }
 
 /// Returns the function of an image, with the domain, the formats and the error of the configuration.
 fn image_function(keys: &Keys, image: &TableEntry) -> Result<TargetFunction, ConfigError> {
     let text = image.text("formula").unwrap_or_default();
     let formula = parse(text).and_then(|formula| formula.of_operand("x"));
-    let key = format!("{}.formula", key_of(image));
+    let key = format!("images.{}.formula", image.name);
     let formula = formula.map_err(|fault| ConfigError { key, ..misread("", fault) })?;
     let own = stated_function(keys)?;
     Ok(TargetFunction { curve: Curve::Formula(formula), ..own })

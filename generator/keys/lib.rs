@@ -19,6 +19,7 @@ pub mod images;
 pub mod lyon;
 pub mod normaliser;
 mod port_names;
+mod power_bases;
 pub mod presets;
 pub mod quad_cosine;
 pub mod quadratic;

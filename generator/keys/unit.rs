@@ -193,16 +193,28 @@ fn written_opcode(functions: &[TableEntry]) -> Result<Option<usize>, ConfigError
     }
 }
 
-/// Returns the function with another formula of its first result.
-fn with_formula(function: &TableEntry, text: &str) -> TableEntry {
+/// Returns the function with a field of its first result that takes the place of the fields `dropped`.
+fn with_result_field(
+    function: &TableEntry,
+    dropped: &[&str],
+    field: (&'static str, Value),
+) -> TableEntry {
     let mut changed = function.clone();
-    for (table, value) in &mut changed.fields {
-        let Value::Table(entries) = value else { continue };
-        let Some(result) = entries.0.first_mut().filter(|_| *table == RESULTS) else { continue };
-        result.fields.retain(|(field, _)| *field != "formula");
-        result.fields.push(("formula", Value::Text(text.to_owned())));
+    let mut tables = changed.fields.iter_mut();
+    let results = tables.find_map(|(table, value)| match value {
+        Value::Table(entries) if *table == RESULTS => entries.0.first_mut(),
+        _ => None,
+    });
+    if let Some(result) = results {
+        result.fields.retain(|(own, _)| !dropped.contains(own));
+        result.fields.push(field);
     }
     changed
+}
+
+/// Returns the function with another formula of its first result.
+fn with_formula(function: &TableEntry, text: &str) -> TableEntry {
+    with_result_field(function, &["formula"], ("formula", Value::Text(text.to_owned())))
 }
 
 /// Returns the entries of the images of a function: their names and formulas.
@@ -232,24 +244,12 @@ fn image_functions(
     };
     let mut targets = vec![target(function).map_err(|error| within(function, error))?];
     let images = images_of(function);
-    let keys: Vec<String> = images
-        .iter()
-        .map(|(name, _)| format!("functions.{}.{IMAGES}.{name}", function.name))
-        .collect();
-    for (at, (name, formula)) in images.iter().enumerate() {
-        let key = keys[at].clone();
-        let remedy = "give the image another name";
-        if let Err(reason) = identifier::check(name) {
-            let message = format!("`{name}` cannot be the name of an image: {reason}");
-            return Err(ConfigError::new(key, message, remedy));
-        }
-        if images[..at].iter().any(|(other, _)| other.eq_ignore_ascii_case(name)) {
-            let message =
-                format!("another image has the name `{name}`, apart from upper and lower case");
-            return Err(ConfigError::new(key, message, remedy));
-        }
+    let names: Vec<&str> = images.iter().map(|(name, _)| name.as_str()).collect();
+    let key = |name: &str| format!("functions.{}.{IMAGES}.{name}", function.name);
+    images::check_names(&names, &key)?;
+    for (name, formula) in &images {
         let stated = target(&with_formula(function, formula));
-        targets.push(stated.map_err(|error| ConfigError { key, ..error })?);
+        targets.push(stated.map_err(|error| ConfigError { key: key(name), ..error })?);
     }
     Ok(Some((opcode, targets)))
 }
@@ -327,14 +327,7 @@ pub fn image_config(config: &Config, formula: &str, error: Option<f64>) -> Confi
 
 /// Returns the function with another allowed error of its first result.
 fn with_error(function: &TableEntry, error: f64) -> TableEntry {
-    let mut changed = function.clone();
-    for (table, value) in &mut changed.fields {
-        let Value::Table(entries) = value else { continue };
-        let Some(result) = entries.0.first_mut().filter(|_| *table == RESULTS) else { continue };
-        result.fields.retain(|(field, _)| !matches!(*field, "error" | "error_relative"));
-        result.fields.push(("error", Value::Number(error)));
-    }
-    changed
+    with_result_field(function, &["error", "error_relative"], ("error", Value::Number(error)))
 }
 
 /// Plans the unit of `config`, which differs from the configuration of `unit` only in the formula of the function whose table can be

@@ -3,9 +3,15 @@
 //! The contract of a unit takes its results from the plan of each function alone, and the exact values from the formulas. Every
 //! combination of opcode and operands is simulated, and each result must be the one of the contract.
 
+use std::collections::BTreeSet;
+
+use crate::common::Sure;
 use crate::common::cores::{Emitted, assert_agrees, assert_results_as_stated, parsed, preset};
 use glint::config::Value;
-use glint::hdl::netlist::{Driver, Net, Op};
+use glint::core::Core;
+use glint::cosim::batch::{Engine, Golden, Points, RustHdl};
+use glint::golden::ANY_VALUE;
+use glint::hdl::netlist::{Design, Driver, Net, Op, Sequence};
 
 use crate::workspace::Workspace;
 
@@ -43,6 +49,68 @@ fn every_opcode_gives_the_results_of_its_function() {
         assert_agrees(&core, 3000, 1, architecture);
         assert_results_as_stated(&core, architecture);
     }
+}
+
+/// Returns the opcodes for which a design has a wrong result, at every combination of opcode and operands that the contract covers.
+fn wrong_opcodes(core: &Core, design: &Design) -> BTreeSet<i64> {
+    let contract = core.contract.as_ref();
+    let mut points = Points::new(3);
+    let mut opcodes = Vec::new();
+    for opcode in 0..core.design.functions.len() as i64 {
+        for a in 0..32 {
+            for b in 0..16 {
+                let mut exact = Vec::new();
+                contract.exact(&[opcode, a, b], 0, &mut exact);
+                if !exact.contains(&ANY_VALUE) {
+                    opcodes.push(opcode);
+                    points.push([opcode, a, b], 1);
+                }
+            }
+        }
+    }
+    let expected = Golden(contract).compute(&points).sure();
+    let simulated = RustHdl::new(design, contract).and_then(|mut engine| engine.compute(&points));
+    // A computation that never ends is wrong, too.
+    let Ok(simulated) = simulated else { return opcodes.into_iter().collect() };
+    let outputs = contract.outputs().len();
+    let rows = simulated.chunks(outputs).zip(expected.chunks(outputs));
+    let wrong = rows.zip(opcodes).filter(|((found, expected), _)| found != expected);
+    wrong.map(|(_, opcode)| opcode).collect()
+}
+
+/// A function that skips its microinstructions has wrong results.
+#[test]
+fn faults_in_start_addresses_are_noticed() {
+    let core = parsed("few.toml", SMALL);
+    assert_eq!(wrong_opcodes(&core, &core.design), BTreeSet::new());
+    let functions = core.design.functions.len();
+    let dispatch = core.design.control.dispatch.expect("a dispatch").index();
+    let targets = &core.design.roms[dispatch].words;
+    // The microinstruction that loads the results follows all others.
+    let last = *targets.iter().max().expect("targets");
+    let microprogram = core.design.control.microprogram.iter().enumerate();
+    let dispatches =
+        microprogram.filter(|(_, it)| matches!(it.sequence, Sequence::Dispatch { .. }));
+    let dispatches: Vec<u64> = dispatches.map(|(address, _)| address as u64).collect();
+    // The words that a function reads on its way, each of which is replaced by the last address.
+    let mut faults: Vec<usize> = Vec::new();
+    for opcode in 0..functions {
+        let mut address = 0;
+        for (number, &of_dispatch) in dispatches.iter().enumerate() {
+            let at = 8 * number + opcode;
+            if address <= of_dispatch {
+                address = targets[at];
+                faults.extend((address != last).then_some(at));
+            }
+        }
+    }
+    for &at in &faults {
+        let mut design = core.design.clone();
+        design.roms[dispatch].words[at] = last;
+        let wrong = wrong_opcodes(&core, &design);
+        assert!(wrong.contains(&((at % 8) as i64)), "word {at} of the dispatch");
+    }
+    assert!(faults.len() > functions, "{} faults", faults.len());
 }
 
 /// A function skips the microinstructions that it does not need.

@@ -17,7 +17,7 @@ pub struct PortFacts<'a> {
     /// The role of the port, for example `operand` or `strobe`.
     pub role: &'static str,
     pub width: u32,
-    /// The number format, if the port is an operand, a result or a status bit.
+    /// The number format, if the port is an operand, a result, a status bit or a part of a table's word.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub format: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -139,8 +139,10 @@ pub fn ports(design: &Design) -> Vec<PortFacts<'_>> {
             Role::Operand { strobe } => Some(name(design, strobe)),
             _ => None,
         };
-        let number =
-            matches!(port.role, Role::Operand { .. } | Role::Point | Role::Result | Role::Status);
+        let number = matches!(
+            port.role,
+            Role::Operand { .. } | Role::Point | Role::Result | Role::Status | Role::TableWord
+        );
         ports.push(PortFacts {
             name: &net.name,
             direction: if port.role.is_input() { "input" } else { "output" },
