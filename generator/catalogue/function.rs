@@ -11,11 +11,8 @@ use glint_keys::function::{FunctionPlan, Keys, operand};
 use glint_rtl::dsl::Designer;
 use glint_rtl::netlist::About;
 
+use crate::piecewise::WRITABLE_TABLE;
 use crate::plan::{PlanOutput, describe_plan};
-
-/// A note on a table that can be written.
-const WRITABLE: &str = "The table can be written: raise table_write with an address and the coefficients until table_ready is \
-                        high. `glint table` finds the coefficients for another function, and proves their error.";
 
 /// `planned` must be the plan of the function that the configuration states.
 pub fn describe(d: &Designer, config: &Config, planned: &FunctionPlan) {
@@ -52,7 +49,7 @@ fn about(keys: &Keys, proof: &str, it: &Piecewise) -> About {
         .into(),
     ];
     if it.is_writable {
-        notes.push(WRITABLE.to_owned().into());
+        notes.push(WRITABLE_TABLE.to_owned().into());
     }
     About {
         device: "function".to_owned(),

@@ -11,6 +11,10 @@ use glint_base::fixed::{Format, MAX_WIDTH, Overflow, Rounding};
 use glint_plan::SMALLEST_BLOCK;
 use glint_rtl::dsl::{Designer, OperandMux, Register, SharedProduct, Signal, StepSetting};
 
+/// A note on a table that can be written.
+pub(super) const WRITABLE_TABLE: &str = "The table can be written: raise table_write with an address and the coefficients until table_ready is high. \
+     `glint table` finds the coefficients for another function, and proves their error.";
+
 /// One multiplier for all steps of all polynomials, and for other products, each in its own microinstruction.
 pub struct StepMultiplier<'d> {
     d: &'d Designer,

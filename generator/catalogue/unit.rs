@@ -9,6 +9,7 @@ use glint_plan::{StatedResult, UnitFunction, UnitPlan};
 use glint_rtl::dsl::Designer;
 use glint_rtl::netlist::{About, CoreFunction, FunctionPort};
 
+use crate::piecewise::WRITABLE_TABLE;
 use crate::plan::{PlanOutput, describe_plan};
 
 /// `planned` must be the plan of the functions that the configuration states. Each result has an output port `<result>_out`.
@@ -62,6 +63,10 @@ fn about(planned: &UnitPlan) -> About {
         }
         notes.push(format!("Opcode {opcode}, {}: {}.", function.name, operands.join(", ")).into());
         let plan = &function.planned.plan;
+        let mut tables = plan.approximations().into_iter().filter_map(|it| it.polynomials.as_ref());
+        if tables.any(|table| table.is_writable) {
+            notes.push(format!("Opcode {opcode}: {WRITABLE_TABLE}").into());
+        }
         let results = statement.results.iter().zip(&planned.results);
         for (number, (result, (port, _))) in results.enumerate() {
             let StatedResult { name, formula, .. } = result;

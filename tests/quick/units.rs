@@ -92,7 +92,7 @@ fn faults_in_start_addresses_are_noticed() {
     let dispatches =
         microprogram.filter(|(_, it)| matches!(it.sequence, Sequence::Dispatch { .. }));
     let dispatches: Vec<u64> = dispatches.map(|(address, _)| address as u64).collect();
-    // The words that a function reads on its way, each of which is replaced by the last address.
+    // The addresses of the words that the functions read. The last address replaces each word in turn.
     let mut faults: Vec<usize> = Vec::new();
     for opcode in 0..functions {
         let mut address = 0;

@@ -13,8 +13,8 @@
 //!
 //! The chip has no DSP blocks: a product is an array of its logic cells (CPEs). A CPE counts as two look-up tables; half a CPE is
 //! a small tree of tables, with four inputs together. The delays contain a reserve for longer wires: 0.5 ns for
-//! every clock, 0.4 ns for every level of look-up tables, 1.1 ns for every carry chain, and 1.5 ns for every address bit of a table beyond the
-//! third.
+//! every clock, 0.4 ns for every level of look-up tables, 1.1 ns for every carry chain, and 1.5 ns for every address bit of a
+//! table beyond the third.
 
 use super::{BlockMemory, Chip, Estimate, FabricProduct, Family, Timing};
 

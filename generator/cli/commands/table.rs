@@ -23,7 +23,7 @@ use glint_rtl::verilog;
 ///
 /// The datapath of the core stays as it is: the command fits coefficients of the same formats, and proves the error of the result at
 /// every operand. Then it loads the words through the write port of the core in the built-in simulator, and compares the results with the
-/// golden model. With --out, it writes the image as a C header, as a binary file, and as memory files for a core that starts with it.
+/// golden model. With --out, it then writes the image as a C header, as a binary file, and as memory files for a core that starts with it.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -75,11 +75,11 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     );
     let image = core.table_image(&wanted.name, &wanted.formula);
     let simulated = simulate(&one.core, &core, &image)?;
-    let mut files = Vec::new();
-    if let Some(out) = &arguments.out {
-        files = write(out, arguments, &one, &core, &layout, &image)?;
-    }
     let holds = simulated.first_difference.is_none();
+    let files = match &arguments.out {
+        Some(out) if holds => write(out, arguments, &one, &layout, &image, &core)?,
+        _ => Vec::new(),
+    };
     output.report(&FittedImage { one: &one, layout, image, core: &core, simulated, files })?;
     Ok(holds)
 }
@@ -189,17 +189,16 @@ fn write(
     out: &Path,
     arguments: &Arguments,
     one: &Loaded,
-    core: &Core,
     layout: &TableLayout,
     image: &TableImage,
+    core: &Core,
 ) -> Result<Vec<String>> {
     let name = &core.config().name;
-    let command = format!(
-        "{Program} table {} {:?} --name {}",
-        input::label(&one.path),
-        image.formula,
-        image.name
-    );
+    let path = input::label(&one.path);
+    let mut command = format!("{Program} table {path} {:?} --name {}", image.formula, image.name);
+    if let Some(error) = arguments.error {
+        command += &format!(" --error {error}");
+    }
     let header = image_header(name, &command, layout, image)?;
     let mut files: Vec<(String, Vec<u8>)> = vec![
         (image_file(name, &image.name), header.into_bytes()),

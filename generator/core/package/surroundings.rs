@@ -81,8 +81,7 @@ pub fn check_rom_style(config: &Config, design: &Design) -> Result<(), ConfigErr
 /// # Errors
 /// Fails if the core has a table that can be written, and `package.memories` writes ROMs as functions.
 pub fn check_written_memories(config: &Config, design: &Design) -> Result<(), ConfigError> {
-    let is_written = design.roms.iter().any(|rom| rom.write.is_some());
-    if is_written && config.choice(MEMORIES) == "case" {
+    if design.has_write_port() && config.choice(MEMORIES) == "case" {
         let message = format!(
             "`{MEMORIES}` = \"case\" writes tables as Verilog functions, and the table of `{}` can be written",
             design.name

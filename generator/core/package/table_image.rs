@@ -10,13 +10,13 @@ use glint_rtl::netlist::{Design, NetId, Role};
 /// The beginning of an image in a binary file.
 const MAGIC: &[u8; 8] = b"GLINTTAB";
 
-/// What an image must match: the parts of a word, the number of words, and the datapath that reads them.
+/// The properties of a core that an image must match: the parts of a word, the number of words, and the datapath that reads them.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TableLayout {
     /// The inputs for the parts of a word, such as `table_c0`, with their formats.
     pub parts: Vec<(String, Format)>,
     pub words: usize,
-    /// The first 64 bits of the SHA-256 of the netlist without the words of the table. Two cores with the same digest compute the same
+    /// The first 64 bits of the SHA-256 of the netlist and of the words of its other ROMs. Two cores with the same digest compute the same
     /// results from the same words.
     pub digest: u64,
 }
@@ -44,9 +44,7 @@ impl TableLayout {
         if parts.is_empty() {
             return None;
         }
-        let text = digest(design.to_string().as_bytes());
-        let digest = u64::from_str_radix(&text[..16], 16).expect("hexadecimal digits");
-        Some(Self { parts, words: words_of(design).len(), digest })
+        Some(Self { parts, words: words_of(design).len(), digest: datapath_digest(design) })
     }
 
     pub fn word_bits(&self) -> u32 {
@@ -82,6 +80,16 @@ impl TableLayout {
         let (_, last) = bytes.split_last_chunk::<4>().expect("the checksum");
         u32::from_le_bytes(*last)
     }
+}
+
+/// Returns the digest of [`TableLayout`].
+fn datapath_digest(design: &Design) -> u64 {
+    let mut text = design.to_string();
+    for rom in design.roms.iter().filter(|rom| rom.write.is_none()) {
+        text += &format!("{}: {:?}\n", rom.name, rom.words);
+    }
+    let digits = digest(text.as_bytes());
+    u64::from_str_radix(&digits[..16], 16).expect("hexadecimal digits")
 }
 
 /// Returns the words of the writable table of a design: for each address the raw values of the parts, in the order of the ports.

@@ -38,6 +38,7 @@ pub(crate) use settings::passed_on;
 pub use settings::setting_of;
 pub use termination::latest_done;
 pub use timing::HandshakeTiming;
+pub(crate) use write_port::joined;
 pub use write_port::{TABLE_ADDRESS, TABLE_LOAD, TABLE_READY, TABLE_WRITE, WritePort};
 
 macro_rules! id {
@@ -379,6 +380,11 @@ impl Design {
 
     pub fn outputs(&self) -> impl Iterator<Item = &Port> {
         self.ports.iter().filter(|port| !port.role.is_input())
+    }
+
+    /// Returns whether a memory of the design can be written.
+    pub fn has_write_port(&self) -> bool {
+        self.roms.iter().any(|rom| rom.write.is_some())
     }
 
     /// Returns the first port with a wanted role.

@@ -32,10 +32,15 @@ impl WritePort {
 
     /// Returns the bit pattern of the word at the port; `value` has the bit pattern of each net.
     pub fn word(&self, design: &Design, value: impl Fn(NetId) -> u64) -> u64 {
-        self.parts.iter().fold(0, |above, &part| {
-            let width = design.width(part);
-            let shifted = above.checked_shl(width).unwrap_or(0);
-            shifted | value(part) & mask(width)
-        })
+        joined(self.parts.iter().map(|&part| (value(part), design.width(part))))
     }
+}
+
+/// Joins bit patterns, each with its width, the highest bits first. For example, 0b10 in 2 bits and 0b1 in 3 bits give 0b10001.
+pub fn joined(parts: impl Iterator<Item = (u64, u32)>) -> u64 {
+    let mut word: u64 = 0;
+    for (bits, width) in parts {
+        word = word.checked_shl(width).unwrap_or(0) | bits & mask(width);
+    }
+    word
 }

@@ -4,7 +4,7 @@ use std::hint::select_unpredictable;
 use std::mem;
 use std::sync::Arc;
 
-use crate::netlist::NetId;
+use crate::netlist::{NetId, joined};
 use crate::sim::program::{
     Bank, CompiledDesign, Instruction, SettlingStep, Slot, Sources, Span, ValueSlot,
 };
@@ -79,10 +79,7 @@ impl<const LANES: usize> Machine<LANES> {
                 continue;
             }
             let address = common(write.address);
-            let mut word = 0;
-            for &(part, width) in &write.parts {
-                word = word << width | common(part);
-            }
+            let word = joined(write.parts.iter().map(|&(part, width)| (common(part), width)));
             if address < u64::from(write.words.len) {
                 written.push((write.words.start as usize + address as usize, word));
             }

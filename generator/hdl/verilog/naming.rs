@@ -39,15 +39,16 @@ pub struct Style {
     pub inline: bool,
     /// Whether a ROM is a case statement in a function.
     pub case: bool,
-    /// Where a synchronous ROM should be; `None` lets the synthesiser decide.
+    /// The part of an FPGA for synchronous ROMs; `None` lets the synthesiser decide.
     pub rom_style: Option<RomStyle>,
     /// Whether an initial block sets registers to 0.
     pub initial: bool,
 }
 
-/// Where a memory should be in an FPGA.
+/// The part of an FPGA that stores a memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RomStyle {
+    /// In block memories.
     Block,
     /// In look-up tables.
     Distributed,

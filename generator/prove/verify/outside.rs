@@ -464,7 +464,7 @@ pub const GATES: Check = Check {
         let titles: Vec<&str> = families.iter().map(|family| family.title).collect();
         let mut failures: Vec<String> = failures.into_iter().flatten().collect();
         // Standard cells have no memory whose contents are known before they are written.
-        let is_written = subject.core.design.roms.iter().any(|rom| rom.write.is_some());
+        let is_written = subject.core.design.has_write_port();
         let cells = Path::new(LIBERTY).is_file() && !is_written;
         if cells {
             let rtl = subject.core.verilog()?;
