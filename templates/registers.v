@@ -4,6 +4,16 @@
 ${ line }$
 <%- endfor %>
 //
+<%- if let Some(queue) = queue %>
+// The results of up to ${ queue.depth }$ points wait until software has read them. The registers of the results show
+// the oldest, and a read of the last of these registers takes it. A write that would start one point
+// more gets an error and changes nothing. A write that starts a computation waits until the pipeline
+// has accepted the point before. A read of a result waits for results that are under way. No other
+// access waits. When no result waits and none is under way, the registers show the result that was
+// taken last, and 0 before the first computation has ended.
+//
+// The core loads all operands at once when it starts, so software may write new operands while
+<%- else %>
 // A write that starts a computation waits until the computation before it has ended, and so does a
 <%- if writes_table.is_empty() %>
 // read of a result. No other access waits. Before the first computation has ended, results read as
@@ -11,6 +21,7 @@ ${ line }$
 // read of a result. Before the first computation has ended, results read as
 <%- endif %>
 // 0. The core loads all operands at once when it starts, so software may write new operands while
+<%- endif %>
 // the core computes. A write in which no byte is enabled changes nothing. An access to an address
 // outside this map gets an error and changes nothing, and so does a write to a read-only register.
 // The two lowest bits of an address are ignored.
@@ -60,6 +71,12 @@ module ${ name }$_registers (
 
     wire busy;
     wire done;
+<%- if let Some(queue) = queue %>
+    wire full;
+    wire offering;
+    wire ${ queue.count }$ waiting;
+    reg  take;  // the last register of a result was read in the clock before
+<%- endif %>
 <%- if !writes_table.is_empty() %>
     wire table_ready;
 <%- endif %>
@@ -73,6 +90,12 @@ module ${ name }$_registers (
 <%- endfor %>
     );
     wire under_way = start | busy;
+<%- if let Some(queue) = queue %>
+    wire start_waits = start | offering;
+    // A result waits that is not being taken in this clock.
+    wire fresh = (waiting != ${ queue.no_count }$) & ~(take & (waiting == ${ queue.one }$));
+    wire result_waits = under_way & ~fresh;
+<%- endif %>
 
     // The registers from control to the last operand can be written.
 <%- for line in writable %>
@@ -81,16 +104,20 @@ ${ line }$
     wire write_start = (write_at == ${ control }$) & write_bytes[0] & write_data[0];
     wire written_start = start_on_write & (write_at == start_word) & (|write_bytes);
     wire starts = write_start | (writable & written_start);
+<%- if queue.is_some() %>
+    wire refused = starts & full & ~take;
+    wire written = write_answer & ~refused;
+<%- endif %>
 <%- if writes_table.is_empty() %>
-    assign write_answer = write & ~(starts & under_way);
+    assign write_answer = write & ~(starts & ${ start_waits }$);
 <%- else %>
 <%- for line in writes_table %>
 ${ line }$
 <%- endfor %>
     // The registers of the table keep their values until the core has loaded the word.
-    assign write_answer = write & ~(starts & under_way) & ~(writes_table & table_pending);
+    assign write_answer = write & ~(starts & ${ start_waits }$) & ~(writes_table & table_pending);
 <%- endif %>
-    assign write_error = ~writable;
+    assign write_error = ~writable<% if queue.is_some() %> | refused<% endif %>;
 
     always @(posedge clk) begin
         if (!rst_n) begin
@@ -100,26 +127,34 @@ ${ line }$
             interrupt_enable <= 1'b0;
             interrupt_pending <= 1'b0;
             finished <= 1'b0;
+<%- if queue.is_some() %>
+            take <= 1'b0;
+<%- endif %>
 <%- if !writes_table.is_empty() %>
             table_pending <= 1'b0;
 <%- endif %>
         end else begin
-            start <= write_answer & starts;
-            if (write_answer & (write_at == ${ control }$)) begin
+            start <= ${ written }$ & starts;
+            if (${ written }$ & (write_at == ${ control }$)) begin
                 if (write_bytes[0]) start_on_write <= write_data[1];
                 if (write_bytes[1]) start_word <= write_data[${ word_high + 8 }$:8];
             end
-            if (write_answer & (write_at == ${ enable }$) & write_bytes[0]) begin
+            if (${ written }$ & (write_at == ${ enable }$) & write_bytes[0]) begin
                 interrupt_enable <= write_data[0];
             end
             if (done) begin
                 interrupt_pending <= 1'b1;
-            end else if (write_answer & (write_at == ${ pending }$) & write_bytes[0] & write_data[0]) begin
+            end else if (${ written }$ & (write_at == ${ pending }$) & write_bytes[0] & write_data[0]) begin
                 interrupt_pending <= 1'b0;
             end
+<%- if let Some(queue) = queue %>
+            finished <= done | finished;
+            take <= read_answer & (read_at == ${ queue.last_result }$) & fresh;
+<%- else %>
             finished <= done | (finished & ~start);
+<%- endif %>
 <%- if !writes_table.is_empty() %>
-            if (write_answer & (write_at == ${ table_address }$) & (|write_bytes)) begin
+            if (${ written }$ & (write_at == ${ table_address }$) & (|write_bytes)) begin
                 table_pending <= 1'b1;
             end else if (table_ready) begin
                 table_pending <= 1'b0;
@@ -134,7 +169,7 @@ ${ line }$
 <%- for operand in operands %>
             operand_${ operand.name }$ <= ${ operand.zero }$;
 <%- endfor %>
-        end else if (write_answer) begin
+        end else if (${ written }$) begin
 <%- for operand in operands %>
 <%- for lane in operand.lanes %>
             if (write_at == ${ lane.word }$ & write_bytes[${ lane.byte }$]) begin
@@ -154,7 +189,7 @@ ${ line }$
         constant <= read_at[${ address_high }$:4] == ${ no_constant }$;
         constant_at <= read_at[3:2];
 <%- for word in words %>
-        reads[${ word.number }$] <= <% if word.is_result %>finished & (read_at == ${ word.index }$)<% else %>read_at == ${ word.index }$<% endif %>;
+        reads[${ word.number }$] <= <% if word.is_result %><% if queue.is_some() %>(finished | done)<% else %>finished<% endif %> & (read_at == ${ word.index }$)<% else %>read_at == ${ word.index }$<% endif %>;
 <%- endfor %>
     end
     reg  [31:0] constants;
@@ -177,7 +212,7 @@ ${ line }$
 <%- for line in read_result %>
 ${ line }$
 <%- endfor %>
-    assign read_answer = read & ~(read_result & under_way);
+    assign read_answer = read & ~(read_result & ${ result_waits }$);
 
     // Unused: bits of signals that nothing reads.
 <%- for line in unused %>

@@ -45,6 +45,10 @@ module ${ top }$_tb #(
     integer waited = 0;
     integer errors = 0;
     integer accesses = 0;
+<%- if queue.is_some() %>
+    integer first;
+    integer last;
+<%- endif %>
     wire irq;
     always #5 clk = ~clk;
 
@@ -284,6 +288,39 @@ module ${ top }$_tb #(
             expect_results;
             number = number + EVERY;
         end
+<%- if let Some(depth) = queue %>
+        // Software starts several points before it reads the first results, up to ${ depth }$ of them.
+        write(ENABLE, 32'd0, 4'b1111);
+        number = 0;
+        while (number < POINTS) begin
+            first = number;
+            last = first + EVERY * (first / EVERY % ${ depth }$);
+            for (number = first; number <= last && number < POINTS; number = number + EVERY) begin
+                point = sent[number];
+                write_operands;
+                write(CONTROL, 32'd1, 4'b0001);
+            end
+            for (number = first; number <= last && number < POINTS; number = number + EVERY) begin
+                result = received[number];
+                expect_results;
+            end
+        end
+        expect_word(STATUS, 32'd2);
+        // Without room for its results, a start is an error and changes nothing.
+        number = 0;
+        point = sent[0];
+        result = received[0];
+        write_operands;
+        write(CONTROL, 32'd0, 4'b1111);
+        for (part = 0; part < ${ depth }$; part = part + 1) write(CONTROL, 32'd1, 4'b0001);
+        access(CONTROL, 1'b1, 32'd3, 4'b0001);
+        check(failed, "a start without room does not fail");
+        expect_word(CONTROL, 32'd0);
+        repeat (LIMIT) @(negedge clk);
+        expect_word(STATUS, 32'd2 | 32'd${ depth }$ << 8);
+        repeat (${ depth }$) expect_results;
+        expect_word(STATUS, 32'd2);
+<%- endif %>
         // A reset ends the computation.
         write(ENABLE, 32'd1, 4'b1111);
         write(CONTROL, 32'd1, 4'b0001);

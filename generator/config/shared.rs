@@ -11,6 +11,9 @@ use super::schema::{Key, Schema};
 use super::text_pattern::TextPattern;
 use glint_base::target::TIMING_NAMES;
 
+/// The default of `interface.queue`.
+pub(super) const DEFAULT_QUEUE: &str = "4";
+
 /// Returns the shared keys in the order in which a written file shows them, after the keys of the device.
 pub fn shared_keys() -> &'static [Key] {
     &KEYS
@@ -97,8 +100,12 @@ keys! {
             "Adds tkeep to both streams. It is all ones on m_axis, and the core ignores it on s_axis.")
             .only_when("interface.stream", "true"),
         registers: String = Key::choice("interface.registers", "none", &["none", "axi-lite", "wishbone"],
-            "Writes a wrapper with bus registers: <name>_axil.v for AXI4-Lite, or <name>_wb.v for Wishbone. A \
-             pipeline computes one point at a time then, by <name>_single.v."),
+            "Writes a wrapper with bus registers: <name>_axil.v for AXI4-Lite, or <name>_wb.v for Wishbone."),
+        queue: String = Key::choice("interface.queue", DEFAULT_QUEUE, &["1", "2", "4", "8", "16", "32", "64"],
+            "How many points software can start in a pipeline before it reads the first results. With 1, the \
+             results stay on their registers until the next computation ends.")
+            .only_when("architecture", "pipelined")
+            .joined_later(),
         processor: String = Key::choice("interface.processor", "none", &["none", "cfu", "pcpi"],
             "Writes a wrapper by which a RISC-V processor computes with one instruction: <name>_cfu.v for CFU \
              Playground and VexRiscv, or <name>_pcpi.v for PicoRV32, and software/<name>/<name>_instructions.h, \

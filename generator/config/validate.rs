@@ -9,7 +9,7 @@ use super::nearest::nearest;
 use super::other_words;
 use super::problems::{Problem, Problems, Violation, out_of_range, quoted, shown};
 use super::schema::{Condition, Key, KeyKind, Schema};
-use super::shared::Shared;
+use super::shared::{DEFAULT_QUEUE, Shared};
 use super::text_pattern::TextPattern;
 use super::unknown::UnknownName;
 use super::values::{Config, Value, is_integer};
@@ -276,6 +276,15 @@ fn check(schema: &Schema, draft: &Draft, problems: &mut Problems) {
             "interface.stream",
             "`interface.stream` needs a pipeline that the receiver of the stream can stall",
             "set pipeline.stall = \"ready\", or remove interface.stream",
+        );
+    }
+
+    let is_queue_set = keys.queue != DEFAULT_QUEUE && keys.architecture == "pipelined";
+    if is_queue_set && keys.registers == "none" && !draft.doubtful.contains("interface.registers") {
+        problems.push(
+            "interface.queue",
+            "`interface.queue` has no effect with interface.registers = \"none\"",
+            "remove the key, or set interface.registers = \"axi-lite\" or \"wishbone\"",
         );
     }
 

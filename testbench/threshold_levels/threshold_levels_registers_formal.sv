@@ -10,7 +10,6 @@
 // Generated files belong to their user, without conditions.
 
 `default_nettype none
-
 module threshold_levels (
     input wire clk,
     input wire rst_n,
@@ -97,9 +96,9 @@ module threshold_levels_registers_formal (
     (* hierconn *) wire \dut.interrupt_enable ;
     (* hierconn *) wire \dut.interrupt_pending ;
     (* hierconn *) wire \dut.finished ;
+    (* hierconn *) wire \dut.core.rst_n ;
     (* hierconn *) wire \dut.core.run ;
     (* hierconn *) wire \dut.core.ends ;
-    (* hierconn *) wire \dut.core.rst_n ;
     (* hierconn *) wire [20:0] \dut.operand_cos_gamma ;
     (* hierconn *) wire [20:0] \dut.core.cos_gamma ;
     (* hierconn *) wire [9:0] \dut.operand_exponent ;
@@ -124,18 +123,21 @@ module threshold_levels_registers_formal (
             write_word >= 5 && write_word <= 12;
     wire is_result =
             read_word >= 13 && read_word <= 13;
+    wire start_waits = dut.start || dut.core.run;
+    wire result_waits = start_waits;
+    wire ended = dut.core.run && dut.core.ends;
     wire asks_start = write_mapped
             && (dut.start_on_write && write_word == dut.start_word && write_bytes != 0
                 || write_word == 5 && write_bytes[0] && write_data[0]);
 
     always @* if (!$initstate) begin
-        // A request waits only while a computation runs. There is no answer without a request.
-        if (write && !write_answer) assert (asks_start && (dut.start || dut.core.run));
-        if (read && !read_answer) assert (is_result && (dut.start || dut.core.run));
+        // A request waits only for a computation. There is no answer without a request.
+        if (write && !write_answer) assert (asks_start && start_waits);
+        if (read && !read_answer) assert (is_result && result_waits);
         if (!write) assert (!write_answer);
         if (!read) assert (!read_answer);
         // A result is read only after the computation has ended.
-        if (read_answer && is_result) assert (!dut.start && !dut.core.run);
+        if (read_answer && is_result) assert (!result_waits);
         // An access is an error exactly if its address is not in the map or, for a write,
         // read-only.
         assert (write_error == !write_mapped);
@@ -219,11 +221,10 @@ module threshold_levels_registers_formal (
                 ? $past(write_data[11:8]) : $past(dut.start_word)));
         assert (dut.interrupt_enable == (took_enable && $past(write_bytes[0])
                 ? $past(write_data[0]) : $past(dut.interrupt_enable)));
-        assert (dut.interrupt_pending == ($past(dut.core.run && dut.core.ends)
+        assert (dut.interrupt_pending == ($past(ended)
                 || $past(dut.interrupt_pending)
                 && !(took_pending && $past(write_bytes[0] && write_data[0]))));
-        assert (dut.finished == ($past(dut.core.run && dut.core.ends)
-                || $past(dut.finished) && !$past(dut.start)));
+        assert (dut.finished == ($past(ended) || $past(dut.finished) && !$past(dut.start)));
         if (took && took_word == 8 && $past(write_bytes[0])) begin
             assert (dut.operand_cos_gamma[7:0] == $past(write_data[7:0]));
         end else begin

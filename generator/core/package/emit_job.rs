@@ -41,6 +41,12 @@ impl<'a> EmitJob<'a> {
         Ok(Self { design, inputs, naming, registers, instructions })
     }
 
+    /// Returns the number of results of a pipeline that can wait behind bus registers, or `None` if the core has no such queue.
+    pub fn queue(&self) -> Option<u32> {
+        self.registers.as_ref()?;
+        self.inputs.around.queue_of(self.design)
+    }
+
     pub fn name(&self) -> &'a str {
         &self.design.name
     }

@@ -4,8 +4,8 @@
 use FileKind::{
     Bench, BenchPackage, BenchVectors, BusWrapper, CocotbBench, CocotbDriver, Constraint,
     CorePackage, CoreProof, CoreProofScript, CoreVerilog, Manifest, Memory, ProcessorWrapper,
-    Recomputation, SingleWrapper, Software, StreamWrapper, SystemVerilogPackage, TargetVerilog,
-    VendorScript, Vhdl, WrapperProof, WrapperProofScript,
+    QueueWrapper, Recomputation, SingleWrapper, Software, StreamWrapper, SystemVerilogPackage,
+    TargetVerilog, VendorScript, Vhdl, WrapperProof, WrapperProofScript,
 };
 
 /// Lists of a core's files follow the order of the kinds here, except for the kinds that `FileKind::listed_with` moves.
@@ -25,6 +25,8 @@ pub enum FileKind {
     ProcessorWrapper,
     /// Verilog that computes one point at a time with a pipeline, for the two wrappers above. For example, `rough_single.v`.
     SingleWrapper,
+    /// Verilog that computes several points at a time with a pipeline, for bus registers. For example, `rough_queue.v`.
+    QueueWrapper,
     /// ROM contents. For example, `rough_sine.mem`.
     Memory,
     /// The FuseSoC core of the device. For example, `rough.core`.
@@ -68,11 +70,19 @@ impl FileKind {
     pub const CORE_SOURCES: &[Self] = &[CoreVerilog, Memory];
 
     /// The files of the core and of its wrappers that synthesis tools and simulators read.
-    pub const DESIGN_SOURCES: &[Self] =
-        &[CoreVerilog, StreamWrapper, BusWrapper, ProcessorWrapper, SingleWrapper, Memory];
+    pub const DESIGN_SOURCES: &[Self] = &[
+        CoreVerilog,
+        StreamWrapper,
+        BusWrapper,
+        ProcessorWrapper,
+        SingleWrapper,
+        QueueWrapper,
+        Memory,
+    ];
 
     /// The modules that connect the core to a system.
-    pub const WRAPPERS: &[Self] = &[StreamWrapper, BusWrapper, ProcessorWrapper, SingleWrapper];
+    pub const WRAPPERS: &[Self] =
+        &[StreamWrapper, BusWrapper, ProcessorWrapper, SingleWrapper, QueueWrapper];
 
     pub const BENCH_SOURCES: &[Self] = &[Bench, BenchVectors];
 
@@ -83,6 +93,7 @@ impl FileKind {
         BusWrapper,
         ProcessorWrapper,
         SingleWrapper,
+        QueueWrapper,
         Memory,
         Bench,
         BenchVectors,
@@ -94,8 +105,8 @@ impl FileKind {
     pub fn folder(self) -> &'static str {
         match self {
             CoreVerilog | TargetVerilog | StreamWrapper | BusWrapper | ProcessorWrapper
-            | SingleWrapper | Memory | CorePackage | Constraint | VendorScript | Vhdl
-            | SystemVerilogPackage | Manifest => "rtl_out",
+            | SingleWrapper | QueueWrapper | Memory | CorePackage | Constraint | VendorScript
+            | Vhdl | SystemVerilogPackage | Manifest => "rtl_out",
             CocotbBench | WrapperProof | WrapperProofScript | CoreProof | CoreProofScript
             | Bench | BenchVectors | BenchPackage | CocotbDriver => "testbench",
             Software | Recomputation => "software",
@@ -113,6 +124,7 @@ impl FileKind {
                 | BusWrapper
                 | ProcessorWrapper
                 | SingleWrapper
+                | QueueWrapper
                 | Bench
         )
     }

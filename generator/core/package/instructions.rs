@@ -7,7 +7,7 @@
 use anyhow::{Result, bail};
 
 use super::inputs::EmitInputs;
-use super::wrap::single::{colliding_port, started};
+use super::wrap::started::{colliding_port, started};
 use glint_base::config_error::ConfigError;
 use glint_base::fixed::Format;
 use glint_rtl::netlist::{CoreFunction, Design, FunctionPort, OPCODE, Port, Role};
@@ -104,10 +104,7 @@ impl Instructions {
     /// bits, or if the operands do not fit into two registers of 32 bits.
     pub fn new(core: &Design, inputs: &EmitInputs) -> Result<Self> {
         let name = core.name.as_str();
-        if let Some(port) = colliding_port(core) {
-            let message = format!(
-                "`{port}` is a signal of `{name}_single.v`, and a port cannot have its name"
-            );
+        if let Some(message) = colliding_port(core, None) {
             bail!(refused(message, "rename the operand or the result with this name"));
         }
         let length = inputs.accuracy.as_ref().and_then(|accuracy| accuracy.length.as_ref());
@@ -117,7 +114,7 @@ impl Instructions {
             );
             bail!(refused(message, "remove the key; for such a core, set interface.stream = true"));
         }
-        let started = started(core);
+        let started = started(core, None);
         let design = started.as_ref();
         design.handshake()?;
         let opcode_bits = core.opcode_bits();

@@ -9,7 +9,7 @@ use anyhow::{Result, bail};
 use serde::Deserialize;
 
 use super::inputs::EmitInputs;
-use super::wrap::single::{colliding_port, started};
+use super::wrap::started::{WAITING, colliding_port, count_width, started};
 use glint_base::config_error::ConfigError;
 use glint_base::fixed::Format;
 use glint_rtl::netlist::{Design, Port, Role, TABLE_ADDRESS};
@@ -119,19 +119,18 @@ pub struct Map {
 impl Map {
     /// Fails if the core computes several results after one `start`, or lacks the handshake, operands or results. Fails if two
     /// registers would have the same name, for example because an operand is called `status`, or if a port of a pipeline has the
-    /// name of a signal of `<name>_single.v`.
+    /// name of a signal in the module around it.
     pub fn new(core: &Design, inputs: &EmitInputs) -> Result<Self> {
         let name = core.name.as_str();
-        if let Some(port) = colliding_port(core) {
+        let queue = inputs.around.queue_of(core);
+        if let Some(message) = colliding_port(core, queue) {
             bail!(registers_error(
-                format!(
-                    "`{port}` is a signal of `{name}_single.v`, and a port cannot have its name"
-                ),
+                message,
                 "remove interface.registers, or rename the operand or the result with this name in the \
                  description",
             ));
         }
-        let started = started(core);
+        let started = started(core, queue);
         let design = started.as_ref();
         let length = inputs.accuracy.as_ref().and_then(|accuracy| accuracy.length.as_ref());
         if let Some(length) = length {
@@ -168,6 +167,9 @@ impl Map {
         }
         let mut registers =
             fixed(inputs, (operands.len(), results.len()), (last_operand, place - 1))?;
+        if let Some(depth) = queue {
+            describe_queue(&mut registers, depth);
+        }
         for operand in &operands {
             registers.extend(own(operand, Access::Write, &doc(design, &operand.name)));
         }
@@ -324,6 +326,32 @@ fn fixed(
         }
     }
     Ok(registers)
+}
+
+/// Adds the fields of a queue of results to the registers that every core has, and says how the queue changes the meaning of others.
+/// `depth` is the largest number of results that wait.
+fn describe_queue(registers: &mut [BusRegister], depth: u32) {
+    for register in registers {
+        match register.name.as_str() {
+            "capabilities" => {
+                let doc = "how many results can wait until software reads them";
+                register.bits.push(bits("queue", (16, 8), Access::Read, depth.into(), doc));
+            }
+            "status" => {
+                register.bits[0].doc = "the results of a point are under way".to_owned();
+                register.bits[1].doc = "all points that were started have results".to_owned();
+                let doc = "how many results wait; a read of the last result register takes one";
+                let places = (8, count_width(depth));
+                register.bits.push(bits(WAITING, places, Access::Read, 0, doc));
+            }
+            "control" => {
+                register.bits[0].doc =
+                    "starts a computation; waits while the queue has no room for its results"
+                        .to_owned();
+            }
+            _ => {}
+        }
+    }
 }
 
 fn bits(

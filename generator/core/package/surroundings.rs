@@ -103,6 +103,8 @@ pub struct Surroundings {
     /// Whether the streams have `tkeep`, which marks the valid bytes of a transfer.
     pub keep: bool,
     pub registers: Option<&'static Bus>,
+    /// The number of results of a pipeline that can wait behind its bus registers.
+    pub queue: u32,
     pub processor: Option<&'static ProcessorInterface>,
     /// Whether to emit a C model, in `software/<name>/`.
     pub software: bool,
@@ -135,6 +137,12 @@ impl Default for Surroundings {
 }
 
 impl Surroundings {
+    /// Returns the number of results that wait behind bus registers of a pipeline. Returns `None` for a core with a microprogram, and
+    /// if one point is computed at a time.
+    pub fn queue_of(&self, design: &Design) -> Option<u32> {
+        (design.pipeline.is_some() && self.queue > 1).then_some(self.queue)
+    }
+
     /// Reads the keys of the tables `interface` and `package`. The default clock of the constraint files is the clock of
     /// `pipeline`, or 100 MHz without one.
     pub fn new(config: &Config, pipeline: Option<&Pipeline>) -> Self {
@@ -145,6 +153,7 @@ impl Surroundings {
             power_of_two: keys.data_width == "power-of-two",
             keep: keys.keep,
             registers: BUSES.iter().find(|bus| bus.key == keys.registers),
+            queue: keys.queue.parse().unwrap_or(1),
             processor: PROCESSORS.iter().find(|it| it.key == keys.processor),
             software: keys.software,
             recomputation: keys.recomputation,

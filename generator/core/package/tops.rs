@@ -110,7 +110,9 @@ pub fn tops(job: &EmitJob, files: &OutputFiles) -> Result<Vec<Top>> {
             let kinds: &[FileKind] = match face {
                 Face::Core => &[],
                 Face::Stream => &[FileKind::StreamWrapper],
-                Face::Registers(_) => &[FileKind::BusWrapper, FileKind::SingleWrapper],
+                Face::Registers(_) => {
+                    &[FileKind::BusWrapper, FileKind::SingleWrapper, FileKind::QueueWrapper]
+                }
                 Face::Processor(_) => &[FileKind::ProcessorWrapper, FileKind::SingleWrapper],
             };
             let mut verilog = files.local_paths(kinds);

@@ -193,11 +193,18 @@ fn registers_are_proved() {
     let proved = ["cosine_power", "lyon", "blinn", "rough"];
     proved.iter().chain(&STARTED_PIPELINES).par_bridge().for_each(|name| {
         for (keys, bus) in BUSES {
-            let dir = proof(name, keys);
-            let single = STARTED_PIPELINES.contains(name).then_some("single");
-            for wrapper in [bus, "registers"].into_iter().chain(single) {
-                prove(dir.path(), &format!("{name}_{wrapper}_formal.sv"), LIMIT)
-                    .sure_of(format_args!("{name}_{wrapper}"));
+            let one_point = format!("{keys}queue = 1\n");
+            let is_pipeline = STARTED_PIPELINES.contains(name);
+            let kinds: &[(&str, Option<&str>)] = match is_pipeline {
+                true => &[(keys, Some("queue")), (&one_point, Some("single"))],
+                false => &[(keys, None)],
+            };
+            for (keys, around) in kinds {
+                let dir = proof(name, keys);
+                for wrapper in [bus, "registers"].into_iter().chain(*around) {
+                    prove(dir.path(), &format!("{name}_{wrapper}_formal.sv"), LIMIT)
+                        .sure_of(format_args!("{name}_{wrapper}"));
+                }
             }
         }
     });
@@ -211,9 +218,14 @@ fn faults_break_the_proofs_of_registers() {
         let bus = BUSES.into_iter().find(|(_, bus)| *bus == fault.of).unwrap_or(BUSES[0]);
         breaks_the_proof(fault, "cosine_power", bus.0, &fault.of);
     });
-    faults("pipelines behind registers").par_iter().for_each(|fault| {
-        breaks_the_proof(fault, "cosine_power_pipelined", BUSES[0].0, &fault.of);
-    });
+    for (heading, queue) in
+        [("pipelines behind registers", "queue = 1\n"), ("queues behind registers", "queue = 4\n")]
+    {
+        let keys = format!("{}{queue}", BUSES[0].0);
+        faults(heading).par_iter().for_each(|fault| {
+            breaks_the_proof(fault, "cosine_power_pipelined", &keys, &fault.of);
+        });
+    }
 }
 
 /// A pipeline that cannot stall, and one with a side channel: the proof and the bench pass.
@@ -222,17 +234,21 @@ fn registers_start_pipelines_of_every_kind() {
     for keys in
         ["stall = \"none\"", "stall = \"none\"\ninterval = 3", "side = 8", "side = 8\ninterval = 2"]
     {
-        let text = format!(
-            "device = \"expression\"\nname = \"lerp\"\narchitecture = \"pipelined\"\n\
-             operands.a = {{ bits = 30, fraction = 20, signed = true }}\noperands.b = {{ bits = 6, fraction = 5 }}\n\
-             results.r = {{ formula = \"a * b\", fraction = 20 }}\n{}[pipeline]\n{keys}\n",
-            "interface.registers = \"wishbone\"\n"
-        );
-        let emitted = Emitted::new(&parsed("lerp.toml", &text), 40, 1);
-        assert_bench_passes(VerilogSimulator::Icarus, &emitted.simulated(), "lerp_wb_tb");
-        let dir = emitted.all_beside();
-        for wrapper in ["single", "registers"] {
-            prove(dir.path(), &format!("lerp_{wrapper}_formal.sv"), LIMIT).sure_of(keys);
+        for (queue, around) in [(1, "single"), (2, "queue"), (8, "queue")] {
+            let text = format!(
+                "device = \"expression\"\nname = \"lerp\"\narchitecture = \"pipelined\"\n\
+                 operands.a = {{ bits = 30, fraction = 20, signed = true }}\n\
+                 operands.b = {{ bits = 6, fraction = 5 }}\n\
+                 results.r = {{ formula = \"a * b\", fraction = 20 }}\n\
+                 results.is_more = {{ formula = \"if(a > b, 1, 0)\", fraction = 0 }}\n\
+                 interface.registers = \"wishbone\"\ninterface.queue = {queue}\n[pipeline]\n{keys}\n"
+            );
+            let emitted = Emitted::new(&parsed("lerp.toml", &text), 40, 1);
+            assert_bench_passes(VerilogSimulator::Icarus, &emitted.simulated(), "lerp_wb_tb");
+            let dir = emitted.all_beside();
+            for wrapper in [around, "registers"] {
+                prove(dir.path(), &format!("lerp_{wrapper}_formal.sv"), LIMIT).sure_of(keys);
+            }
         }
     }
 }
@@ -242,7 +258,7 @@ fn registers_start_pipelines_of_every_kind() {
 fn registers_start_cores_and_give_their_results() {
     on_buses().par_iter().for_each(|(path, core, bus)| {
         let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/tools/wrappers/registers.py");
-        assert_all_pass(path, core, &[script, &core.config().name, bus], 8);
+        assert_all_pass(path, core, &[script, &core.config().name, bus], 9);
     });
 }
 

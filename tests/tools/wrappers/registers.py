@@ -240,6 +240,28 @@ async def the_next_point_is_written_while_one_is_computed(dut):
         await bench.check(point)
 
 
+@cocotb.test(timeout_time=50, timeout_unit="ms", skip="waiting" not in MAP["status"][1])
+async def results_wait_in_a_queue(dut):
+    """Software starts points before it reads the results of earlier ones."""
+    bench = await Bench.ready(dut, 9)
+    depth = await bench.read("capabilities") >> 16 & 0xFF
+    started = []
+    for point in POINTS:
+        while len(started) > bench.random.randrange(depth):
+            await bench.check(started.pop(0))
+        for name, value in zip(OPERANDS, point["operands"]):
+            await bench.write_operand(name, value)
+        await bench.write("control", START)
+        started.append(point)
+    for _ in range(depth - len(started)):
+        await bench.write("control", START)
+        started.append(POINTS[-1])
+    await bench.is_error(bench.write("control", START))
+    for point in started:
+        await bench.check(point)
+    assert await bench.read("status") == 2
+
+
 @cocotb.test(timeout_time=50, timeout_unit="ms")
 async def bytes_are_written_alone(dut):
     bench = await Bench.ready(dut, 6)

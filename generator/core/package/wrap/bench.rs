@@ -115,6 +115,7 @@ pub fn files(job: &EmitJob, vectors: &Vectors, files: &mut OutputFiles) -> Resul
             address_high: u32 = map.address_bits() - 1,
             parts: Vec<BenchRegister> = accesses(&map.operands, &operands.fields, "point"),
             results: Vec<BenchRegister> = of_results(map, &results.fields),
+            queue: Option<u32> = job.queue(),
             constants: Vec<(String, String)>,
             read_only: Vec<String>,
         })?;

@@ -5,8 +5,10 @@ pub(super) mod fields;
 mod pipeline;
 mod points;
 pub(super) mod processor;
+mod queue;
 mod registers;
-pub(super) mod single;
+mod single;
+pub(super) mod started;
 mod stream;
 pub(super) mod table_ports;
 mod words;
@@ -40,31 +42,53 @@ pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<()> {
     if let Some((interface, instructions)) = &job.instructions {
         processor::modules(job, interface, instructions, files)?;
     }
-    let are_started = job.registers.is_some() || job.instructions.is_some();
-    if let (true, Some(pipeline)) = (are_started, &job.design.pipeline) {
-        single::modules(job, pipeline, files)?;
+    if let Some(pipeline) = &job.design.pipeline {
+        if let Some(depth) = job.queue() {
+            queue::modules(job, pipeline, depth, files)?;
+        }
+        if job.instructions.is_some() || job.registers.is_some() && job.queue().is_none() {
+            single::modules(job, pipeline, files)?;
+        }
     }
+    let are_started = job.registers.is_some() || job.instructions.is_some();
     match &job.inputs.vectors {
         Some(vectors) if streams || are_started => bench::files(job, vectors, files),
         _ => Ok(()),
     }
 }
 
-/// Adds the formal properties `text` of the module `wrapper`, and the Yosys commands that prepare them for a solver. Adds
-/// nothing without test vectors. `stubs` names the modules that `text` defines in place of modules that the wrapper
-/// instantiates. For example, the proof of `rough_axis` has a simple module `rough` in place of the core.
+/// The formal properties of a wrapper.
+struct WrapperProof {
+    text: String,
+    /// The modules that `text` defines in place of modules that the wrapper instantiates. For example, the proof of `rough_axis` has
+    /// a simple module `rough` in place of the core.
+    stubs: Vec<String>,
+    /// Whether a property reads the words of a memory of the wrapper.
+    reads_memory: bool,
+}
+
+impl WrapperProof {
+    /// Returns properties that read no memory.
+    fn new(text: String, stubs: Vec<String>) -> Self {
+        Self { text, stubs, reads_memory: false }
+    }
+}
+
+/// Adds the formal properties of the module `wrapper`, and the Yosys commands that prepare them for a solver. Adds nothing without
+/// test vectors.
 fn add_proof(
     job: &EmitJob,
     wrapper: &str,
-    stubs: Vec<String>,
-    text: String,
+    proof: WrapperProof,
     files: &mut OutputFiles,
 ) -> Result<()> {
     if job.inputs.vectors.is_some() {
-        let script = fill!("wrapper_formal.ys" { name: &'a str = wrapper })?;
+        let script = fill!("wrapper_formal.ys" {
+            name: &'a str = wrapper, reads_memory: bool = proof.reads_memory,
+        })?;
         let mut modules = vec![format!("{wrapper}_formal")];
-        modules.extend(stubs);
-        files.add_system_verilog(FileKind::WrapperProof, modules, text);
+        modules.extend(proof.stubs);
+        files.add_system_verilog(FileKind::WrapperProof, modules, proof.text);
         files.add(FileKind::WrapperProofScript, format!("{wrapper}_formal.ys"), script);
     }
     Ok(())
@@ -116,6 +140,13 @@ impl CoreStub {
         }
         let core = design.name.clone();
         Self { core, ports: stub_ports(design), free: stub_free(design), strobes }
+    }
+
+    /// Returns the stub of a queue, whose status bits are not arbitrary.
+    fn of_queue(queue: &Design) -> Self {
+        let mut results = queue.clone();
+        results.ports.retain(|port| port.role != Role::Status);
+        Self { free: stub_free(&results), ..Self::new(queue) }
     }
 }
 

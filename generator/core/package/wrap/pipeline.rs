@@ -4,7 +4,7 @@ use anyhow::{Result, ensure};
 use glint_base::fill;
 
 use super::fields::{StreamField, Transfer, sink};
-use super::{add_proof, connected, seen_inside, stub_ports, table_ports};
+use super::{WrapperProof, add_proof, connected, seen_inside, stub_ports, table_ports};
 use crate::package::emit_job::EmitJob;
 use crate::package::file_kind::FileKind;
 use crate::package::output_files::OutputFiles;
@@ -131,5 +131,5 @@ pub fn modules(job: &EmitJob, pipeline: &Pipeline, files: &mut OutputFiles) -> R
     if memory.is_some() {
         stubs.push(format!("{name}_delay"));
     }
-    add_proof(job, &format!("{name}_axis"), stubs, text, files)
+    add_proof(job, &format!("{name}_axis"), WrapperProof::new(text, stubs), files)
 }

@@ -4,8 +4,8 @@
 use anyhow::Result;
 
 use super::fields::sink;
-use super::single::started;
-use super::{CoreStub, add_proof, connected, core_wire, seen_inside, table_ports};
+use super::started::started;
+use super::{CoreStub, WrapperProof, add_proof, connected, core_wire, seen_inside, table_ports};
 use crate::package::emit_job::EmitJob;
 use crate::package::file_kind::FileKind;
 use crate::package::instructions::{InstructionOperand, Instructions, OPCODE_BITS};
@@ -67,11 +67,12 @@ pub fn modules(
     let text = (processor.module)(&processor_module(job, instructions))?;
     files.add_verilog(FileKind::ProcessorWrapper, vec![module.clone()], text);
     let proof = (processor.proof)(&processor_proof(job, instructions))?;
-    add_proof(job, &module, vec![started(job.design).name.clone()], proof, files)
+    let core = started(job.design, None).name.clone();
+    add_proof(job, &module, WrapperProof::new(proof, vec![core]), files)
 }
 
 fn processor_module(job: &EmitJob, instructions: &Instructions) -> ProcessorModule {
-    let started = started(job.design);
+    let started = started(job.design, None);
     let design = started.as_ref();
     let opcode = instructions.opcode.as_ref();
     let is_written = |strobe: &str| {
@@ -111,7 +112,7 @@ fn processor_module(job: &EmitJob, instructions: &Instructions) -> ProcessorModu
 }
 
 fn processor_proof(job: &EmitJob, instructions: &Instructions) -> ProcessorProof {
-    let started = started(job.design);
+    let started = started(job.design, None);
     let design = started.as_ref();
     let mut operands = Vec::new();
     let mut inside: Vec<(String, u32)> =

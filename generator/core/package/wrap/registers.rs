@@ -7,9 +7,9 @@ use anyhow::Result;
 use glint_base::fill;
 
 use super::fields::sink;
-use super::single::started;
+use super::started::{FULL, OFFERING, TAKE, WAITING, count_width, started};
 use super::words::{Word, constants, select, within, words};
-use super::{CoreStub, add_proof, connected, core_wire, seen_inside};
+use super::{CoreStub, WrapperProof, add_proof, connected, core_wire, seen_inside};
 use crate::package::bus::Bus;
 use crate::package::emit_job::EmitJob;
 use crate::package::file_kind::FileKind;
@@ -41,18 +41,43 @@ struct ByteLane {
 pub fn modules(job: &EmitJob, bus: &Bus, map: &Map, files: &mut OutputFiles) -> Result<()> {
     let [module, module_proof] =
         (bus.module)(job.name(), job.regenerate(), map.address_bits() - 1)?;
-    let core = started(job.design).name.clone();
+    let core = started(job.design, job.queue()).name.clone();
     let registers = format!("{}_registers", job.name());
     let bus = format!("{}_{}", job.name(), bus.suffix);
     files.add_verilog(FileKind::BusWrapper, vec![bus.clone()], module);
     files.add_verilog(FileKind::BusWrapper, vec![registers.clone()], block(job, map)?);
     // In the proof of the bus, a stub replaces the registers. In the proof of the registers, a stub replaces the core.
-    add_proof(job, &bus, vec![registers.clone()], module_proof, files)?;
-    add_proof(job, &registers, vec![core], proof(job, map)?, files)
+    let bus_proof = WrapperProof::new(module_proof, vec![registers.clone()]);
+    add_proof(job, &bus, bus_proof, files)?;
+    add_proof(job, &registers, WrapperProof::new(proof(job, map)?, vec![core]), files)
+}
+
+/// The registers of a queue of results, as Verilog.
+struct QueueRegisters {
+    depth: u32,
+    /// The range of a count from 0 to the depth, and the count 0 and 1 as literals.
+    count: String,
+    no_count: String,
+    one: String,
+    /// The word address of the register whose read takes a result.
+    last_result: String,
+}
+
+impl QueueRegisters {
+    fn new(depth: u32, map: &Map) -> Self {
+        let count_bits = count_width(depth);
+        Self {
+            depth,
+            count: range(count_bits),
+            no_count: literal(0, count_bits),
+            one: literal(1, count_bits),
+            last_result: literal(map.last().into(), map.address_bits() - 2),
+        }
+    }
 }
 
 fn block(job: &EmitJob, map: &Map) -> Result<String> {
-    let started = started(job.design);
+    let started = started(job.design, job.queue());
     let design = started.as_ref();
     let word_bits = map.address_bits() - 2;
     let place = |place: u32| literal(place.into(), word_bits);
@@ -63,13 +88,16 @@ fn block(job: &EmitJob, map: &Map) -> Result<String> {
             Some(format!("operand_{name}"))
         }
         Role::TableWrite => Some("table_pending".to_owned()),
+        Role::Strobe if job.queue().is_some() && name == TAKE => Some(TAKE.to_owned()),
+        Role::Status if [FULL, OFFERING, WAITING].contains(&name) => Some(name.to_owned()),
         Role::Strobe if map.operands.iter().any(|it| it.strobe == name) => Some("start".to_owned()),
         _ => None,
     });
     let mut unused = vec!["write_data".to_owned(), "write_bytes".to_owned()];
     let mut result_wires = Vec::new();
     for port in design.outputs() {
-        if matches!(port.role, Role::Busy | Role::Done | Role::TableReady) {
+        let is_of_queue = port.role == Role::Status && job.queue().is_some();
+        if is_of_queue || matches!(port.role, Role::Busy | Role::Done | Role::TableReady) {
             continue;
         }
         result_wires.push(core_wire(design, port));
@@ -88,11 +116,17 @@ fn block(job: &EmitJob, map: &Map) -> Result<String> {
         operands: Vec<OperandWords> = operands(map),
         // `constants` are read from the registers that never change, and `words` from all other registers.
         constants: Vec<String> = constants(map),
-        words: Vec<Word> = words(design, map),
+        words: Vec<Word> = words(design, map, job.queue()),
+        queue: Option<QueueRegisters> = job.queue().map(|depth| QueueRegisters::new(depth, map)),
         last_number: u32 = map.last(),
         no_constant: String = literal(0, word_bits - 2),
         result_wires: Vec<String>,
         connections: Vec<String>,
+        // The wires that make a start and a read of a result wait.
+        start_waits: &'a str = if job.queue().is_some() { "start_waits" } else { "under_way" },
+        // The wire that lets a write change registers.
+        written: &'a str = if job.queue().is_some() { "written" } else { "write_answer" },
+        result_waits: &'a str = if job.queue().is_some() { "result_waits" } else { "under_way" },
         control: String = place(map::CONTROL),
         enable: String = place(map::INTERRUPT_ENABLE),
         pending: String = place(map::INTERRUPT_PENDING),
@@ -163,7 +197,7 @@ fn operands(map: &Map) -> Vec<OperandWords> {
 
 /// Returns the Verilog assertion about a read: the word must have the value of each field at the field's bits, and 0
 /// elsewhere. A register of a result must read as 0 until a computation has finished.
-fn read(map: &Map, register: &BusRegister) -> Vec<String> {
+fn read(map: &Map, register: &BusRegister, queue: Option<u32>) -> Vec<String> {
     let mut parts = Vec::new();
     let mut above = 32;
     for bits in register.bits.iter().rev() {
@@ -171,29 +205,34 @@ fn read(map: &Map, register: &BusRegister) -> Vec<String> {
         if end < above {
             parts.push(literal(0, above - end));
         }
-        parts.push(source(map, register, bits));
+        parts.push(source(map, register, bits, queue));
         above = bits.low;
     }
     if above > 0 {
         parts.push(literal(0, above));
     }
     let value = format!("{{{}}}", parts.join(", "));
-    let value = if register.place > map.last_written() {
-        format!("($past(dut.finished) ? {value} : 0)")
-    } else {
-        value
+    let value = match queue {
+        _ if register.place <= map.last_written() => value,
+        None => format!("($past(dut.finished) ? {value} : 0)"),
+        Some(_) => format!("($past(dut.finished || dut.core.done) ? {value} : 0)"),
     };
     statement(12, &format!("assert (read_data == {value});"))
 }
 
 /// The expression is as wide as the field.
-fn source(map: &Map, register: &BusRegister, bits: &RegisterBits) -> String {
+fn source(map: &Map, register: &BusRegister, bits: &RegisterBits, queue: Option<u32>) -> String {
     if register.place < map::CONSTANTS {
         return literal(bits.reset, bits.width);
     }
     match (register.name.as_str(), bits.name.as_str()) {
-        ("status", "busy") => "dut.start | dut.core.run".to_owned(),
-        ("status", _) => "dut.finished".to_owned(),
+        ("status", WAITING) => "dut.core.waiting".to_owned(),
+        ("status", name) => match (name, queue) {
+            ("busy", None) => "dut.start | dut.core.run".to_owned(),
+            ("busy", Some(_)) => "dut.start | dut.core.busy".to_owned(),
+            (_, None) => "dut.finished".to_owned(),
+            (_, Some(_)) => "(dut.finished & ~dut.start & ~dut.core.busy)".to_owned(),
+        },
         ("control", "start") => literal(0, bits.width),
         ("control", name) => format!("dut.{name}"),
         ("interrupt_enable" | "interrupt_pending", _) => format!("dut.{}", register.name),
@@ -221,7 +260,8 @@ fn source(map: &Map, register: &BusRegister, bits: &RegisterBits) -> String {
 }
 
 fn proof(job: &EmitJob, map: &Map) -> Result<String> {
-    let started = started(job.design);
+    let queue = job.queue();
+    let started = started(job.design, queue);
     let word_bits = map.address_bits() - 2;
     let own = [
         ("start", 1),
@@ -230,12 +270,22 @@ fn proof(job: &EmitJob, map: &Map) -> Result<String> {
         ("interrupt_enable", 1),
         ("interrupt_pending", 1),
         ("finished", 1),
-        ("core.run", 1),
-        ("core.ends", 1),
         ("core.rst_n", 1),
     ];
-    let mut inside: Vec<(String, u32)> =
-        own.into_iter().map(|(net, width)| (net.to_owned(), width)).collect();
+    let of_core = match queue {
+        None => vec![("core.run", 1), ("core.ends", 1)],
+        Some(depth) => vec![
+            (TAKE, 1),
+            ("core.take", 1),
+            ("core.busy", 1),
+            ("core.done", 1),
+            ("core.full", 1),
+            ("core.offering", 1),
+            ("core.waiting", count_width(depth)),
+        ],
+    };
+    let nets = own.into_iter().chain(of_core);
+    let mut inside: Vec<(String, u32)> = nets.map(|(net, width)| (net.to_owned(), width)).collect();
     if !map.table.is_empty() {
         inside.push(("table_pending".to_owned(), 1));
         inside.push(("core.table_ready".to_owned(), 1));
@@ -249,7 +299,7 @@ fn proof(job: &EmitJob, map: &Map) -> Result<String> {
     inside.extend(
         map.results.iter().map(|result| (format!("core.{}", result.name), result.format.width())),
     );
-    let reads = map.registers.iter().map(|register| (register.place, read(map, register)));
+    let reads = map.registers.iter().map(|register| (register.place, read(map, register, queue)));
     fill!("registers_formal.sv" {
         name: &'a str = job.name(),
         address_high: u32 = map.address_bits() - 1,
@@ -263,7 +313,11 @@ fn proof(job: &EmitJob, map: &Map) -> Result<String> {
         operands: Vec<OperandWords> = operands(map),
         // The place of each register, and the word that a read of it gives.
         reads: Vec<(u32, Vec<String>)> = reads.collect(),
-        stub: &'a CoreStub = &CoreStub::new(&started),
+        stub: &'a CoreStub = &match queue {
+            None => CoreStub::new(&started),
+            Some(_) => CoreStub::of_queue(&started),
+        },
+        queue: Option<QueueRegisters> = queue.map(|depth| QueueRegisters::new(depth, map)),
         inside: Vec<String> = inside.into_iter().map(seen_inside).collect(),
     })
 }

@@ -5,7 +5,9 @@ use anyhow::{Context, Result};
 use glint_base::fill;
 
 use super::fields::{StreamField, Transfer, sink};
-use super::{add_proof, connected, core_wire, seen_inside, stub_free, stub_ports, table_ports};
+use super::{
+    WrapperProof, add_proof, connected, core_wire, seen_inside, stub_free, stub_ports, table_ports,
+};
 use crate::package::emit_job::EmitJob;
 use crate::package::file_kind::FileKind;
 use crate::package::output_files::OutputFiles;
@@ -139,7 +141,7 @@ pub fn modules(job: &EmitJob, files: &mut OutputFiles) -> Result<()> {
     if line.is_some() {
         stubs.push(format!("{name}_axis_buffer"));
     }
-    add_proof(job, &format!("{name}_axis"), stubs, text, files)
+    add_proof(job, &format!("{name}_axis"), WrapperProof::new(text, stubs), files)
 }
 
 /// Returns the declarations of the nets inside the wrapper that the proof reads, by which Yosys finds them. `user` is the

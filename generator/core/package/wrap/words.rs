@@ -1,6 +1,7 @@
 //! Writes the Verilog that decodes a register address, and the word that a read of each bus register returns.
 
 use super::fields::{Transfer, results};
+use super::started::count_width;
 use crate::package::map::{self, Map, PortBits, PortPlacement};
 use glint_rtl::netlist::Design;
 use glint_rtl::verilog::text::{literal, statement};
@@ -61,11 +62,12 @@ pub fn constants(map: &Map) -> Vec<String> {
 }
 
 /// Leaves out the registers that never change.
-pub fn words(design: &Design, map: &Map) -> Vec<Word> {
+/// `queue` is the number of results of a pipeline that can wait, if there is a queue.
+pub fn words(design: &Design, map: &Map, queue: Option<u32>) -> Vec<Word> {
     let word_bits = map.address_bits() - 2;
     let start_pad = literal(0, 24 - word_bits);
     let mut reads = vec![
-        "{30'd0, finished, under_way}".to_owned(),
+        status(queue),
         format!("{{{start_pad}, start_word, 6'd0, start_on_write, 1'b0}}"),
         "{31'd0, interrupt_enable}".to_owned(),
         "{31'd0, interrupt_pending}".to_owned(),
@@ -94,6 +96,17 @@ pub fn words(design: &Design, map: &Map) -> Vec<Word> {
         words.push(Word { number, index, read, is_result });
     }
     words
+}
+
+/// Returns the word of the register `status`.
+fn status(queue: Option<u32>) -> String {
+    match queue {
+        None => "{30'd0, finished, under_way}".to_owned(),
+        Some(depth) => {
+            let pad = literal(0, 24 - count_width(depth));
+            format!("{{{pad}, waiting, 6'd0, finished & ~under_way, under_way}}")
+        }
+    }
 }
 
 /// Returns one part of a port, extended to 32 bits: a signed result by its sign bit, and any other port with zeros.
