@@ -55,6 +55,15 @@ fn about(keys: &Keys, planned: &ProvedPlan) -> About {
             )
             .into(),
         );
+        if record.flag("ordered") {
+            notes.push(
+                format!(
+                    "The numbers of {name} have the order of their values: if one value is larger than another, its result \
+                     is not smaller{promise}. This is proved for all operands."
+                )
+                .into(),
+            );
+        }
     }
     let names: Vec<&str> = keys.results.0.iter().map(|record| record.name.as_str()).collect();
     About {

@@ -4,6 +4,7 @@
 //! states the results with their formulas, such as `sqrt(x^2 + y^2)`. A plan is a list of fixed-point operations that computes
 //! the formulas ([`glint_plan`]).
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use glint_approximate::Outside;
@@ -16,7 +17,7 @@ use glint_formula::{
 };
 use glint_plan::{
     ExpressionStatement, Operation, PartToLimit, PlanRefusal, ProvedPlan, StatedOperand,
-    StatedOverflow, StatedResult, StatedWidth, find, least_size,
+    StatedOverflow, StatedResult, StatedWidth, find_ordered, least_size,
 };
 
 use lists::{MOST_NUMBERS, OperandPorts, operand_entry, result_names};
@@ -130,6 +131,12 @@ fn result_fields() -> Vec<Key> {
             &["refuse", "saturate", "wrap"],
             "Together with bits: how values outside the format are handled. refuse allows no such value.",
         ),
+        Key::flag(
+            "ordered",
+            false,
+            "For a list: whether the results must have the order of their values. The largest result of a softmax is \
+             then a result of the largest number.",
+        ),
         Key::text(
             "where",
             "s > 0",
@@ -199,9 +206,35 @@ fn misread(key: String, fault: Fault, has_lists: bool) -> ConfigError {
 pub fn plan(config: &Config) -> Result<ProvedPlan, ConfigError> {
     let keys = Keys::of(config);
     let statement = statement(&keys)?;
-    let plan = find(&statement).map_err(|refusal| refused(&keys, &statement, refusal))?;
+    let lists = ordered_lists(&keys, &statement)?;
+    let plan =
+        find_ordered(&statement, &lists).map_err(|refusal| refused(&keys, &statement, refusal))?;
     check_operands_have_readers(&keys, &plan)?;
     Ok(plan)
+}
+
+/// Returns the results of each list that must have the order of its values, as ranges of indices.
+///
+/// # Errors
+/// Fails if the result is no list.
+fn ordered_lists(
+    keys: &Keys,
+    statement: &ExpressionStatement,
+) -> Result<Vec<Range<usize>>, ConfigError> {
+    let mut lists = Vec::new();
+    for record in keys.results.0.iter().filter(|record| record.flag("ordered")) {
+        let is_own = |result: &StatedResult| result_entry(keys, &result.name).name == record.name;
+        let first = statement.results.iter().position(is_own).unwrap_or_default();
+        let count = statement.results.iter().filter(|result| is_own(result)).count();
+        if count < 2 {
+            let message = format!("`{}` is a single number, which has no order", record.name);
+            let key = format!("results.{}.ordered", record.name);
+            let remedy = "remove `ordered`, or give a formula of lists, such as softmax(v)";
+            return Err(ConfigError::new(key, message, remedy));
+        }
+        lists.push(first..first + count);
+    }
+    Ok(lists)
 }
 
 /// Fails for an operand that the plan does not read, because every choice or remainder that reads it was decided: `if(x < 100, y,

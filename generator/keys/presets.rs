@@ -88,11 +88,22 @@ struct ResultPreset {
     promise: &'static str,
     /// The width of a signed result that saturates; `None` if the width follows from the values.
     saturated_bits: Option<i64>,
+    /// Whether the numbers of a list have the order of their values.
+    is_ordered: bool,
 }
 
 impl ResultPreset {
     const fn new(name: &'static str, formula: &'static str, fraction: i64) -> Self {
-        Self { name, formula, fraction, error: 1.0, axes: "", promise: "", saturated_bits: None }
+        Self {
+            name,
+            formula,
+            fraction,
+            error: 1.0,
+            axes: "",
+            promise: "",
+            saturated_bits: None,
+            is_ordered: false,
+        }
     }
 
     const fn promised(mut self, condition: &'static str) -> Self {
@@ -102,6 +113,11 @@ impl ResultPreset {
 
     const fn within(mut self, error: f64) -> Self {
         self.error = error;
+        self
+    }
+
+    const fn ordered(mut self) -> Self {
+        self.is_ordered = true;
         self
     }
 
@@ -345,14 +361,14 @@ const EXPRESSIONS: [ExpressionPreset; 29] = [
         purpose: "the softmax of four numbers, as in attention",
         operands: &[list("v", 4, SIGNAL)],
         parts: &[],
-        results: &[ResultPreset::new("p", "softmax(v)", 15).within(2.0)],
+        results: &[ResultPreset::new("p", "softmax(v)", 15).within(2.0).ordered()],
     },
     ExpressionPreset {
         name: "softmax8",
         purpose: "the softmax of eight numbers",
         operands: &[list("v", 8, SIGNAL)],
         parts: &[],
-        results: &[ResultPreset::new("p", "softmax(v)", 15).within(2.0)],
+        results: &[ResultPreset::new("p", "softmax(v)", 15).within(2.0).ordered()],
     },
     ExpressionPreset {
         name: "layernorm8",
@@ -567,6 +583,9 @@ fn result_entries(presets: &[ResultPreset]) -> TableEntries {
             fields.push(("bits", Value::Integer(bits)));
             fields.push(("signed", Value::Flag(true)));
             fields.push(("overflow", text("saturate")));
+        }
+        if result.is_ordered {
+            fields.push(("ordered", Value::Flag(true)));
         }
         if !result.promise.is_empty() {
             fields.push(("where", text(result.promise)));

@@ -5,8 +5,8 @@
 //! allowed error. If this finds no plan, the module tries the same number of guard bits for every operation. Afterwards it
 //! removes bits that are not needed.
 
-use super::boxes::{BoxError, ErrorSearches, ResultProof, has_few_operands, undivided};
-use super::lower::{FoundPolynomials, Guards, PlanSearch, PlanStyle, lowered};
+use super::boxes::{BoxError, ErrorSearches, ResultProof, undivided};
+use super::lower::{FoundPolynomials, Guards, PlanSearch, PlanStyle, WidthTies, lowered};
 use super::plan::ExpressionPlan;
 use super::refusal::PlanRefusal;
 use super::statement::{ExpressionStatement, HALF_A_UNIT};
@@ -66,7 +66,7 @@ fn allocated_with(
             .ok_or(refusal)?,
     };
     for source in 0..guards.bits.len() {
-        let siblings = siblings_of(search.statement, &plan, source);
+        let siblings = siblings_of(search, &plan, source);
         if siblings.first().is_some_and(|first| *first < source) {
             continue;
         }
@@ -110,7 +110,7 @@ fn grown(
     let statement = search.statement;
     while let Some(excess) = largest_excess(statement, &plan, divisions, searches) {
         let source = excess.source(statement, &plan, &guards, order)?;
-        for sibling in siblings_of(statement, &plan, source) {
+        for sibling in siblings_of(search, &plan, source) {
             guards.add_bit(sibling);
         }
         plan = with_guards(search, &mut guards, FIRST_GUARD)
@@ -119,12 +119,9 @@ fn grown(
     Ok((guards, plan))
 }
 
-/// Returns the rounding operations that get and lose guard bits together with `source`, in ascending order. With few operands, this is
-/// `source` alone. An expression with many operands mostly has the same parts for each element of a list. Operations with the same
-/// name, apart from the number at its end, then have the same number of guard bits, so that the search is shorter: `exponent`
-/// and `exponent2` belong together.
-fn siblings_of(
-    statement: &ExpressionStatement,
+/// Returns the rounding operations that get and lose guard bits together with `source`, in ascending order, by the ties of the search.
+pub(super) fn siblings_of(
+    search: &PlanSearch<'_>,
     plan: &ExpressionPlan,
     source: usize,
 ) -> Vec<usize> {
@@ -133,7 +130,7 @@ fn siblings_of(
         Some(node.name.trim_end_matches(|c: char| c.is_ascii_digit()))
     };
     let own = name_of(source);
-    if has_few_operands(statement) || own.is_none() {
+    if search.ties == WidthTies::None || own.is_none() {
         return vec![source];
     }
     let most = plan.nodes.iter().filter_map(|node| node.source).max().unwrap_or(source);

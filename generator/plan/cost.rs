@@ -6,10 +6,11 @@
 
 use super::node::{NodeId, Operation, PlanNode, normalising_shifts};
 use super::plan::ExpressionPlan;
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use glint_approximate::{Piecewise, TargetFunction};
-use glint_base::fixed::Rounding;
+use glint_base::fixed::{Format, Rounding};
 
 /// The number of words of one bit that a look-up table can store.
 const WORDS_OF_CELL: usize = 16;
@@ -34,9 +35,34 @@ const CELLS_IN_PLACE_OF_BLOCK: f64 = 300.0;
 const CELLS_OF_BIT_PAIR: f64 = 1.5;
 
 impl ExpressionPlan {
-    /// Returns an estimate of the number of look-up tables of four inputs that the whole plan takes.
+    /// Returns an estimate of the number of look-up tables of four inputs that the whole plan takes. Nodes with the same value count once,
+    /// because the hardware computes such a value once.
     pub(super) fn total_cells(&self) -> f64 {
-        (0..self.nodes.len()).map(|at| self.cells(NodeId(at))).sum()
+        let first = self.first_of_equal_nodes();
+        let different = (0..self.nodes.len()).map(NodeId).filter(|node| first[node.0] == *node);
+        different.map(|node| self.cells(node)).sum()
+    }
+
+    /// Returns for each node the first node that certainly has the same value: the node itself, or an earlier one that computes the same
+    /// function of the same inputs.
+    pub(super) fn first_of_equal_nodes(&self) -> Vec<NodeId> {
+        let mut first: Vec<NodeId> = Vec::with_capacity(self.nodes.len());
+        let mut by_inputs: HashMap<(Format, Vec<NodeId>), Vec<NodeId>> = HashMap::new();
+        for (at, node) in self.nodes.iter().enumerate() {
+            let inputs: Vec<NodeId> =
+                node.operation.inputs().iter().map(|input| first[input.0]).collect();
+            let earlier = by_inputs.entry((node.format, inputs)).or_default();
+            let is_operand = matches!(node.operation, Operation::Operand(_));
+            let equal = earlier.iter().find(|other| self.node(**other).is_alike(node));
+            match equal {
+                Some(equal) if !is_operand => first.push(*equal),
+                _ => {
+                    earlier.push(NodeId(at));
+                    first.push(NodeId(at));
+                }
+            }
+        }
+        first
     }
 
     /// Returns an estimate of the number of look-up tables of four inputs that a node takes. The number is 0 for an operand, a

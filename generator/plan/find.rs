@@ -5,6 +5,7 @@
 //! errors, the search fails with a [`PlanRefusal`].
 
 use std::collections::HashSet;
+use std::ops::Range;
 use std::sync::Arc;
 
 use glint_approximate::{
@@ -12,12 +13,13 @@ use glint_approximate::{
 };
 use glint_base::fixed::MAX_WIDTH;
 
-use super::allocate::{Allocation, BitOrder, allocated, largest_excess};
+use super::allocate::{Allocation, BitOrder, allocated, largest_excess, siblings_of};
 use super::boxes::ResultProof;
 use super::cost::cells_of_function;
 use super::exhaust::{largest_errors, sampled_errors};
 use super::lower::{
-    FoundPolynomials, Guards, PlanSearch, PlanStyle, TableRule, has_functions_of_operands, lowered,
+    FoundPolynomials, Guards, PlanSearch, PlanStyle, TableRule, WidthTies, fewest_dividends,
+    has_functions_of_operands, lowered,
 };
 use super::node::{NodeId, Operation};
 use super::plan::ExpressionPlan;
@@ -36,13 +38,20 @@ const SAMPLES: u64 = 512;
 /// The styles that the planner tries. The final rounding has an error of up to half a unit. If a table has an error a little
 /// below one unit, a result from a single table may keep its bound with one guard bit less.
 const STYLES: [PlanStyle; 6] = [
-    PlanStyle { table_error: 1.0, centres_fractions: false, keeps_functions: false },
-    PlanStyle { table_error: 0.96, centres_fractions: false, keeps_functions: false },
-    PlanStyle { table_error: 1.0, centres_fractions: true, keeps_functions: false },
-    PlanStyle { table_error: 0.96, centres_fractions: true, keeps_functions: false },
-    PlanStyle { table_error: 1.0, centres_fractions: false, keeps_functions: true },
-    PlanStyle { table_error: 0.96, centres_fractions: false, keeps_functions: true },
+    FIRST_STYLE,
+    PlanStyle { table_error: 0.96, ..FIRST_STYLE },
+    PlanStyle { centres_fractions: true, ..FIRST_STYLE },
+    PlanStyle { table_error: 0.96, centres_fractions: true, ..FIRST_STYLE },
+    PlanStyle { keeps_functions: true, ..FIRST_STYLE },
+    PlanStyle { table_error: 0.96, keeps_functions: true, ..FIRST_STYLE },
 ];
+
+const FIRST_STYLE: PlanStyle = PlanStyle {
+    table_error: 1.0,
+    centres_fractions: false,
+    keeps_functions: false,
+    fewest_dividends: 3,
+};
 
 /// A table with at least this many operands is searched in one style only.
 const LONG_DOMAIN: u64 = 1 << 22;
@@ -70,6 +79,9 @@ const EVALUATION_ERROR: f64 = 1e-6;
 
 /// A number that no rounding operation has.
 const NO_SOURCE: usize = usize::MAX;
+
+/// The factor by which a plan with reciprocals must have fewer look-up tables: their estimate is not exact.
+const CLEARLY_FEWER: f64 = 0.9;
 
 /// The identities by which a table for a short domain serves a longer domain.
 const IDENTITIES: [Identity; 5] =
@@ -115,6 +127,8 @@ pub struct ProvedPlan {
     pub shares: Vec<Vec<f64>>,
     /// The method by which the bounds were proved.
     pub proof: ProofKind,
+    /// The lists of results that have the order of their values, as ranges of indices.
+    pub ordered: Vec<Range<usize>>,
 }
 
 /// A plan whose functions have polynomials.
@@ -130,7 +144,15 @@ struct PlanCandidate {
 /// Fails if a formula has no plan, or if no plan keeps the allowed errors. The refusal says why, and how to change the
 /// statement.
 pub fn find(statement: &ExpressionStatement) -> Result<ProvedPlan, PlanRefusal> {
-    find_with(statement, TableRule::Cheapest)
+    find_with(&PlanSearch::new(statement, TableRule::Cheapest))
+}
+
+/// Returns the plan for a statement, in which operations at the same place of several numbers have the same widths. Fails as [`find`]
+/// does.
+pub(super) fn find_alike(statement: &ExpressionStatement) -> Result<ProvedPlan, PlanRefusal> {
+    let mut search = PlanSearch::new(statement, TableRule::Cheapest);
+    search.ties = WidthTies::Alike;
+    find_with(&search)
 }
 
 /// Returns a plan for each of several statements, with tables that have the same bit widths as far as possible. The plans of a unit
@@ -152,7 +174,7 @@ pub(super) fn find_set(
     let rule = shared_widths(&functions).map_or(TableRule::Cheapest, TableRule::Shared);
     let mut plans = Vec::new();
     for (number, statement) in statements.iter().enumerate() {
-        let plan = find_with(statement, rule.clone());
+        let plan = find_with(&PlanSearch::new(statement, rule.clone()));
         plans.push(plan.map_err(|refusal| (number, refusal))?);
     }
     Ok(plans)
@@ -181,12 +203,10 @@ fn shared_widths(functions: &[TargetFunction]) -> Option<SharedWidths> {
     best.map(|(_, widths)| widths)
 }
 
-/// Returns the plan for a statement, with tables by the rule `tables`. Fails as [`find`] does.
-fn find_with(
-    statement: &ExpressionStatement,
-    tables: TableRule,
-) -> Result<ProvedPlan, PlanRefusal> {
-    let PlanCandidate { plan: whole, divisions } = smallest_candidate(statement, tables)?;
+/// Returns the plan of a search. Fails as [`find`] does.
+fn find_with(search: &PlanSearch<'_>) -> Result<ProvedPlan, PlanRefusal> {
+    let statement = search.statement;
+    let PlanCandidate { plan: whole, divisions } = smallest_candidate(search)?;
     let (plan, renumbered) = whole.with_reductions()?;
     check_multiplier(&plan)?;
     let enclosed = enclosed_errors(statement, &whole, divisions.max(DIVISIONS))?;
@@ -211,7 +231,16 @@ fn find_with(
         shares.push(of_nodes);
     }
     let statement = statement.clone();
-    Ok(ProvedPlan { statement, plan, whole_functions: whole, bounds, enclosed, shares, proof })
+    Ok(ProvedPlan {
+        statement,
+        plan,
+        whole_functions: whole,
+        bounds,
+        enclosed,
+        shares,
+        proof,
+        ordered: Vec::new(),
+    })
 }
 
 /// Checks that no combination of operands has an error above the bound of the proof by intervals. `largest` has the largest error of
@@ -277,16 +306,14 @@ fn rounding_node(plan: &ExpressionPlan, renumbered: &[NodeId], at: usize) -> Nod
 }
 
 /// Returns the plan with the fewest look-up tables by the estimate, among the plans of all styles. A style that keeps functions
-/// is tried only if a formula has a function of an operand.
+/// is tried only if a formula has a function of an operand. The best style is also tried with reciprocals of divisors where they may be
+/// smaller ([`fewest_dividends`]).
 ///
 /// # Errors
 /// Fails if no style has a plan, with the refusal of the first style.
-fn smallest_candidate(
-    statement: &ExpressionStatement,
-    tables: TableRule,
-) -> Result<PlanCandidate, PlanRefusal> {
-    let search = PlanSearch::new(statement, tables);
-    let mut smallest: Option<(f64, PlanCandidate)> = None;
+fn smallest_candidate(search: &PlanSearch<'_>) -> Result<PlanCandidate, PlanRefusal> {
+    let statement = search.statement;
+    let mut smallest: Option<(f64, PlanStyle, PlanCandidate)> = None;
     let mut first_refusal = None;
     // A single table with a range reduction has steps of its own, which a unit cannot share.
     let may_keep_functions = matches!(search.tables, TableRule::Cheapest);
@@ -295,7 +322,7 @@ fn smallest_candidate(
         if style.keeps_functions && !has_functions {
             continue;
         }
-        let candidate = match candidate_with(&search, style) {
+        let candidate = match candidate_with(search, style) {
             Ok(candidate) => candidate,
             Err(refusal) => {
                 first_refusal.get_or_insert(refusal);
@@ -304,16 +331,24 @@ fn smallest_candidate(
         };
         let cells = candidate.plan.total_cells();
         let has_long_table = has_long_table(&candidate.plan);
-        if smallest.as_ref().is_none_or(|(least, _)| cells < *least) {
-            smallest = Some((cells, candidate));
+        if smallest.as_ref().is_none_or(|(least, ..)| cells < *least) {
+            smallest = Some((cells, style, candidate));
         }
         if has_long_table {
             // Each search of such a table takes seconds, and the other styles would save few look-up tables.
             break;
         }
     }
+    let best = smallest.as_ref().map(|(cells, style, _)| (*cells, *style));
+    let best_style = best.map_or(FIRST_STYLE, |(_, style)| style);
+    if let Some(fewest_dividends) = fewest_dividends(statement)
+        && let Ok(candidate) = candidate_with(search, PlanStyle { fewest_dividends, ..best_style })
+        && best.is_none_or(|(least, _)| candidate.plan.total_cells() < CLEARLY_FEWER * least)
+    {
+        return Ok(candidate);
+    }
     match (smallest, first_refusal) {
-        (Some((_, candidate)), _) => Ok(candidate),
+        (Some((_, _, candidate)), _) => Ok(candidate),
         (None, Some(refusal)) => Err(refusal),
         (None, None) => unreachable!("there are styles to try"),
     }
@@ -339,7 +374,9 @@ fn candidate_with(search: &PlanSearch<'_>, style: PlanStyle) -> Result<PlanCandi
         let excess = largest_excess(statement, &plan, divisions, &mut searches);
         let Some(excess) = excess else { return Ok(PlanCandidate { plan, divisions }) };
         let source = excess.source(statement, &plan, &guards, BitOrder::UnknownShares)?;
-        guards.add_bit(source);
+        for sibling in siblings_of(search, &plan, source) {
+            guards.add_bit(sibling);
+        }
         let estimate = lowered(search, &guards, 0, &FoundPolynomials::default())?.0;
         plan = with_polynomials(search, &guards, estimate)?;
     }

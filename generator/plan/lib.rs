@@ -53,6 +53,7 @@ mod hold;
 mod lower;
 mod node;
 mod order;
+mod ordered;
 mod placement;
 mod plan;
 mod polynomial;
@@ -66,6 +67,7 @@ mod written;
 
 pub use find::{ProofKind, ProvedPlan, find};
 pub use node::{Approximation, NodeId, Operation, PlanNode};
+pub use ordered::find_ordered;
 pub use placement::{PlanSchedule, PlanStep, StepWork};
 pub use plan::ExpressionPlan;
 pub use range::least_size;

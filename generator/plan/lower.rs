@@ -20,6 +20,7 @@ mod shape;
 mod table;
 mod wave;
 
+pub(crate) use quotient::fewest_dividends;
 pub(crate) use table::has_functions_of_operands;
 
 use std::collections::HashMap;
@@ -30,6 +31,7 @@ use glint_approximate::{Piecewise, SharedWidths, TargetFunction};
 use glint_base::fixed::{Rounding, exp2, nearest};
 use glint_formula::{Comparison, Enclosure, Expression, Function, Kind, Operator};
 
+use super::boxes::has_few_operands;
 use super::facts::has_fact;
 use super::guarded::GuardedFormula;
 use super::node::{NodeId, Operation, PlanNode, StatedValue, ValueAccuracy};
@@ -87,6 +89,8 @@ pub(super) struct PlanStyle {
     /// Whether a function of an operand is a single table, which may have a range reduction. Otherwise the function is
     /// rewritten. For example, a square root is then computed from the octave of its operand.
     pub(super) keeps_functions: bool,
+    /// The least number of quotients by the same divisor for which the reciprocal of the divisor is computed once.
+    pub(super) fewest_dividends: usize,
 }
 
 impl Guards {
@@ -147,6 +151,7 @@ struct FixedGuard {
 /// The state of the rewriting of formulas as a plan.
 pub(super) struct Lowering<'s> {
     statement: &'s ExpressionStatement,
+    ties: WidthTies,
     ranges: &'s RangeMemo,
     errors: &'s ErrorMemo,
     guards: &'s Guards,
@@ -171,8 +176,21 @@ pub(super) struct Lowering<'s> {
 pub(super) struct PlanSearch<'s> {
     pub(super) statement: &'s ExpressionStatement,
     pub(super) tables: TableRule,
+    pub(super) ties: WidthTies,
     ranges: RangeMemo,
     errors: ErrorMemo,
+}
+
+/// The rounding operations that have the same number of guard bits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum WidthTies {
+    None,
+    /// Operations with the same name, apart from the number at its end, such as `exponent` and `exponent2`. An expression with many
+    /// operands mostly has the same parts for each element of a list, and the search is then shorter.
+    Named,
+    /// Operations with the same name. The same constant is also rounded to the same width wherever it is a factor, so that the numbers of
+    /// a list are computed by the same operations.
+    Alike,
 }
 
 /// How the planner finds the polynomials of the functions in a plan.
@@ -185,8 +203,14 @@ pub(super) enum TableRule {
 }
 
 impl<'s> PlanSearch<'s> {
+    /// Operations with the same name have the same widths if there are many operands.
     pub(super) fn new(statement: &'s ExpressionStatement, tables: TableRule) -> Self {
-        Self { statement, tables, ranges: RangeMemo::default(), errors: ErrorMemo::default() }
+        let ties = match has_few_operands(statement) {
+            true => WidthTies::None,
+            false => WidthTies::Named,
+        };
+        let (ranges, errors) = (RangeMemo::default(), ErrorMemo::default());
+        Self { statement, tables, ties, ranges, errors }
     }
 }
 
@@ -205,6 +229,7 @@ pub(super) fn lowered(
     let finest = statement.results.iter().map(|result| result.fraction as i32).max();
     let mut lowering = Lowering {
         statement,
+        ties: search.ties,
         ranges: &search.ranges,
         errors: &search.errors,
         guards,
@@ -372,6 +397,9 @@ impl<'s> Lowering<'s> {
             if !limits.low.is_finite() && !limits.high.is_finite() {
                 return Ok(node);
             }
+            // A table for the node covers the values of the whole domain, which can have narrower limits than the maximum states.
+            let range = self.range(part)?;
+            let limits = Enclosure::between(limits.low.max(range.low), limits.high.min(range.high));
             // The rounded value can lie beyond the limits, so that only the exact value has them.
             let own = self.plan.node(node).clone();
             let copy = PlanNode { limits, source: None, stated: None, ..own };
@@ -610,7 +638,8 @@ impl<'s> Lowering<'s> {
         let node = self.part(part)?;
         let format = self.plan.node(node).format;
         self.rounding(self.finest, |own, frac| {
-            if format.width() <= WIDEST_FACTOR {
+            let is_constant = own.ties == WidthTies::Alike && !part.varies();
+            if format.width() <= WIDEST_FACTOR || is_constant {
                 return Ok(node);
             }
             own.plan.shorten("factor", node, frac, Rounding::Nearest)

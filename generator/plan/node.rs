@@ -82,6 +82,27 @@ impl PlanNode {
         let accuracy = self.stated.as_ref().map(|stated| stated.accuracy);
         matches!(accuracy, Some(ValueAccuracy::Exact | ValueAccuracy::Nearest))
     }
+
+    /// Returns whether two nodes compute the same function of their inputs, in the same format. All operands count as the same.
+    pub(super) fn is_alike(&self, other: &Self) -> bool {
+        if self.format != other.format {
+            return false;
+        }
+        match (&self.operation, &other.operation) {
+            (Operation::Constant { raw: a, .. }, Operation::Constant { raw: b, .. }) => a == b,
+            (Operation::Narrow(_, a), Operation::Narrow(_, b)) => a == b,
+            (Operation::Bit(_, a), Operation::Bit(_, b)) => a == b,
+            (
+                Operation::Normalise { by_pairs: a, .. },
+                Operation::Normalise { by_pairs: b, .. },
+            ) => a == b,
+            (Operation::Lookup { words: a, .. }, Operation::Lookup { words: b, .. }) => a == b,
+            (Operation::Polynomial(_, a), Operation::Polynomial(_, b)) => {
+                a.polynomials.is_some() && a.polynomials == b.polynomials
+            }
+            (a, b) => discriminant(a) == discriminant(b),
+        }
+    }
 }
 
 /// An operation on raw values. If two inputs have different numbers of fraction bits, zeros are appended to the input with

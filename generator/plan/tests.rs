@@ -2,7 +2,7 @@
 
 use glint_approximate::{Curve, Identity, Outside, TargetFunction, Wish};
 use glint_base::fixed::{Format, Rounding};
-use glint_formula::{Comparison, Enclosure, Expression, Kind, parse};
+use glint_formula::{Comparison, Enclosure, Expression, Kind, parse, parse_condition};
 
 use super::exhaust::largest_errors;
 use super::find::{DIVISIONS, enclosed_errors};
@@ -484,4 +484,21 @@ fn choices_guard_their_cases() {
         let largest = largest_errors(&statement, &found.plan).expect("values");
         assert!(largest[0] < 1.0, "{formula}: {largest:?}");
     }
+}
+
+/// A quotient by a root needs no table of the root, and two quotients by it need no second table of the reciprocal.
+#[test]
+fn quotients_by_a_root_read_one_table_of_its_reciprocal() {
+    let format = Format::signed(0, 11);
+    let length = "sqrt(x^2 + y^2)";
+    let coordinate = |name: &str| StatedResult {
+        promise: Some(parse_condition("x^2 + y^2 >= 1/16").expect("a condition")),
+        ..result(name, &format!("{name} / {length}"), 10)
+    };
+    let operands = vec![operand("x", format), operand("y", format)];
+    let alone = ExpressionStatement { operands: operands.clone(), results: vec![coordinate("x")] };
+    let both = ExpressionStatement { operands, results: vec![coordinate("x"), coordinate("y")] };
+    let [alone, both] = [alone, both].map(|statement| find(&statement).expect("a plan").plan);
+    assert_eq!(alone.approximations().len(), 1);
+    assert_eq!(both.approximations().len(), 1);
 }

@@ -66,6 +66,7 @@ impl ProvedPlan {
             enclosed: vec![bound],
             shares: vec![shares.collect()],
             proof: ProofKind::EveryCombination,
+            ordered: Vec::new(),
             plan,
         })
     }

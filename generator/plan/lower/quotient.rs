@@ -5,12 +5,13 @@
 //! dividend is shifted by the same k bits, so that a / b = (a · 2^k) · (1/m).
 //!
 //! If several dividends have the same divisor, and the reciprocal 1/b needs few bits, it is computed once, and each dividend has only a
-//! product: a softmax of eight numbers shifts one reciprocal in place of eight dividends.
+//! product: a softmax of eight numbers shifts one reciprocal in place of eight dividends. For a divisor that is a root, one dividend is
+//! enough: a / sqrt(x) is a · (1 / sqrt(x)), which reads one table in place of two.
 
 use std::sync::Arc;
 
 use glint_base::fixed::{Format, Rounding, exp2};
-use glint_formula::{Enclosure, Expression, Kind, Operator};
+use glint_formula::{Enclosure, Expression, Function, Kind, Operator};
 
 use super::root::{FEW_OCTAVES, Octave, holding};
 use super::shape::number;
@@ -18,12 +19,49 @@ use super::{Lowering, WIDEST_FACTOR, WIDEST_OPERAND};
 use crate::facts::promises_less;
 use crate::node::NodeId;
 use crate::refusal::PlanRefusal;
-
-/// The least number of dividends for which the reciprocal of their divisor is computed once.
-const SEVERAL_DIVIDENDS: usize = 3;
+use crate::statement::ExpressionStatement;
 
 /// The widest reciprocal that is computed once for several dividends, in bits, with the guard bits that a product needs at least.
 const WIDEST_RECIPROCAL: f64 = 20.0;
+
+/// Returns the different quotients in the formulas of a statement.
+fn quotients_of(statement: &ExpressionStatement) -> Vec<Expression> {
+    let mut quotients: Vec<Expression> = Vec::new();
+    for result in &statement.results {
+        result.formula.walk(&mut |part| {
+            if matches!(part.kind, Kind::Binary(Operator::Div, ..)) && !quotients.contains(part) {
+                quotients.push(part.clone());
+            }
+        });
+    }
+    quotients
+}
+
+/// Returns a number of quotients by the same divisor from which on one reciprocal for all may take fewer look-up tables: 1 if a divisor
+/// is a root or an exponential, whose reciprocal is as easy to compute, and 2 if two quotients have the same divisor. Returns `None`
+/// without such quotients.
+pub(crate) fn fewest_dividends(statement: &ExpressionStatement) -> Option<usize> {
+    let mut divisors: Vec<(Expression, usize)> = Vec::new();
+    for quotient in quotients_of(statement) {
+        let Kind::Binary(_, dividend, divisor) = &quotient.kind else { continue };
+        if !dividend.varies() || !divisor.varies() {
+            continue;
+        }
+        match divisors.iter_mut().find(|(known, _)| *known == **divisor) {
+            Some((_, count)) => *count += 1,
+            None => divisors.push(((**divisor).clone(), 1)),
+        }
+    }
+    let has_easy_reciprocal = |divisor: &Expression| {
+        let is_function =
+            matches!(divisor.kind, Kind::Unary(Function::Sqrt | Function::Exp | Function::Exp2, _));
+        is_function || matches!(divisor.kind, Kind::Binary(Operator::Power, ..))
+    };
+    if divisors.iter().any(|(divisor, _)| has_easy_reciprocal(divisor)) {
+        return Some(1);
+    }
+    divisors.iter().any(|(_, count)| *count == 2).then_some(2)
+}
 
 impl Lowering<'_> {
     /// Returns the node of the quotient a / b. `part` must be this quotient as a formula. Fails if a part has too many bits, no
@@ -60,18 +98,11 @@ impl Lowering<'_> {
         if !a.varies() || self.fixed_guard.is_some() {
             return Ok(None);
         }
-        let mut quotients: Vec<Expression> = Vec::new();
-        for result in &self.statement.results {
-            result.formula.walk(&mut |part| {
-                if let Kind::Binary(Operator::Div, _, divisor) = &part.kind
-                    && **divisor == *b
-                    && !quotients.contains(part)
-                {
-                    quotients.push(part.clone());
-                }
-            });
-        }
-        if quotients.len() < SEVERAL_DIVIDENDS {
+        let mut quotients = quotients_of(self.statement);
+        quotients.retain(
+            |quotient| matches!(&quotient.kind, Kind::Binary(_, _, divisor) if **divisor == *b),
+        );
+        if quotients.len() < self.guards.style.fewest_dividends {
             return Ok(None);
         }
         let largest_dividend = sizes_of(self.range(a)?).high;
