@@ -154,7 +154,34 @@ pub(super) fn facts_of(statement: &ExpressionStatement, uses: &PartUses) -> Vec<
     {
         facts.extend(Fact::all_of(promise, true, statement));
     }
-    with_signs(facts, statement)
+    with_products(with_signs(facts, statement))
+}
+
+/// Adds the facts that follow from two facts about different operands: `x^2 + y^2 >= 1` and `u^2 + v^2 >= 2` give `(x^2 + y^2) * (u^2 +
+/// v^2) >= 2`. This is the square of the length of a product of two complex numbers. Facts about linear polynomials have no products
+/// here, because boxes of operands show their values.
+fn with_products(facts: Vec<Fact>) -> Vec<Fact> {
+    let mut curved = Vec::new();
+    for fact in &facts {
+        let (polynomial, number) = fact.polynomial.without_number();
+        let least = fact.least.clone() - number;
+        if polynomial.is_curved() && least > RBig::ZERO {
+            curved.push(Fact { polynomial, least });
+        }
+    }
+    let mut all = facts;
+    for (at, one) in curved.iter().enumerate() {
+        for other in &curved[at + 1..] {
+            if one.polynomial.shares_variable(&other.polynomial) {
+                continue;
+            }
+            if let Some(polynomial) = one.polynomial.times(&other.polynomial) {
+                let least = one.least.clone() * other.least.clone();
+                all.push(Fact { polynomial, least });
+            }
+        }
+    }
+    all
 }
 
 /// Adds the facts that follow from the size and the sign of a number: from `abs(x - y) >= 1` and `x - y >= 0` follows

@@ -53,6 +53,9 @@ const FIRST_STYLE: PlanStyle = PlanStyle {
     fewest_dividends: 3,
 };
 
+/// A statement with at most so many combinations of operands can have its functions in tables that are found soon.
+const FEW_COMBINATIONS: u128 = 1 << 12;
+
 /// A table with at least this many operands is searched in one style only.
 const LONG_DOMAIN: u64 = 1 << 22;
 
@@ -318,12 +321,20 @@ fn smallest_candidate(search: &PlanSearch<'_>) -> Result<PlanCandidate, PlanRefu
     // A single table with a range reduction has steps of its own, which a unit cannot share.
     let may_keep_functions = matches!(search.tables, TableRule::Cheapest);
     let has_functions = may_keep_functions && has_functions_of_operands(statement);
-    for style in STYLES {
+    let is_short = statement.combinations() <= FEW_COMBINATIONS;
+    let mut styles = STYLES;
+    if is_short {
+        // A single table of few operands is found soon, and is often smaller than the rest of another plan.
+        styles.sort_by_key(|style| !style.keeps_functions);
+    }
+    for style in styles {
         if style.keeps_functions && !has_functions {
             continue;
         }
-        let candidate = match candidate_with(search, style) {
-            Ok(candidate) => candidate,
+        let most_cells = smallest.as_ref().filter(|_| is_short).map(|(cells, ..)| *cells);
+        let candidate = match candidate_below(search, style, most_cells) {
+            Ok(Some(candidate)) => candidate,
+            Ok(None) => continue,
             Err(refusal) => {
                 first_refusal.get_or_insert(refusal);
                 continue;
@@ -331,7 +342,10 @@ fn smallest_candidate(search: &PlanSearch<'_>) -> Result<PlanCandidate, PlanRefu
         };
         let cells = candidate.plan.total_cells();
         let has_long_table = has_long_table(&candidate.plan);
-        if smallest.as_ref().is_none_or(|(least, ..)| cells < *least) {
+        let is_smaller = |(least, best, _): &(f64, PlanStyle, PlanCandidate)| {
+            cells < *least || cells == *least && best.keeps_functions
+        };
+        if smallest.as_ref().is_none_or(is_smaller) {
             smallest = Some((cells, style, candidate));
         }
         if has_long_table {
@@ -365,14 +379,28 @@ fn has_long_table(plan: &ExpressionPlan) -> bool {
 /// Returns a plan in the given style that keeps the allowed errors, as far as `divisions` divisions of the domain show. Fails
 /// if the style has no such plan.
 fn candidate_with(search: &PlanSearch<'_>, style: PlanStyle) -> Result<PlanCandidate, PlanRefusal> {
+    let candidate = candidate_below(search, style, None)?;
+    Ok(candidate.expect("a plan of any size"))
+}
+
+/// Returns what [`candidate_with`] returns. Returns `None` without a search of polynomials if the plan has more look-up tables than
+/// `most_cells` even without its polynomials, or if their search would take seconds; both only if there is a limit.
+fn candidate_below(
+    search: &PlanSearch<'_>,
+    style: PlanStyle,
+    most_cells: Option<f64>,
+) -> Result<Option<PlanCandidate>, PlanRefusal> {
     let Allocation { mut guards, plan: estimate, divisions, mut searches } =
         allocated(search, style)?;
+    if most_cells.is_some_and(|most| estimate.total_cells() > most || has_long_table(&estimate)) {
+        return Ok(None);
+    }
     let statement = search.statement;
     let mut plan = with_polynomials(search, &guards, estimate)?;
     // The polynomials can have other formats than estimated, and then other errors.
     for _ in 0..MOST_CORRECTIONS {
         let excess = largest_excess(statement, &plan, divisions, &mut searches);
-        let Some(excess) = excess else { return Ok(PlanCandidate { plan, divisions }) };
+        let Some(excess) = excess else { return Ok(Some(PlanCandidate { plan, divisions })) };
         let source = excess.source(statement, &plan, &guards, BitOrder::UnknownShares)?;
         for sibling in siblings_of(search, &plan, source) {
             guards.add_bit(sibling);
@@ -382,7 +410,7 @@ fn candidate_with(search: &PlanSearch<'_>, style: PlanStyle) -> Result<PlanCandi
     }
     match largest_excess(statement, &plan, divisions, &mut searches) {
         Some(excess) => Err(excess.refusal(statement, &plan)),
-        None => Ok(PlanCandidate { plan, divisions }),
+        None => Ok(Some(PlanCandidate { plan, divisions })),
     }
 }
 

@@ -1,7 +1,7 @@
 //! Writes formulas as polynomials of operands, minima, maxima and absolute values, with exact coefficients. For example,
 //! `(c - a) * (c + a)` and `c^2 - a^2` are the same polynomial.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use glint_formula::{Enclosure, Expression, Function, Kind, Operator, RBig};
 
@@ -145,7 +145,7 @@ impl OperandPolynomial {
     }
 
     /// Returns the product, or `None` if it has too many terms.
-    fn times(&self, other: &Self) -> Option<Self> {
+    pub(super) fn times(&self, other: &Self) -> Option<Self> {
         let mut product = Self { terms: BTreeMap::new(), variables: self.variables.clone() };
         product.variables.extend(other.variables.clone());
         for (left, a) in &self.terms {
@@ -209,6 +209,26 @@ impl OperandPolynomial {
             factor = factor.plus(&step);
         }
         (factor != Self::zero()).then_some((factor, rest))
+    }
+
+    /// Returns the polynomial without its number, and the number: x^2 − 3 gives x^2 and −3.
+    pub(super) fn without_number(&self) -> (Self, RBig) {
+        let mut rest = self.clone();
+        let number = rest.terms.remove(&Exponents::new());
+        (rest, number.unwrap_or(RBig::ZERO))
+    }
+
+    /// Returns whether a term has a degree above 1.
+    pub(super) fn is_curved(&self) -> bool {
+        self.terms.keys().any(|exponents| exponents.values().sum::<u32>() > 1)
+    }
+
+    /// Returns whether both polynomials have a term with the same variable.
+    pub(super) fn shares_variable(&self, other: &Self) -> bool {
+        let names = |polynomial: &Self| -> BTreeSet<String> {
+            polynomial.terms.keys().flat_map(|exponents| exponents.keys().cloned()).collect()
+        };
+        !names(self).is_disjoint(&names(other))
     }
 
     /// Returns whether exactly one term has the variable, to the first power and without another variable.

@@ -502,3 +502,19 @@ fn quotients_by_a_root_read_one_table_of_its_reciprocal() {
     assert_eq!(alone.approximations().len(), 1);
     assert_eq!(both.approximations().len(), 1);
 }
+
+/// The condition limits the lengths of two points, and the angle is that of a product of complex numbers.
+#[test]
+fn the_angle_between_two_points_follows_from_their_lengths() {
+    let format = Format::signed(0, 3);
+    let condition = "u^2 + v^2 > 0.1 and x^2 + y^2 > 0.1";
+    let angle = StatedResult {
+        promise: Some(parse_condition(condition).expect("a condition")),
+        ..result("angle", "atan2(v * x - u * y, u * x + v * y) / pi", 5)
+    };
+    let operands = ["u", "v", "x", "y"].map(|name| operand(name, format)).to_vec();
+    let found = find(&ExpressionStatement { operands, results: vec![angle] }).expect("a plan");
+    // The errors of all combinations were computed, and none is above the bound of the proof by intervals.
+    assert_eq!(found.proof, ProofKind::EveryCombination);
+    assert!(found.enclosed[0] < 1.0);
+}

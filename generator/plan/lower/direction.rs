@@ -12,6 +12,7 @@ use glint_formula::{Enclosure, Expression, Function, Kind, Operator};
 use super::Lowering;
 use super::root::holding;
 use super::shape::number;
+use crate::facts::has_fact;
 use crate::guarded::GuardedFormula;
 use crate::node::{CaseAgreement, NodeId};
 use crate::refusal::PlanRefusal;
@@ -77,7 +78,13 @@ impl Lowering<'_> {
         let larger = self.plan.maximum("larger", x_size, y_size)?;
         let sizes = self.plan.node(larger);
         let most = sizes.format.to_f64(sizes.range.1);
-        let octave = self.octave(larger, Enclosure::between(0.0, most), false)?;
+        let least = self.least_of_larger(y, x, larger)?;
+        let sizes = Enclosure::between(least, most);
+        let larger = match least > 0.0 {
+            true => self.plan.limited("larger_guarded", larger, sizes)?,
+            false => larger,
+        };
+        let octave = self.octave(larger, sizes, false)?;
         // The smaller coordinate is added after the normalising of the larger one, because this limits both in the proof.
         let smaller = self.plan.minimum("smaller", x_size, y_size)?;
         let ratio = self.ratio_in_octave(smaller, &octave, 1.0, true)?;
@@ -118,6 +125,33 @@ impl Lowering<'_> {
             self.plan.nodes[whole.0].agreement = at_axis;
         }
         Ok(whole)
+    }
+
+    /// Returns a lower limit of `larger`, the node of the larger coordinate of the point (x, y), where conditions limit the length of the
+    /// point and a coordinate is itself computed from operands. The limit is 0 without such a condition, for rounded coordinates, and for
+    /// operands, whose boxes show the length.
+    fn least_of_larger(
+        &self,
+        y: &Expression,
+        x: &Expression,
+        larger: NodeId,
+    ) -> Result<f64, PlanRefusal> {
+        let is_operand = |part: &Expression| matches!(part.kind, Kind::Operand(_));
+        if is_operand(y) && is_operand(x) || !self.is_exact(larger) {
+            return Ok(0.0);
+        }
+        let binary = |operator, a: &Expression, b: &Expression| {
+            let kind = Kind::Binary(operator, Arc::new(a.clone()), Arc::new(b.clone()));
+            Expression::new(kind, 0..0)
+        };
+        let [y_squared, x_squared] = [y, x].map(|part| binary(Operator::Mul, part, part));
+        let squared_length = binary(Operator::Add, &y_squared, &x_squared);
+        if !has_fact(self.statement, &self.uses, &squared_length) {
+            return Ok(0.0);
+        }
+        // The larger coordinate has at least half of the squared length.
+        let least = self.range(&squared_length)?.low / 2.0;
+        Ok(least.max(0.0).sqrt().next_down().max(0.0))
     }
 
     /// Returns the agreement of two angles of the point (x, y) that differ by at most `slope`, a number, times the distance of the compared
