@@ -6,6 +6,7 @@
 use std::collections::HashMap;
 
 use glint_base::fixed::exp2;
+use glint_base::interval::Interval;
 
 use super::Change;
 use super::alike::{NodePair, inputs_of_pair, pairs};
@@ -68,8 +69,8 @@ struct Chain<'p> {
     /// The pairs of nodes, each after the pairs that it reads.
     pairs: Vec<NodePair>,
     changes: HashMap<NodePair, Change>,
-    /// For a node and an earlier node, the change of the node's values while the earlier node rises.
-    computed: &'p mut HashMap<(NodeId, NodeId), Change>,
+    /// For an earlier node, a node, and the range of the earlier node, the change of the node's values while the earlier node rises.
+    computed: &'p mut HashMap<(NodeId, NodeId, Interval), Change>,
 }
 
 impl Chain<'_> {
@@ -147,14 +148,11 @@ impl Chain<'_> {
             }
         }
         let Some((_, base, path)) = best else { return Change::Unknown };
+        let Some(range) = value_range(self.plan, base) else { return Change::Unknown };
         let node = self.pairs[at].0;
-        let plan = self.plan;
-        let known = self.computed.entry((base.0, node));
-        let rises = *known.or_insert_with(|| {
-            value_range(plan, base).map_or(Change::Unknown, |range| {
-                change_of_values((plan, self.first), base.0, &path, range)
-            })
-        });
+        let (plan, first) = (self.plan, self.first);
+        let known = self.computed.entry((base.0, node, range));
+        let rises = *known.or_insert_with(|| change_of_values((plan, first), base.0, &path, range));
         if self.changes[&base] == Change::Falls { rises.reversed() } else { rises }
     }
 
@@ -183,8 +181,8 @@ impl Chain<'_> {
 
 /// Returns the smallest and the largest raw value of both nodes of a pair, for operands for which results are promised. Returns `None` if
 /// they are not known.
-fn value_range(plan: &ExpressionPlan, (a, b): NodePair) -> Option<(i128, i128)> {
-    let mut range: Option<(i128, i128)> = None;
+fn value_range(plan: &ExpressionPlan, (a, b): NodePair) -> Option<Interval> {
+    let mut range: Option<Interval> = None;
     for id in [a, b] {
         let node = plan.node(id);
         let (low, high) = node.range;
@@ -225,7 +223,7 @@ fn change_of_values(
     (plan, first): (&ExpressionPlan, &[NodeId]),
     base: NodeId,
     path: &[NodeId],
-    (low, high): (i128, i128),
+    (low, high): Interval,
 ) -> Change {
     let Some(last) = path.last() else { return Change::Unknown };
     let mut values = vec![0; plan.nodes.len()];
