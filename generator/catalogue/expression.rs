@@ -55,11 +55,14 @@ fn about(keys: &Keys, planned: &ProvedPlan) -> About {
             )
             .into(),
         );
-        if record.flag("ordered") {
+        let is_own = |number: usize| {
+            result_entry(keys, &planned.statement.results[number].name).name == *name
+        };
+        if planned.ordered.iter().any(|list| is_own(list.start)) {
             notes.push(
                 format!(
                     "The numbers of {name} have the order of their values: if one value is larger than another, its result \
-                     is not smaller{promise}. This is proved for all operands."
+                     is not smaller{promise}. This is proved."
                 )
                 .into(),
             );

@@ -153,7 +153,7 @@ fn check_names(functions: &[TableEntry]) -> Result<(), ConfigError> {
 /// Returns the statement of each function.
 ///
 /// # Errors
-/// Fails if a name, an operand, a formula or an allowed error is wrong, or if a result wraps.
+/// Fails if a name, an operand, a formula or an allowed error is wrong, if a result wraps, or if a list is to be ordered.
 fn statements(functions: &[TableEntry]) -> Result<Vec<ExpressionStatement>, ConfigError> {
     check_names(functions)?;
     let mut statements = Vec::new();
@@ -164,7 +164,14 @@ fn statements(functions: &[TableEntry]) -> Result<Vec<ExpressionStatement>, Conf
 }
 
 fn statement(function: &TableEntry) -> Result<ExpressionStatement, ConfigError> {
-    let statement = expression::statement(&keys_of(function)?)?;
+    let keys = keys_of(function)?;
+    let statement = expression::statement(&keys)?;
+    if let Some(result) = keys.results.0.iter().find(|result| result.flag("ordered")) {
+        let message = "the order of results is not proved for a unit".to_owned();
+        let key = format!("results.{}.ordered", result.name);
+        let remedy = "remove `ordered`, or make a core of its own of this function";
+        return Err(ConfigError::new(key, message, remedy));
+    }
     for result in &statement.results {
         let width = result.width.as_ref();
         if width.is_some_and(|width| matches!(width.overflow, StatedOverflow::Wrap)) {

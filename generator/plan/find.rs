@@ -46,6 +46,7 @@ const STYLES: [PlanStyle; 6] = [
     PlanStyle { table_error: 0.96, keeps_functions: true, ..FIRST_STYLE },
 ];
 
+/// The style that is tried first, from which the others differ.
 const FIRST_STYLE: PlanStyle = PlanStyle {
     table_error: 1.0,
     centres_fractions: false,

@@ -184,6 +184,7 @@ pub(super) struct PlanSearch<'s> {
 /// The rounding operations that have the same number of guard bits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum WidthTies {
+    /// Each operation has guard bits of its own.
     None,
     /// Operations with the same name, apart from the number at its end, such as `exponent` and `exponent2`. An expression with many
     /// operands mostly has the same parts for each element of a list, and the search is then shorter.

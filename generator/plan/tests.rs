@@ -503,7 +503,7 @@ fn quotients_by_a_root_read_one_table_of_its_reciprocal() {
     assert_eq!(both.approximations().len(), 1);
 }
 
-/// The condition limits the lengths of two points, and the angle is that of a product of complex numbers.
+/// Conditions limit the lengths of two points. As complex numbers, they have a product whose angle has a value then.
 #[test]
 fn the_angle_between_two_points_follows_from_their_lengths() {
     let format = Format::signed(0, 3);

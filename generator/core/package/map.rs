@@ -346,7 +346,7 @@ fn describe_queue(registers: &mut [BusRegister], depth: u32) {
             }
             "control" => {
                 register.bits[0].doc =
-                    "starts a computation; waits while the queue has no room for its results"
+                    "starts a computation; an error if the queue has no room for its results"
                         .to_owned();
             }
             _ => {}

@@ -149,7 +149,7 @@ impl Lowering<'_> {
         if !has_fact(self.statement, &self.uses, &squared_length) {
             return Ok(0.0);
         }
-        // The larger coordinate has at least half of the squared length.
+        // The square of the larger coordinate is at least half of the squared length.
         let least = self.range(&squared_length)?.low / 2.0;
         Ok(least.max(0.0).sqrt().next_down().max(0.0))
     }
