@@ -42,6 +42,14 @@ impl SharedWidths {
         Self { guard: self.guard.iter().map(|guard| guard + bits).collect(), ..self.clone() }
     }
 
+    /// Returns the widths with the same offset in each step of Horner's rule, so that the multiplier of a sequential core needs no choice
+    /// between offsets.
+    #[must_use]
+    pub fn with_equal_offsets(&self) -> Self {
+        let most = self.offset.iter().copied().max().unwrap_or(0);
+        Self { offset: vec![most; self.offset.len()], ..self.clone() }
+    }
+
     /// Returns widths that are enough for both of two tables of the same degree.
     #[must_use]
     pub fn max(&self, other: &Self) -> Self {

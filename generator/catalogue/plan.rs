@@ -7,12 +7,15 @@
 use glint_approximate::{Outside, Piecewise};
 use glint_base::fixed::{Format, Overflow, Rounding};
 use glint_plan::{
-    ExpressionPlan, NodeId, Operation, PlanNode, PlanSchedule, PlanStep, StatedOperand, StepWork,
+    ExpressionPlan, MirrorChain, NodeId, Operation, PlanNode, PlanSchedule, PlanStep,
+    StatedOperand, StepWork,
 };
 use glint_rtl::blocks::shift::{left_justified, normalise, normalise_by_pairs, right_by};
-use glint_rtl::dsl::{Designer, Register, Signal, Step, StepSetting, dispatch, end, step, valid};
+use glint_rtl::dsl::{
+    Designer, Mux, Register, Signal, Step, StepSetting, dispatch, end, step, valid,
+};
 
-use crate::mirror::MirrorChain;
+use crate::mirror::mirrored;
 use crate::piecewise::{PolynomialDatapath, StepMultiplier, Tables, number};
 use crate::shared_table::{SharedSteps, SharedTable, TableReaders};
 
@@ -58,6 +61,10 @@ struct PlanDatapath<'d, 'p> {
     table_readers: Vec<TableReaders<'d>>,
     /// For each owner, the table with its polynomials, once all their operands are built.
     shared_tables: Vec<Option<SharedTable<'d, 'p>>>,
+    /// The value of each node that shares its register with other nodes.
+    shared_inputs: Vec<Option<Signal<'d>>>,
+    /// For each node whose register others share, the mux of their values.
+    input_muxes: Vec<Option<Mux<'d>>>,
     /// The two factors of each product.
     factors: Vec<Option<[Signal<'d>; 2]>>,
     /// The chain of mirrors that ends at each node, if there is one.
@@ -80,8 +87,12 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
         let mut registers = Vec::with_capacity(count);
         for (node, is_held) in plan.nodes.iter().zip(&schedule.held) {
             let has_own = matches!(node.operation, Operation::Polynomial(..));
-            let is_register = *is_held && !has_own;
-            registers.push(is_register.then(|| d.register(&node.name, node.format)));
+            let owner = schedule.register_owners[registers.len()];
+            registers.push(match *is_held && !has_own {
+                true if owner.0 < registers.len() => registers[owner.0],
+                true => Some(d.register(&node.name, node.format)),
+                false => None,
+            });
         }
         let (chains, is_inner) = mirror_chains(plan, schedule);
         Self {
@@ -98,6 +109,8 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
             polynomials: (0..count).map(|_| None).collect(),
             table_readers: (0..count).map(|_| TableReaders::new()).collect(),
             shared_tables: (0..count).map(|_| None).collect(),
+            shared_inputs: vec![None; count],
+            input_muxes: vec![None; count],
             factors: vec![None; count],
         }
     }
@@ -124,13 +137,42 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
             };
             self.signals[at] = match (self.registers[at], value) {
                 (Some(register), Some(value)) => {
-                    register.takes(value);
+                    self.connect(NodeId(at), register, value);
                     Some(register.q())
                 }
                 (Some(register), None) => Some(register.q()),
                 (None, value) => value,
             };
         }
+    }
+
+    /// Connects a register to the value of a node. If several nodes share the register, a mux selects one of their values, once all of
+    /// them are built.
+    fn connect(&mut self, node: NodeId, register: Register<'d>, value: Signal<'d>) {
+        let sharers = self.schedule.register_sharers(node);
+        if sharers.len() == 1 {
+            register.takes(value);
+            return;
+        }
+        self.shared_inputs[node.0] = Some(value);
+        let inputs: Vec<Signal<'d>> =
+            sharers.iter().filter_map(|sharer| self.shared_inputs[sharer.0]).collect();
+        if inputs.len() == sharers.len() {
+            let name = format!("{}_input", self.plan.node(sharers[0]).name);
+            let mux = self.d.mux(&name, inputs);
+            register.takes(mux.out());
+            self.input_muxes[sharers[0].0] = Some(mux);
+        }
+    }
+
+    /// Returns the settings that load the register of a node.
+    fn load(&self, node: NodeId) -> Vec<StepSetting> {
+        let mut settings = vec![self.register(node).load()];
+        let owner = self.schedule.register_owners[node.0];
+        if let Some(mux) = self.input_muxes[owner.0] {
+            settings.push(mux.pick(self.shared_inputs[node.0].expect("the value of a sharer")));
+        }
+        settings
     }
 
     /// Returns the factors of a product. The microprogram selects a product by its first factor, so the factor gets a new net if
@@ -169,7 +211,7 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
             Some(_) => format!("{name}_next"),
             None => name.clone(),
         };
-        let value = chain.build(self.d, self.plan, &name, &|input| self.signal(input));
+        let value = mirrored(chain, self.d, self.plan, &name, &|input| self.signal(input));
         self.in_format(&name, value, *format)
     }
 
@@ -207,7 +249,15 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
                 true => d.join(name, &[input(a), input(b)], *format),
                 false => d.add(name, input(a), input(b)),
             },
-            Operation::Subtract(a, b) => d.sub(name, input(a), input(b)),
+            Operation::Subtract(a, b) => match plan.is_inversion(*a, *b) {
+                true => {
+                    let format = plan.node(*a).format;
+                    let wide = format!("{name}_wide");
+                    let b = d.narrow(&wide, input(b), format, Rounding::Truncate, Overflow::Wrap);
+                    d.not(name, b)
+                }
+                false => d.sub(name, input(a), input(b)),
+            },
             Operation::Multiply(..) => unreachable!("a product needs the multiplier"),
             Operation::Absolute(a) => {
                 // −a equals ~a plus a carry. If the choice came after the sum, synthesis would merge it with the choices that
@@ -286,6 +336,11 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
             }
             Operation::ShiftLeft(a, places) => left_by(d, name, input(a), input(places), *format),
             Operation::ShiftRight(a, places) => right_by(d, name, input(a), input(places)),
+            Operation::Reverse(a) => {
+                let a = input(a);
+                let bits: Vec<Signal> = (0..format.width()).map(|bit| a.bit(bit)).collect();
+                return d.join(name, &bits, *format);
+            }
             Operation::Polynomial(a, approximation) => {
                 let polynomials = approximation.polynomials.as_deref();
                 let it = polynomials.expect("polynomials that are found");
@@ -421,7 +476,7 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
             loaded.push(format!("{name}{}", self.of_sharer(*polynomial)));
         }
         for node in loads {
-            settings.push(self.register(*node).load());
+            settings.extend(self.load(*node));
             loaded.push(self.plan.node(*node).name.clone());
         }
         if !loaded.is_empty() {
@@ -541,7 +596,10 @@ fn mirror_chains(
         let Some(chain) = MirrorChain::ending_at(plan, NodeId(at), &schedule.held) else {
             continue;
         };
-        for node in chain.inner() {
+        if chain.adders() < 2 {
+            continue;
+        }
+        for node in &chain.inner {
             is_inner[node.0] = true;
         }
         chains[at] = Some(chain);

@@ -91,7 +91,7 @@ pub(super) fn plan_device(
             Outside::Wrap | Outside::Anything => frame.operand(name, *format),
         });
     }
-    let mut registers = Vec::with_capacity(plan.nodes.len());
+    let mut registers: Vec<Option<Slot>> = Vec::with_capacity(plan.nodes.len());
     let mut polynomials: Vec<Option<Polynomial>> = Vec::with_capacity(plan.nodes.len());
     for (at, (node, is_held)) in plan.nodes.iter().zip(&schedule.held).enumerate() {
         let mut polynomial = None;
@@ -118,7 +118,10 @@ pub(super) fn plan_device(
                 polynomial = Some(sums);
                 Some(q)
             }
-            _ if *is_held => Some(frame.register(&node.name, node.format)),
+            _ if *is_held => Some(match schedule.register_owners[at] {
+                owner if owner.0 < at => registers[owner.0].expect("the register of an owner"),
+                _ => frame.register(&node.name, node.format),
+            }),
             _ => None,
         });
         polynomials.push(polynomial);

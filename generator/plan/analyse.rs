@@ -534,6 +534,15 @@ impl ErrorAnalysis<'_> {
                 let own = if own_errors { own } else { NOTHING };
                 NodeError::new(scaled(ideal, factor), scaled(error, factor) + own)
             }
+            Operation::Reverse(a) => {
+                if input(*a).error != NOTHING {
+                    let what = "its bits depend on rounding errors";
+                    return Err(Undecided { node: id, what });
+                }
+                let (least, most) = node.format.range();
+                let [least, most] = [least, most].map(|raw| node.format.to_f64(raw));
+                NodeError::exactly(Enclosure::between(least, most))
+            }
             Operation::Lookup { address, words } => {
                 let value = |raw: &i128| Enclosure::exactly(node.format.to_f64(*raw));
                 let known = input(*address).known();

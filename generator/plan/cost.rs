@@ -80,6 +80,7 @@ impl ExpressionPlan {
             | Operation::Bit(..)
             | Operation::IntegerPart(_)
             | Operation::FractionPart(..)
+            | Operation::Reverse(_)
             | Operation::Places(_) => 0.0,
             Operation::Narrow(a, Rounding::Nearest) => {
                 let drops_bits = self.node(*a).format.frac > node.format.frac;

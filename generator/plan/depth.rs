@@ -45,6 +45,7 @@ fn time_of(plan: &ExpressionPlan, id: NodeId, readers: &[Vec<NodeId>]) -> f64 {
     match &node.operation {
         Operation::Subtract(..) if is_chained_mirror(plan, id, readers) => 0.0,
         Operation::Add(a, b) if are_joined(plan, *a, *b) => 0.0,
+        Operation::Subtract(a, b) if plan.is_inversion(*a, *b) => 0.0,
         Operation::Add(..) | Operation::Subtract(..) => carry(width_of(id)),
         Operation::Absolute(a) => carry(width_of(*a)),
         Operation::Less(a, b) => carry(width_of(*a).max(width_of(*b))),
@@ -66,6 +67,8 @@ fn time_of(plan: &ExpressionPlan, id: NodeId, readers: &[Vec<NodeId>]) -> f64 {
         {
             MERGED_CHOICE
         }
+        // The word of an opcode is there long before its readers.
+        Operation::Lookup { address, .. } if is_opcode(plan, *address) => 0.0,
         Operation::NonZero(_) | Operation::Choose { .. } | Operation::Lookup { .. } => CHOICE,
         // Each stage finds whether half of the bits are 0, and shifts.
         Operation::Normalise { word, .. } => 1.8 * width_of(*word).log2(),
@@ -80,6 +83,7 @@ fn time_of(plan: &ExpressionPlan, id: NodeId, readers: &[Vec<NodeId>]) -> f64 {
         | Operation::Bit(..)
         | Operation::IntegerPart(_)
         | Operation::FractionPart(..)
+        | Operation::Reverse(_)
         | Operation::Places(_) => 0.0,
     }
 }
@@ -102,7 +106,7 @@ fn is_chained_mirror(plan: &ExpressionPlan, id: NodeId, readers: &[Vec<NodeId>])
         _ => false,
     };
     let is_rounded = |reader: &NodeId| match plan.node(*reader).operation {
-        Operation::Narrow(_, Rounding::Nearest) => true,
+        Operation::Narrow(_, Rounding::Nearest) | Operation::Add(..) => true,
         Operation::Subtract(constant, _) => {
             matches!(plan.node(constant).operation, Operation::Constant { .. })
         }
@@ -111,20 +115,29 @@ fn is_chained_mirror(plan: &ExpressionPlan, id: NodeId, readers: &[Vec<NodeId>])
     is_constant && is_mirror && readers[mirror.0].iter().any(is_rounded)
 }
 
-/// Returns whether a condition is a bit of the opcode of a unit, which is operand 0.
-fn selects_by_opcode(plan: &ExpressionPlan, condition: NodeId) -> bool {
-    let operation = &plan.node(condition).operation;
-    let source = match operation {
-        Operation::Bit(source, _) => &plan.node(*source).operation,
-        _ => operation,
+/// Returns whether a condition depends on the opcode of a unit alone: a bit of it, or of a table that it addresses.
+pub(super) fn selects_by_opcode(plan: &ExpressionPlan, condition: NodeId) -> bool {
+    let source = match plan.node(condition).operation {
+        Operation::Bit(source, _) => source,
+        _ => condition,
     };
-    plan.is_shared && matches!(source, Operation::Operand(0))
+    match plan.node(source).operation {
+        Operation::Lookup { address, .. } => is_opcode(plan, address),
+        _ => is_opcode(plan, source),
+    }
 }
 
-/// Returns the longest time that the logic in front of a node may take.
-pub(super) fn longest_to(operation: &Operation) -> f64 {
-    match operation {
+/// Returns whether a node is the opcode of a unit, which is operand 0.
+fn is_opcode(plan: &ExpressionPlan, node: NodeId) -> bool {
+    plan.is_shared && matches!(plan.node(node).operation, Operation::Operand(0))
+}
+
+/// Returns the longest time that the logic in front of a node may take. In a unit, the operand of a table passes the choice between
+/// several operands, and the multiplier also reads it.
+pub(super) fn longest_to(plan: &ExpressionPlan, id: NodeId) -> f64 {
+    match plan.node(id).operation {
         Operation::Multiply(..) => LONGEST_TO_FACTOR,
+        Operation::Polynomial(..) if plan.is_shared => LONGEST_TO_FACTOR,
         Operation::Polynomial(..) => LONGEST_TO_TABLE,
         _ => LONGEST_TO_REGISTER,
     }

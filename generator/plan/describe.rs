@@ -38,6 +38,7 @@ impl ExpressionPlan {
             Operation::Places(normalised) => format!("the leading zeros of {}", name(normalised)),
             Operation::ShiftLeft(a, places) => format!("{} · 2^{}", name(a), name(places)),
             Operation::ShiftRight(a, places) => format!("{} / 2^{}", name(a), name(places)),
+            Operation::Reverse(a) => format!("{} with its bits reversed", name(a)),
             Operation::Lookup { address, words } => {
                 format!("one of {} constants, by {}", words.len(), name(address))
             }

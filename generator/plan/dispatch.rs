@@ -156,19 +156,26 @@ impl<'p> FunctionNodes<'p> {
             let addressing = before.map_or(0, |step| step + 1);
             self.schedule.steps[at].tables_read().into_iter().any(|polynomial| {
                 let address = self.plan.node(polynomial).operation.inputs()[0];
-                let changes = before.is_some() && self.last_load(address, executed) == before;
+                let changes =
+                    before.is_some() && self.last_load(address, &executed[..at]) == before;
                 let owner = self.schedule.table_owners[polynomial.0];
-                changes || self.schedule.addressing(owner, addressing) != Some(polynomial)
+                let is_addressed = self.schedule.addressing(owner, addressing) == Some(polynomial);
+                // Operands in one register need no choice between them.
+                changes || !is_addressed && self.schedule.register_sharers(address).len() == 1
             })
         })
     }
 
-    /// Returns the last executed step that loads a register on which the value of `id` depends.
+    /// Returns the last executed step that loads a register on which the value of `id` depends. `executed` has an entry for each step
+    /// that counts.
     fn last_load(&self, id: NodeId, executed: &[bool]) -> Option<usize> {
         if self.schedule.held[id.0] {
-            let loads = |step: &PlanStep| step.loads_register(id);
-            let step = self.schedule.steps.iter().position(loads)?;
-            return executed[step].then_some(step);
+            let sharers = self.schedule.register_sharers(id);
+            let loads = |step: usize| {
+                let step = &self.schedule.steps[step];
+                sharers.iter().any(|sharer| step.loads_register(*sharer))
+            };
+            return (0..executed.len()).rev().find(|step| executed[*step] && loads(*step));
         }
         self.inputs(id).into_iter().filter_map(|input| self.last_load(input, executed)).max()
     }

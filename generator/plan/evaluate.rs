@@ -86,6 +86,10 @@ impl ExpressionPlan {
             }
             Operation::ShiftLeft(a, places) => left_by(known(*a), known(*places)),
             Operation::ShiftRight(a, places) => known(*a) >> known(*places).min(127),
+            Operation::Reverse(a) => {
+                let unused = u128::BITS - node.format.width();
+                (known(*a).cast_unsigned().reverse_bits() >> unused).cast_signed()
+            }
             Operation::Lookup { address, words } => {
                 let place = usize::try_from(known(*address)).expect("an address has no sign");
                 words.get(place).copied().unwrap_or(0)

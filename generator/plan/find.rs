@@ -52,6 +52,7 @@ const FIRST_STYLE: PlanStyle = PlanStyle {
     centres_fractions: false,
     keeps_functions: false,
     fewest_dividends: 3,
+    shares_table: false,
 };
 
 /// A statement with at most so many combinations of operands can have its functions in tables that are found soon.
@@ -170,7 +171,8 @@ pub(super) fn find_set(
     let mut functions: Vec<TargetFunction> = Vec::new();
     for (number, statement) in statements.iter().enumerate() {
         let search = PlanSearch::new(statement, TableRule::Cheapest);
-        let estimate = allocated(&search, STYLES[0]).map_err(|refusal| (number, refusal))?;
+        let style = PlanStyle { shares_table: true, table_error: 0.96, ..FIRST_STYLE };
+        let estimate = allocated(&search, style).map_err(|refusal| (number, refusal))?;
         for approximation in estimate.plan.approximations() {
             functions.push(approximation.function.clone());
         }
@@ -195,7 +197,7 @@ fn shared_widths(functions: &[TargetFunction]) -> Option<SharedWidths> {
         let count = found.len();
         let Some(all) = found.into_iter().reduce(|a, b| a.max(&b)) else { continue };
         // One more bit lets nearly every function have coefficients of the widths that the others need.
-        let all = all.with_guard(1);
+        let all = all.with_guard(1).with_equal_offsets();
         let word: i32 = all.guard.iter().map(|guard| guard + WIDTH_WITHOUT_GUARD).sum();
         let pages = f64::from(1u32 << prefix) * count as f64;
         let own_tables = (functions.len() - count) as f64 * CELLS_OF_OWN_TABLE;
@@ -328,10 +330,12 @@ fn smallest_candidate(search: &PlanSearch<'_>) -> Result<PlanCandidate, PlanRefu
         // A single table of few operands is found soon, and is often smaller than the rest of another plan.
         styles.sort_by_key(|style| !style.keeps_functions);
     }
+    let shares_table = matches!(search.tables, TableRule::Shared(_));
     for style in styles {
         if style.keeps_functions && !has_functions {
             continue;
         }
+        let style = PlanStyle { shares_table, ..style };
         let most_cells = smallest.as_ref().filter(|_| is_short).map(|(cells, ..)| *cells);
         let candidate = match candidate_below(search, style, most_cells) {
             Ok(Some(candidate)) => candidate,

@@ -3,7 +3,7 @@
 //! Products, polynomials and normalised words always have one. In a sequential core, a value has a register too if the logic that
 //! reads it would otherwise take too long ([`super::depth`]).
 
-use super::depth::{longest_to, own_times};
+use super::depth::{longest_to, own_times, selects_by_opcode};
 use super::node::{NodeId, Operation};
 use super::placement::StepPlacement;
 
@@ -31,14 +31,20 @@ pub(super) fn held_nodes(start: &StepPlacement, computed: &[NodeId]) -> Vec<bool
         }
         match plan.node(node).operation {
             Operation::Multiply(..) => holder.held[start.targets[node.0].0] = true,
+            // In a sequential unit, the word goes to the register of the table's operand in the same clock.
+            Operation::Places(_) if plan.is_shared && !start.is_pipelined => {}
             Operation::Places(normalised) => {
                 holder.held[start.targets[normalised.0].0] = true;
                 // The results of a function that covers one octave need no shift back.
                 holder.held[node.0] |= is_read[node.0];
             }
             Operation::Polynomial(..) => holder.held[node.0] = true,
+            Operation::ShiftLeft(..) | Operation::ShiftRight(..) if plan.is_shared => {
+                holder.held[node.0] = !start.is_pipelined;
+            }
             _ => {}
         }
+        holder.held[node.0] |= start.schedule.register_sharers(node).len() > 1;
         // Later microinstructions read the register of a result, so it is loaded before them.
         holder.held[node.0] |= plan.results.contains(&node) && is_input[node.0];
     }
@@ -68,7 +74,7 @@ impl RegisterSearch<'_> {
             return;
         }
         self.extend_times(node);
-        let most = longest_to(operation) - self.own[node.0];
+        let most = longest_to(self.start.plan, node) - self.own[node.0];
         while let Some(late) = self.latest_input(node).filter(|late| self.times[late.0] > most) {
             match self.cut_without_delay(node, late, most) {
                 Some(cut) => self.hold(cut, node),
@@ -78,14 +84,35 @@ impl RegisterSearch<'_> {
         if self.latest_input(node).is_some_and(|late| self.times[late.0] > most) {
             for input in operation.hardware_inputs() {
                 if self.times[input.0] > 0.0 {
-                    self.hold(input, node);
+                    let cut = self.before_choices_by_opcode(input);
+                    self.hold(cut, node);
                 }
             }
         }
     }
 
+    /// Returns the value behind which there are only choices by the opcode up to the node `end`. With a register there, the other functions
+    /// of a unit do not wait for this value. Returns `end` itself if several values of such a choice are late.
+    fn before_choices_by_opcode(&self, end: NodeId) -> NodeId {
+        let plan = self.start.plan;
+        let mut cut = end;
+        while let Operation::Choose { condition, cases } = plan.node(cut).operation {
+            let mut late = cases.into_iter().filter(|case| self.times[case.0] > 0.0);
+            let (Some(only), None) = (late.next(), late.next()) else { return end };
+            if !selects_by_opcode(plan, condition) {
+                break;
+            }
+            cut = only;
+        }
+        cut
+    }
+
     fn hold(&mut self, node: NodeId, end: NodeId) {
         self.held[node.0] = true;
+        if let Operation::Normalise { .. } = self.start.plan.node(node).operation {
+            // The places belong to the word in the register, not to the next one.
+            self.held[node.0 + 1] = true;
+        }
         self.times.truncate(node.0);
         self.extend_times(end);
     }

@@ -51,6 +51,7 @@ mod frontier;
 mod guarded;
 mod hold;
 mod lower;
+mod mirror;
 mod node;
 mod order;
 mod ordered;
@@ -66,6 +67,7 @@ mod uses;
 mod written;
 
 pub use find::{ProofKind, ProvedPlan, find};
+pub use mirror::{Mirror, MirrorChain};
 pub use node::{Approximation, NodeId, Operation, PlanNode};
 pub use ordered::find_ordered;
 pub use placement::{PlanSchedule, PlanStep, StepWork};

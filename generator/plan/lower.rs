@@ -91,6 +91,9 @@ pub(super) struct PlanStyle {
     pub(super) keeps_functions: bool,
     /// The least number of quotients by the same divisor for which the reciprocal of the divisor is computed once.
     pub(super) fewest_dividends: usize,
+    /// Whether the tables of the plan are pages of a table that several functions share. All normalised words then have the same bits, so
+    /// that they need no choice in front of the table.
+    pub(super) shares_table: bool,
 }
 
 impl Guards {

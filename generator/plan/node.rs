@@ -172,6 +172,9 @@ pub enum Operation {
     ShiftLeft(NodeId, NodeId),
     /// a / 2^b, where b is the value of the second node, rounded down to the fraction bits of a.
     ShiftRight(NodeId, NodeId),
+    /// The bits of an unsigned word in the opposite order. For example, 0b0011 gives 0b1100. Only units have this operation: their
+    /// shifter to the right shifts a reversed word to the left.
+    Reverse(NodeId),
     /// A table of constants. The address, an unsigned integer, selects a word; address 0 selects the first. For example, the
     /// words 5, 7 give 7 for the address 1. The value for an address without a word is not defined.
     Lookup {
@@ -217,6 +220,7 @@ macro_rules! inputs_of {
             | Operation::Bit(a, _)
             | Operation::Normalise { word: a, .. }
             | Operation::Places(a)
+            | Operation::Reverse(a)
             | Operation::Lookup { address: a, .. }
             | Operation::Polynomial(a, _) => vec![a],
             Operation::Add(a, b)

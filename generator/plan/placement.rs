@@ -45,6 +45,9 @@ pub struct PlanSchedule {
     /// For each node of a sequential core that is a polynomial, the first polynomial with the same table. Polynomials with the same
     /// table share its memory, the adders, and all registers except the one with the value. Other nodes have themselves.
     pub table_owners: Vec<NodeId>,
+    /// For each node, the node whose register also stores its value, at another time: for the operands of polynomials with the same
+    /// table, the operand of the first one. Other nodes have themselves.
+    pub register_owners: Vec<NodeId>,
     /// The microinstructions in the order of execution.
     pub steps: Vec<PlanStep>,
     /// For a sequential unit, the microinstructions that follow each microinstruction: `None` if the next one follows for every
@@ -74,6 +77,13 @@ impl PlanSchedule {
         let following = self.steps.get(at..)?.iter();
         let mut read = following.flat_map(PlanStep::tables_read);
         present.filter(is_own).or_else(|| read.find(is_own))
+    }
+
+    /// Returns the nodes whose values the register of `node` stores: `node` and those that share its register, in their order.
+    pub fn register_sharers(&self, node: NodeId) -> Vec<NodeId> {
+        let owner = self.register_owners[node.0];
+        let nodes = (0..self.register_owners.len()).map(NodeId);
+        nodes.filter(|it| self.register_owners[it.0] == owner).collect()
     }
 
     /// Returns the numbers of the microinstructions that follow microinstruction `at`, for each opcode, if they differ.
@@ -114,6 +124,8 @@ pub(super) struct StepPlacement<'p> {
     next_work: usize,
     /// For each owner of a table, the first microinstruction in which another polynomial can read the table.
     table_free: Vec<usize>,
+    /// For each owner of a register, the first microinstruction that can load the value of another node.
+    register_free: Vec<usize>,
     pub(super) schedule: PlanSchedule,
 }
 
@@ -133,6 +145,7 @@ impl<'p> StepPlacement<'p> {
             is_placed: vec![false; count],
             next_work: 0,
             table_free: vec![0; count],
+            register_free: vec![0; count],
             schedule,
         }
     }
@@ -150,9 +163,14 @@ impl<'p> StepPlacement<'p> {
             Operation::Places(normalised) => {
                 let at = self.free(self.inputs_ready(normalised));
                 let word = self.targets[normalised.0];
-                self.load(word, at);
-                if self.schedule.held[node.0] {
-                    self.load(node, at);
+                let ready = self.inputs_ready(normalised);
+                match self.schedule.held[word.0] {
+                    true => self.load(word, at),
+                    false => self.ready[normalised.0] = ready,
+                }
+                match self.schedule.held[node.0] {
+                    true => self.load(node, at),
+                    false => self.ready[node.0] = ready,
                 }
             }
             Operation::Polynomial(operand, _) => self.place_polynomial(node, operand),
@@ -160,7 +178,9 @@ impl<'p> StepPlacement<'p> {
             // The node with the shift places the normalised word, too.
             Operation::Normalise { .. } => {}
             _ if self.schedule.held[node.0] && !self.is_last(node) => {
-                let at = self.free(self.inputs_ready(node));
+                let register = self.schedule.register_owners[node.0];
+                let ready = self.inputs_ready(node).max(self.register_free[register.0]);
+                let at = self.free(ready);
                 self.load(node, at);
             }
             _ => self.ready[node.0] = self.inputs_ready(node),
@@ -212,6 +232,7 @@ impl<'p> StepPlacement<'p> {
         }
         // Another operand addresses the table one clock after the last sum.
         self.table_free[owner.0] = at + 2;
+        self.register_free[self.schedule.register_owners[operand.0].0] = at;
         self.loaded(node, at);
     }
 

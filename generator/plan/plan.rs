@@ -124,6 +124,17 @@ impl ExpressionPlan {
         format!("{}highest", self.table_prefix(id))
     }
 
+    /// Returns whether a − b inverts the bits of b, because a is a constant whose bits are all 1. For example, 7 − 2 is 5, and the
+    /// bits of 2, which are 010, become 101.
+    pub fn is_inversion(&self, a: NodeId, b: NodeId) -> bool {
+        let [all, subtrahend] = [a, b].map(|id| self.node(id));
+        let Operation::Constant { raw, .. } = all.operation else { return false };
+        let (own, other) = (all.format, subtrahend.format);
+        let are_unsigned = !own.signed && !other.signed;
+        let is_as_wide = own.frac == other.frac && other.width() <= own.width();
+        are_unsigned && is_as_wide && raw == own.max_raw()
+    }
+
     /// Returns for each node how often operations read it. A square counts its input twice.
     pub fn readers(&self) -> Vec<usize> {
         let mut readers = vec![0; self.nodes.len()];
@@ -484,6 +495,25 @@ impl ExpressionPlan {
         self.insert(name, Operation::Narrow(a, rounding), format, range)
     }
 
+    /// Returns the low bits of the node `a` in `format`, which drops the bits below it. Adds a node unless the plan has one with these
+    /// bits. The caller must prove that no value exceeds the format. Fails if the node has more than 64 bits.
+    pub(super) fn low_bits(
+        &mut self,
+        name: &str,
+        a: NodeId,
+        format: Format,
+    ) -> Result<NodeId, PlanRefusal> {
+        let is_same = |node: &PlanNode| {
+            let is_of_a =
+                matches!(node.operation, Operation::Narrow(of, Rounding::Truncate) if of == a);
+            is_of_a && node.format == format && node.source.is_none() && node.limits == ANYTHING
+        };
+        match self.nodes.iter().position(is_same) {
+            Some(same) => Ok(NodeId(same)),
+            None => self.narrow(name, a, format, Rounding::Truncate),
+        }
+    }
+
     /// Adds the node `a` rounded to `frac` fraction bits, with as many integer bits as its values need, and returns the new
     /// node. Returns `a` itself if it does not have more fraction bits. Fails if the node has more than 64 bits.
     pub(super) fn shorten(
@@ -609,6 +639,13 @@ impl ExpressionPlan {
         let node = self.node(a);
         let (format, range) = (node.format, (node.range.0.min(0), node.range.1.max(0)));
         self.insert(name, Operation::ShiftRight(a, places), format, range)
+    }
+
+    /// Adds the unsigned word `a` with its bits in the opposite order, and returns its node. Fails if the node has more than 64 bits.
+    pub(super) fn reverse(&mut self, name: &str, a: NodeId) -> Result<NodeId, PlanRefusal> {
+        let format = self.node(a).format;
+        debug_assert!(!format.signed, "a word without a sign");
+        self.insert(name, Operation::Reverse(a), format, format.range())
     }
 
     /// Adds a table of raw constants with `frac` fraction bits, and returns the node of the constant that `address` selects.

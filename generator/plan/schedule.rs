@@ -34,10 +34,12 @@ impl ExpressionPlan {
         }
         let targets = self.register_targets();
         let held = vec![false; self.nodes.len()];
+        let table_owners = self.table_owners(is_pipelined);
         let empty = PlanSchedule {
             held,
             is_coefficient_held,
-            table_owners: self.table_owners(is_pipelined),
+            register_owners: self.register_owners(&table_owners),
+            table_owners,
             steps: Vec::new(),
             dispatches: Vec::new(),
         };
@@ -68,6 +70,34 @@ impl ExpressionPlan {
             }
         }
         owners
+    }
+
+    /// Returns for each node the node whose register also stores its value. The operands of polynomials of a unit that share a table also
+    /// share a register. The choice between them is in front of the register, and not in front of the multiplier.
+    fn register_owners(&self, table_owners: &[NodeId]) -> Vec<NodeId> {
+        let mut owners: Vec<NodeId> = (0..self.nodes.len()).map(NodeId).collect();
+        let operand_of = |polynomial: NodeId| match self.node(polynomial).operation {
+            Operation::Polynomial(operand, _) => operand,
+            _ => unreachable!("only polynomials share a table"),
+        };
+        for (at, owner) in table_owners.iter().enumerate() {
+            let polynomial = NodeId(at);
+            if *owner == polynomial || !self.is_shared {
+                continue;
+            }
+            let [own, first] = [polynomial, *owner].map(operand_of);
+            if [own, first].iter().all(|operand| self.is_read_by_table_alone(*operand)) {
+                owners[own.0] = first;
+            }
+        }
+        owners
+    }
+
+    /// Returns whether a node is computed for a table, and nothing else reads it.
+    fn is_read_by_table_alone(&self, node: NodeId) -> bool {
+        let is_operand = matches!(self.node(node).operation, Operation::Operand(_));
+        let readers = self.nodes.iter().filter(|it| it.operation.inputs().contains(&node));
+        !is_operand && readers.count() == 1
     }
 
     /// Returns whether two nodes are polynomials with the same table and operands of the same format.

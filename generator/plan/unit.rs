@@ -5,7 +5,12 @@
 //! opcode select the inputs. For every opcode, the merged plan has the results of the function's own plan.
 
 mod align;
+mod factors;
 mod merge;
+mod results;
+mod select;
+mod shifts;
+mod sums;
 mod tables;
 
 use std::sync::Arc;

@@ -3,8 +3,8 @@
 use crate::dsl::{Designer, Signal};
 use glint_base::fixed::Format;
 
-/// Divides `x` by 2^`places`, and rounds down to the fraction bits that `x` has: 13 in `u4.0` by 2 places gives 3. `x` must be
-/// unsigned, and `places` an unsigned integer. The barrel shifter has a row of muxes for each bit of `places`.
+/// Divides `x` by 2^`places`, and rounds down to the fraction bits that `x` has: 13 in `u4.0` by 2 places gives 3, and −13 in `s4.0`
+/// gives −4. `places` must be an unsigned integer. The barrel shifter has a row of muxes for each bit of `places`.
 #[track_caller]
 pub fn right_by<'d>(d: &'d Designer, name: &str, x: Signal<'d>, places: Signal<'d>) -> Signal<'d> {
     let format = x.format();
@@ -12,9 +12,11 @@ pub fn right_by<'d>(d: &'d Designer, name: &str, x: Signal<'d>, places: Signal<'
     (0..places.format().width()).rev().fold(x, |row, bit| {
         let step = 1u32.checked_shl(bit).unwrap_or(u32::MAX);
         let width = row.format().width();
+        let have = row.format();
         let shifted = if step < width {
-            let have = row.format();
-            row.bits(step, Format::unsigned(have.int - step as i32, have.frac))
+            row.bits(step, Format { int: have.int - step as i32, ..have })
+        } else if have.signed {
+            row.bits(width - 1, Format { int: -have.frac, ..have })
         } else {
             d.raw_constant("zeros", 0, Format::unsigned(1 - format.frac, format.frac))
         };

@@ -115,11 +115,17 @@ impl Lowering<'_> {
         let node = self.part(core)?;
         let octave = self.octave(node, range, false)?;
         let finest = self.finest;
-        let of_mantissa = scaled_by(&factor, &number("log2(x)"));
+        // Twice the fraction is at least 1, so that its logarithm is not negative, as the other values of a shared table.
+        let (logarithm, exponent) = match self.guards.style.shares_table {
+            true => (number("log2(2 * x)"), octave.exponent - 1),
+            false => (number("log2(x)"), octave.exponent),
+        };
+        let of_mantissa = scaled_by(&factor, &logarithm);
         let within = self.rounding(finest + 2, |own, frac| {
+            let frac = frac.max(own.least_table_fraction(0));
             own.approximation("logarithm", octave.mantissa, &of_mantissa, octave.domain, frac)
         })?;
-        let exponent = self.plan.constant("exponent", octave.exponent.into(), 0)?;
+        let exponent = self.plan.constant("exponent", exponent.into(), 0)?;
         let octaves = self.plan.subtract("octaves", exponent, octave.places)?;
         let octaves = match factor.rational().is_some_and(|factor| factor.is_one()) {
             true => octaves,
@@ -215,6 +221,7 @@ impl Lowering<'_> {
         let domain = (0, (1i64 << bits) - 1);
         let frac = (finest + 2 + largest).max(0);
         let within = self.rounding(frac, |own, frac| {
+            let frac = frac.max(own.least_table_fraction(largest));
             own.approximation("octave", fraction, &number("exp2(x)"), domain, frac)
         })?;
         let source = self.plan.node(within).source;

@@ -10,8 +10,9 @@ use std::sync::Arc;
 use glint_base::fixed::{Format, Rounding, exp2};
 use glint_formula::{Enclosure, Expression, Function, Kind, Operator, RBig};
 
-use super::{Lowering, WIDEST_OPERAND};
-use crate::node::{NodeId, ValueAccuracy};
+use super::shape::number;
+use super::{Lowering, PlanStyle, WIDEST_OPERAND};
+use crate::node::{NodeId, Operation, ValueAccuracy};
 use crate::refusal::PlanRefusal;
 
 /// If the largest value of a domain is less than this times the smallest, one table covers the domain.
@@ -71,6 +72,8 @@ pub(super) struct Octave {
     pub(super) mantissa: NodeId,
     /// The number of bits of the shift, or of pairs of bits.
     pub(super) places: NodeId,
+    /// A node that is 1 if the word was shifted by one bit more than the pairs of bits in `places`; `None` if it cannot be.
+    pub(super) is_odd: Option<NodeId>,
     /// The word is the fraction times 2 to the power of `exponent` minus the bits of the shift.
     pub(super) exponent: i32,
     /// The smallest and the largest raw fraction that is not 0.
@@ -113,10 +116,21 @@ impl Lowering<'_> {
         let frac = self.finest + 2 + if doubled > 0 { scale } else { 0 };
         let fewest = fewest_fraction_bits(function);
         let of_mantissa = self.rounding(frac, |own, frac| {
-            let frac = frac.max(fewest);
-            own.approximation("power", octave.mantissa, function, octave.domain, frac)
+            let least = if doubled > 0 { own.least_table_fraction(scale) } else { fewest };
+            let frac = frac.max(fewest).max(least);
+            match octave.is_odd {
+                Some(is_odd) => own.power_by_parity(function, &octave, is_odd, frac),
+                None => own.approximation("power", octave.mantissa, function, octave.domain, frac),
+            }
         })?;
         let source = self.plan.node(of_mantissa).source;
+        if let Operation::Choose { cases, .. } = self.plan.node(of_mantissa).operation {
+            // The choice is exact, and the tables have the error.
+            self.plan.nodes[of_mantissa.0].source = None;
+            for case in cases {
+                self.plan.nodes[case.0].source = source;
+            }
+        }
         let scaled = self.plan.scale("power_scaled", of_mantissa, scale)?;
         let places = self.multiple(octave.places, doubled.abs() / if by_pairs { 1 } else { 2 })?;
         if doubled < 0 {
@@ -137,6 +151,25 @@ impl Lowering<'_> {
         let stated = self.stated(part, &self.uses, ValueAccuracy::FromInputs);
         self.plan.nodes[chosen.0].stated = Some(stated);
         Ok(Some(chosen))
+    }
+
+    /// Returns the node of the power of a fraction m from 1/2 to below 1, or of m / 2 where `is_odd` is 1. Each of the two has a table.
+    fn power_by_parity(
+        &mut self,
+        function: &Expression,
+        octave: &Octave,
+        is_odd: NodeId,
+        frac: i32,
+    ) -> Result<NodeId, PlanRefusal> {
+        let operand = Expression::operand("x");
+        let part = |kind: Kind| Expression::new(kind, function.span.clone());
+        let two = Arc::new(number("2"));
+        let half = part(Kind::Binary(Operator::Div, Arc::new(operand.clone()), two));
+        let of_half = function.substitute(&operand, &half, &function.span);
+        let Octave { mantissa, domain, .. } = *octave;
+        let even = self.approximation("power_of_even", mantissa, function, domain, frac)?;
+        let odd = self.approximation("power_of_odd", mantissa, &of_half, domain, frac)?;
+        self.plan.choose("power", is_odd, [even, odd])
     }
 
     /// Normalises a node whose values are not below 0, apart from rounding errors. The word is shifted to the left, so that a
@@ -171,19 +204,31 @@ impl Lowering<'_> {
         let is_odd = by_pairs && word_format.int % 2 != 0;
         let word_format = Format { int: word_format.int + i32::from(is_odd), ..word_format };
         let word = self.plan.narrow("word", node, word_format, Rounding::Truncate)?;
-        let [normalised, places] = self.plan.normalise("normalised", word, by_pairs)?;
+        let PlanStyle { shares_table, centres_fractions, .. } = self.guards.style;
+        let [normalised, places] =
+            self.plan.normalise("normalised", word, by_pairs && !shares_table)?;
         let finest = self.finest;
+        let is_table_word =
+            shares_table && self.plan.node(normalised).format.width() <= WIDEST_OPERAND;
         let mantissa = self.rounding(finest + 1, |own, frac| {
             let frac = frac.max(2);
-            match own.guards.style.centres_fractions {
+            match centres_fractions {
+                _ if is_table_word => Ok(normalised),
                 true => own.plan.shorten_for_table("mantissa", normalised, frac),
                 false => own.plan.shorten("mantissa", normalised, frac, Rounding::Truncate),
             }
         })?;
         let bits = self.plan.node(mantissa).format.frac;
-        let first = 1i64 << (bits - if by_pairs { 2 } else { 1 });
+        let first = 1i64 << (bits - if by_pairs && !shares_table { 2 } else { 1 });
         let domain = (first, (1i64 << bits) - 1);
-        Ok(Octave { word, mantissa, places, exponent: word_format.int, domain })
+        let exponent = word_format.int;
+        if !by_pairs || !shares_table {
+            return Ok(Octave { word, mantissa, places, is_odd: None, exponent, domain });
+        }
+        let is_odd = self.plan.bit("places_are_odd", places, 0)?;
+        let halved = self.plan.scale("places_halved", places, -1)?;
+        let pairs = self.plan.integer_part("places_by_pairs", halved)?;
+        Ok(Octave { word, mantissa, places: pairs, is_odd: Some(is_odd), exponent, domain })
     }
 
     /// Returns the node with 0 in place of its negative values, which come only from rounding. Returns the node itself if it is

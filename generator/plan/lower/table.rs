@@ -153,7 +153,20 @@ impl Lowering<'_> {
             ));
         }
         let finest = self.finest;
-        self.rounding(finest + 2, |own, frac| own.approximation(name, node, function, domain, frac))
+        self.rounding(finest + 2, |own, frac| {
+            let frac = frac.max(own.least_table_fraction(0));
+            own.approximation(name, node, function, domain, frac)
+        })
+    }
+
+    /// Returns the smallest number of fraction bits of a table whose value is divided by 2 to the power of `places` before it is a result.
+    /// In a unit, every result from a table is rounded, so that the functions give the same bits to the adder that rounds. A table of its
+    /// own may also give the result itself, with no bit to round.
+    pub(super) fn least_table_fraction(&self, places: i32) -> i32 {
+        match self.guards.style.shares_table {
+            true => self.finest + 1 + places,
+            false => i32::MIN,
+        }
     }
 
     /// Returns the first and the last raw value that `node` can have if its exact value lies within `range`, and differs from the

@@ -197,6 +197,7 @@ impl Lowering<'_> {
         let finest = self.finest;
         let domain = (0, 1i64 << self.plan.node(angle).format.frac);
         self.rounding(finest + 1, |own, frac| {
+            let frac = frac.max(own.least_table_fraction(0));
             own.approximation(name, angle, &number(formula), domain, frac)
         })
     }

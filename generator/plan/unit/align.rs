@@ -1,7 +1,5 @@
 //! Aligns the operations of several plans: operations of the same kind get the same slot, in an order that suits every plan.
 
-use glint_base::fixed::Rounding;
-
 use crate::node::{NodeId, Operation};
 use crate::plan::ExpressionPlan;
 
@@ -9,13 +7,11 @@ use crate::plan::ExpressionPlan;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum SharedKind {
     Normaliser,
-    /// A table with the widths of the set.
+    /// A table with the widths of the set, or a choice between two of them for the same operand ([`TableRead`]).
     Table,
     Product,
-    LeftShift,
-    RightShift,
-    /// The rounding of a result.
-    Rounding,
+    /// A shift to the left or to the right.
+    Shift,
 }
 
 /// An operation of the merged plan: for each function, the node of its plan that this operation computes, if it has one.
@@ -31,6 +27,75 @@ impl MergedOperation {
         let nodes = self.members.iter().enumerate();
         nodes.filter_map(|(function, node)| Some((function, (*node)?))).collect()
     }
+}
+
+/// What a function reads from a shared table: a polynomial of an operand, or one of two polynomials of the same operand.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct TableRead {
+    /// The operand of the polynomials.
+    pub(super) operand: NodeId,
+    /// The polynomials that are read if the condition is 0 and if it is 1. Without a condition, both are the same.
+    pub(super) polynomials: [NodeId; 2],
+    pub(super) condition: Option<NodeId>,
+}
+
+impl TableRead {
+    /// Returns what a node of a plan reads from a shared table; `None` for other nodes. `is_shared_table` says whether a polynomial
+    /// has the widths of the set.
+    pub(super) fn at(
+        plan: &ExpressionPlan,
+        node: NodeId,
+        is_shared_table: &dyn Fn(NodeId) -> bool,
+    ) -> Option<Self> {
+        if let Operation::Polynomial(operand, _) = plan.node(node).operation {
+            let is_own = is_shared_table(node) && !is_read_by_choices(plan, node, is_shared_table);
+            return is_own.then_some(Self { operand, polynomials: [node; 2], condition: None });
+        }
+        let (operand, condition, polynomials) = choice_of_tables(plan, node, is_shared_table)?;
+        let mut both = polynomials.iter();
+        let is_choice = both.all(|it| is_read_by_choices(plan, *it, is_shared_table));
+        is_choice.then_some(Self { operand, polynomials, condition: Some(condition) })
+    }
+}
+
+/// Returns the operand, the condition and the polynomials of a choice between two polynomials of the same operand, whose tables have the
+/// same segments and results with the same fraction bits.
+fn choice_of_tables(
+    plan: &ExpressionPlan,
+    node: NodeId,
+    is_shared_table: &dyn Fn(NodeId) -> bool,
+) -> Option<(NodeId, NodeId, [NodeId; 2])> {
+    let Operation::Choose { condition, cases } = plan.node(node).operation else { return None };
+    let [(zero_operand, zero), (one_operand, one)] = [cases[0], cases[1]].map(|case| {
+        let Operation::Polynomial(operand, approximation) = &plan.node(case).operation else {
+            return (case, None);
+        };
+        (*operand, approximation.polynomials.as_ref())
+    });
+    let (zero, one) = (zero?, one?);
+    let is_same_operand = zero_operand == one_operand && zero.origin == one.origin;
+    let is_alike = zero.segments == one.segments && zero.result.frac == one.result.frac;
+    let are_shared = cases.iter().all(|case| is_shared_table(*case));
+    let is_choice = is_same_operand && is_alike && are_shared;
+    is_choice.then_some((zero_operand, condition, cases))
+}
+
+/// Returns whether only choices between two tables read a polynomial, which then is no result.
+fn is_read_by_choices(
+    plan: &ExpressionPlan,
+    polynomial: NodeId,
+    is_shared_table: &dyn Fn(NodeId) -> bool,
+) -> bool {
+    let mut has_reader = false;
+    for (at, node) in plan.nodes.iter().enumerate() {
+        if node.operation.inputs().contains(&polynomial) {
+            has_reader = true;
+            if choice_of_tables(plan, NodeId(at), is_shared_table).is_none() {
+                return false;
+            }
+        }
+    }
+    has_reader && !plan.results.contains(&polynomial)
 }
 
 /// Returns slots for all operations of these kinds. The nodes of each plan are in the order of the slots, so that the merged plan
@@ -60,13 +125,13 @@ pub(super) fn shared_operations(
         let id = NodeId(at);
         let kind = match node.operation {
             Operation::Normalise { .. } => SharedKind::Normaliser,
-            Operation::Polynomial(..) if is_shared_table(id) => SharedKind::Table,
-            Operation::Multiply(..) => SharedKind::Product,
-            Operation::ShiftLeft(..) => SharedKind::LeftShift,
-            Operation::ShiftRight(..) => SharedKind::RightShift,
-            Operation::Narrow(value, _) if is_rounded_result(plan, id, value) => {
-                SharedKind::Rounding
+            Operation::Polynomial(..) | Operation::Choose { .. }
+                if TableRead::at(plan, id, is_shared_table).is_some() =>
+            {
+                SharedKind::Table
             }
+            Operation::Multiply(..) => SharedKind::Product,
+            Operation::ShiftLeft(..) | Operation::ShiftRight(..) => SharedKind::Shift,
             _ => continue,
         };
         let is_needed = is_read[at] || kind == SharedKind::Normaliser && is_read[at + 1];
@@ -75,15 +140,6 @@ pub(super) fn shared_operations(
         }
     }
     sequence
-}
-
-/// Returns whether `id` is a result that is `value`, rounded to the nearest. A rounding after a choice is left out, because one adder
-/// computes a choice of differences and its rounding.
-fn is_rounded_result(plan: &ExpressionPlan, id: NodeId, value: NodeId) -> bool {
-    let is_nearest = matches!(plan.node(id).operation, Operation::Narrow(_, Rounding::Nearest));
-    let drops_bits = plan.node(value).format.frac > plan.node(id).format.frac;
-    let is_choice = matches!(plan.node(value).operation, Operation::Choose { .. });
-    is_nearest && drops_bits && !is_choice && plan.results.contains(&id)
 }
 
 /// Adds the operations of a function to the slots: to slots of the same kind as far as possible, and otherwise to new slots.

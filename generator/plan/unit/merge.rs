@@ -7,11 +7,13 @@
 use std::sync::Arc;
 
 use glint_approximate::{Outside, Piecewise, SharedWidths};
-use glint_base::fixed::{Format, Rounding};
+use glint_base::fixed::Format;
 use glint_formula::Enclosure;
 
-use super::align::{MergedOperation, SharedKind, shared_operations, slots};
-use super::tables::{PagedTable, paged, wide_enough};
+use super::align::{MergedOperation, SharedKind, TableRead, shared_operations, slots};
+use super::factors::with_narrow_factors;
+use super::select::OpcodeChoices;
+use super::tables::{PagedTable, paged};
 use super::{UnitFunction, opcode_bits};
 use crate::node::{Approximation, NodeId, Operation, PlanNode};
 use crate::plan::ExpressionPlan;
@@ -20,16 +22,23 @@ use crate::statement::StatedOperand;
 
 const ANYTHING: Enclosure = Enclosure::between(f64::NEG_INFINITY, f64::INFINITY);
 
-struct Merger<'u> {
-    functions: &'u [UnitFunction],
-    plan: ExpressionPlan,
+pub(super) struct Merger<'u> {
+    pub(super) functions: &'u [UnitFunction],
+    /// The plan of each function, with narrow factors.
+    plans: Vec<ExpressionPlan>,
+    pub(super) plan: ExpressionPlan,
     opcode: NodeId,
     /// The nodes of the operand ports behind the opcode.
     ports: Vec<NodeId>,
     /// For each function and each node of its plan, the node of the merged plan with its value.
-    nodes: Vec<Vec<NodeId>>,
+    pub(super) nodes: Vec<Vec<NodeId>>,
+    /// For each function, the value of the table before its first result behind the shifter, if it passes through the shifter.
+    pub(super) routed: Vec<Option<NodeId>>,
+    /// The widths of the tables that can be pages of a shared table; `None` if there are none.
+    common_widths: Option<SharedWidths>,
     /// The table of all functions, if a single table serves all slots.
     common_table: Option<SetTable>,
+    choices: OpcodeChoices,
 }
 
 /// One table for several polynomials of functions.
@@ -58,15 +67,25 @@ pub(super) fn merged(
         nodes.push(plan.operand(number, &port.name, port.format, port.domain)?);
     }
     let opcode = nodes.remove(0);
+    let choices = OpcodeChoices::new(&mut plan, opcode, functions.len())?;
+    let mut plans = Vec::new();
+    for function in functions {
+        plans.push(with_narrow_factors(&function.planned.plan)?);
+    }
     let mut merger = Merger {
         functions,
+        plans,
         plan,
         opcode,
         ports: nodes,
         nodes: vec![Vec::new(); functions.len()],
+        routed: vec![None; functions.len()],
+        common_widths: common_widths(functions),
         common_table: None,
+        choices,
     };
-    let slots = slots(&merger.sequences());
+    let mut slots = slots(&merger.sequences());
+    merger.route_results(&mut slots);
     if shares_tables {
         let of_tables = slots.iter().filter(|slot| slot.kind == SharedKind::Table);
         let members: Vec<(usize, NodeId)> = of_tables.flat_map(MergedOperation::present).collect();
@@ -75,56 +94,42 @@ pub(super) fn merged(
     for slot in &slots {
         merger.add_slot(slot)?;
     }
-    for (number, function) in functions.iter().enumerate() {
-        merger.copy_until(number, function.planned.plan.nodes.len())?;
+    for number in 0..functions.len() {
+        merger.copy_until(number, merger.own(number).nodes.len())?;
     }
     for (number, (name, format)) in results.iter().enumerate() {
         merger.add_result(number, name, *format)?;
     }
+    merger.choices.finish(&mut merger.plan);
     Ok(merger.plan)
 }
 
 impl Merger<'_> {
-    fn own(&self, function: usize) -> &ExpressionPlan {
-        &self.functions[function].planned.plan
+    pub(super) fn own(&self, function: usize) -> &ExpressionPlan {
+        &self.plans[function]
     }
 
     /// Returns the operations of each function that may be shared.
     fn sequences(&self) -> Vec<Vec<(NodeId, SharedKind)>> {
         let mut of_functions = Vec::new();
-        let common = self.common_widths();
         for function in 0..self.functions.len() {
-            let own = self.own(function);
-            let is_shared_table = |node: NodeId| {
-                let widths = table_of(own, node).and_then(|table| SharedWidths::of(&table));
-                widths.is_some_and(|widths| common.as_ref().is_some_and(|it| fits(&widths, it)))
-            };
-            of_functions.push(shared_operations(own, &is_shared_table));
+            let is_shared_table = |node| self.is_shared_table(function, node);
+            of_functions.push(shared_operations(self.own(function), &is_shared_table));
         }
         of_functions
     }
 
-    /// Returns the widths that most tables have; `None` if no table can be shared.
-    fn common_widths(&self) -> Option<SharedWidths> {
-        let mut counts: Vec<(SharedWidths, usize)> = Vec::new();
-        for function in 0..self.functions.len() {
-            let own = self.own(function);
-            for at in 0..own.nodes.len() {
-                let Some(table) = table_of(own, NodeId(at)) else { continue };
-                let Some(widths) = SharedWidths::of(&table) else { continue };
-                match counts
-                    .iter_mut()
-                    .find(|(other, _)| fits(&widths, other) || fits(other, &widths))
-                {
-                    Some((other, count)) => {
-                        *other = other.max(&widths);
-                        *count += 1;
-                    }
-                    None => counts.push((widths, 1)),
-                }
-            }
-        }
-        counts.into_iter().max_by_key(|(_, count)| *count).map(|(widths, _)| widths)
+    /// Returns whether a node of a function is a polynomial whose table can be pages of the shared table.
+    fn is_shared_table(&self, function: usize, node: NodeId) -> bool {
+        let table = table_of(self.own(function), node);
+        let widths = table.and_then(|table| SharedWidths::of(&table));
+        let common = self.common_widths.as_ref();
+        widths.is_some_and(|widths| common.is_some_and(|common| fits(&widths, common)))
+    }
+
+    /// Returns what a function reads from the shared table at a node of its plan; `None` for other nodes.
+    pub(super) fn table_read(&self, function: usize, node: NodeId) -> Option<TableRead> {
+        TableRead::at(self.own(function), node, &|node| self.is_shared_table(function, node))
     }
 
     /// Copies the nodes of a function's plan up to the node `end`, without it.
@@ -134,11 +139,22 @@ impl Merger<'_> {
             let node = self.own(function).nodes[at].clone();
             let id = match node.operation {
                 Operation::Operand(number) => self.operand(function, number)?,
+                // A choice between two tables reads the shared table in place of these polynomials.
+                Operation::Polynomial(operand, _)
+                    if self.is_part_of_choice(function, NodeId(at)) =>
+                {
+                    self.nodes[function][operand.0]
+                }
                 _ => self.copy(function, &node),
             };
             self.nodes[function].push(id);
         }
         Ok(())
+    }
+
+    /// Returns whether a node is a polynomial of a shared table that only choices between two tables read.
+    fn is_part_of_choice(&self, function: usize, node: NodeId) -> bool {
+        self.is_shared_table(function, node) && self.table_read(function, node).is_none()
     }
 
     /// Returns the node of an operand of a function: the low bits of the word at its port, in the format of the operand.
@@ -209,27 +225,35 @@ impl Merger<'_> {
     }
 
     /// Converts a node to a format by dropping bits, and returns the new node.
-    fn narrow(&mut self, name: &str, node: NodeId, format: Format) -> Result<NodeId, PlanRefusal> {
-        if let Some(same) = self.same(&Operation::Narrow(node, Rounding::Truncate), format) {
-            return Ok(same);
-        }
-        self.plan.narrow(name, node, format, Rounding::Truncate)
+    pub(super) fn narrow(
+        &mut self,
+        name: &str,
+        node: NodeId,
+        format: Format,
+    ) -> Result<NodeId, PlanRefusal> {
+        self.plan.low_bits(name, node, format)
     }
 
     /// Returns the value of a node as an integer.
-    fn raw(&mut self, node: NodeId) -> Result<NodeId, PlanRefusal> {
+    pub(super) fn raw(&mut self, node: NodeId) -> Result<NodeId, PlanRefusal> {
         let PlanNode { name, format, .. } = self.plan.node(node);
         let (name, frac) = (format!("{name}_raw"), format.frac);
         self.plan.scale(&name, node, frac)
     }
 
     /// Reads an integer in the format of a node of a function's plan, and gives it to this node.
-    fn give(&mut self, function: usize, node: NodeId, integer: NodeId) -> Result<(), PlanRefusal> {
+    pub(super) fn give(
+        &mut self,
+        function: usize,
+        node: NodeId,
+        integer: NodeId,
+    ) -> Result<(), PlanRefusal> {
         let PlanNode { name, format, .. } = self.own(function).node(node);
         let (name, format) = (format!("{}_{name}", self.functions[function].name), *format);
         let int = format.width() as i32 - i32::from(format.signed);
         let kept =
             self.narrow(&format!("{name}_bits"), integer, Format { int, frac: 0, ..format })?;
+        self.choices.add_low_bits(kept, integer);
         let value = self.plan.scale(&name, kept, -format.frac)?;
         debug_assert_eq!(self.nodes[function].len(), node.0, "nodes in their order");
         self.nodes[function].push(value);
@@ -237,32 +261,12 @@ impl Merger<'_> {
     }
 
     /// Returns a node with the value of `cases[opcode]`. A missing case may have any value. The list has a case for each function.
-    fn selected(&mut self, name: &str, cases: &[Option<NodeId>]) -> Result<NodeId, PlanRefusal> {
-        let mut all = cases.to_vec();
-        let bits = opcode_bits(self.functions.len());
-        all.resize(1 << bits, None);
-        let selected = self.selected_by(name, &all, bits)?;
-        Ok(selected.expect("a case"))
-    }
-
-    /// Returns a node with the value of the case that the low `bits` bits of the opcode select; `None` if there is no case.
-    fn selected_by(
+    pub(super) fn selected(
         &mut self,
         name: &str,
         cases: &[Option<NodeId>],
-        bits: u32,
-    ) -> Result<Option<NodeId>, PlanRefusal> {
-        let mut given = cases.iter().flatten();
-        let Some(first) = given.next() else { return Ok(None) };
-        if given.all(|case| case == first) {
-            return Ok(Some(*first));
-        }
-        let half = cases.len() / 2;
-        let lower = self.selected_by(name, &cases[..half], bits - 1)?;
-        let upper = self.selected_by(name, &cases[half..], bits - 1)?;
-        let (Some(lower), Some(upper)) = (lower, upper) else { return Ok(lower.or(upper)) };
-        let bit = self.plan.bit(&format!("opcode_bit{}", bits - 1), self.opcode, bits - 1)?;
-        self.plan.choose(name, bit, [lower, upper]).map(Some)
+    ) -> Result<NodeId, PlanRefusal> {
+        self.choices.selected(&mut self.plan, name, cases)
     }
 
     /// Adds the node of a slot, and the nodes of its functions up to it.
@@ -271,8 +275,13 @@ impl Merger<'_> {
         for (function, node) in &members {
             self.copy_until(*function, node.0)?;
         }
-        let is_in_common_table = slot.kind == SharedKind::Table && self.common_table.is_some();
-        if members.len() == 1 && !is_in_common_table {
+        let is_choice_of_tables = |(function, node): &(usize, NodeId)| {
+            let read = self.table_read(*function, *node);
+            read.is_some_and(|read| read.condition.is_some())
+        };
+        let has_pages = slot.kind == SharedKind::Table
+            && (self.common_table.is_some() || members.iter().any(is_choice_of_tables));
+        if members.len() == 1 && !has_pages {
             // The function alone has this operation, which is copied with the nodes that follow.
             return Ok(());
         }
@@ -280,14 +289,12 @@ impl Merger<'_> {
             SharedKind::Normaliser => self.add_normaliser(&members),
             SharedKind::Table => self.add_table(&members),
             SharedKind::Product => self.add_product(&members),
-            SharedKind::LeftShift => self.add_shift(&members, true),
-            SharedKind::RightShift => self.add_shift(&members, false),
-            SharedKind::Rounding => self.add_rounding(&members),
+            SharedKind::Shift => self.add_shift(&members),
         }
     }
 
     /// Returns a node for input number `input` of the members' operations, as an integer that the opcode selects.
-    fn selected_input(
+    pub(super) fn selected_input(
         &mut self,
         name: &str,
         members: &[(usize, NodeId)],
@@ -307,49 +314,6 @@ impl Merger<'_> {
         let product = self.plan.multiply("product", first, second)?;
         for (function, node) in members {
             self.give(*function, *node, product)?;
-        }
-        Ok(())
-    }
-
-    fn add_shift(&mut self, members: &[(usize, NodeId)], is_left: bool) -> Result<(), PlanRefusal> {
-        let value = self.selected_input("to_shift", members, 0)?;
-        let places = self.selected_input("shift_places", members, 1)?;
-        let shifted = if is_left {
-            let formats = members.iter().map(|(function, node)| {
-                let format = self.own(*function).node(*node).format;
-                Format { int: format.int + format.frac, frac: 0, ..format }
-            });
-            let format = formats.reduce(wide_enough).expect("a member");
-            self.plan.shift_left("shifted_left", value, places, format)?
-        } else {
-            self.plan.shift_right("shifted_right", value, places)?
-        };
-        for (function, node) in members {
-            self.give(*function, *node, shifted)?;
-        }
-        Ok(())
-    }
-
-    /// Adds an adder that rounds results. The opcode selects the value with the highest bit that its function drops.
-    fn add_rounding(&mut self, members: &[(usize, NodeId)]) -> Result<(), PlanRefusal> {
-        let mut cases = vec![None; self.functions.len()];
-        let mut formats = Vec::new();
-        for (function, node) in members {
-            let own = self.own(*function);
-            let result = own.node(*node).format;
-            let value = own.node(*node).operation.inputs()[0];
-            let value = self.nodes[*function][value.0];
-            let name = format!("{}_to_round", self.functions[*function].name);
-            let scaled = self.plan.scale(&name, value, result.frac)?;
-            let with_half = Format { frac: 1, ..self.plan.node(scaled).format };
-            cases[*function] = Some(self.narrow(&name, scaled, with_half)?);
-            formats.push(Format { int: result.int + result.frac, frac: 0, ..result });
-        }
-        let value = self.selected("to_round", &cases)?;
-        let format = formats.into_iter().reduce(wide_enough).expect("a member");
-        let rounded = self.plan.narrow("rounded", value, format, Rounding::Nearest)?;
-        for (function, node) in members {
-            self.give(*function, *node, rounded)?;
         }
         Ok(())
     }
@@ -409,65 +373,124 @@ impl Merger<'_> {
         Ok([word, pairs])
     }
 
-    /// Returns a table with a page for each of the polynomials `members`.
+    /// Returns a table with pages for the polynomials that `members` read.
     fn set_table(&self, members: &[(usize, NodeId)]) -> SetTable {
+        let mut polynomials = Vec::new();
         let mut tables = Vec::new();
+        let mut are_pairs = Vec::new();
         for (function, node) in members {
-            tables.push(table_of(self.own(*function), *node).expect("a table"));
+            let read = self.table_read(*function, *node).expect("a node that reads a table");
+            for polynomial in read.polynomials {
+                are_pairs.push(read.condition.is_some());
+                polynomials.push((*function, polynomial));
+                tables.push(table_of(self.own(*function), polynomial).expect("a table"));
+            }
         }
-        let paged = paged(&tables);
-        SetTable { members: members.to_vec(), tables, paged }
+        let paged = paged(&tables, &are_pairs);
+        SetTable { members: polynomials, tables, paged }
     }
 
-    /// Adds a polynomial whose table has a page for each of `members`.
+    /// Adds a polynomial whose table has the pages that `members` read.
     fn add_table(&mut self, members: &[(usize, NodeId)]) -> Result<(), PlanRefusal> {
         let set = match &self.common_table {
             Some(common) => common.clone(),
             None => self.set_table(members),
         };
-        let table = set.paged;
+        let table = &set.paged;
         let mut numbers = vec![None; self.functions.len()];
-        // The first page of each function, and the further pages that the top of an operand's number selects.
+        // The page of each function, or its first one, if a condition or the top of an operand's number selects one of several.
         let mut first_pages = vec![0; 1 << opcode_bits(self.functions.len())];
         let mut further_pages = vec![None; self.functions.len()];
-        let no_further_page = self.plan.constant("zero", 0, 0)?;
         for (function, node) in members {
-            let same = set.members.iter().position(|member| *member == (*function, *node));
-            let member = same.expect("a polynomial of the table");
-            let operand = self.own(*function).node(*node).operation.inputs()[0];
-            let operand = self.nodes[*function][operand.0];
-            let page_bits = table.page_bits[member];
+            let read = self.table_read(*function, *node).expect("a node that reads a table");
+            let [zero, one] = read.polynomials.map(|polynomial| {
+                let mut all = set.members.iter();
+                all.position(|it| *it == (*function, polynomial)).expect("a page")
+            });
+            let operand = self.nodes[*function][read.operand.0];
+            let page_bits = table.page_bits[zero];
             let bits = table.number_bits + page_bits;
-            let number = self.number(*function, operand, &set.tables[member], bits)?;
+            let number = self.number(*function, operand, &set.tables[zero], bits)?;
             let name = &self.functions[*function].name.clone();
             let in_page = Format::unsigned(table.number_bits as i32, 0);
             numbers[*function] = Some(self.narrow(&format!("{name}_in_page"), number, in_page)?);
-            first_pages[*function] = table.pages[member] as i128;
-            further_pages[*function] = Some(match page_bits {
-                0 => no_further_page,
-                bits => {
-                    let upper = self.plan.scale("number_above", number, -in_page.int)?;
-                    let format = Format::unsigned(bits as i32, 0);
-                    self.narrow(&format!("{name}_further_page"), upper, format)?
-                }
-            });
+            let pages = [zero, one].map(|member| table.pages[member] as i128);
+            first_pages[*function] = pages[0].min(pages[1]);
+            if let Some(condition) = read.condition {
+                let condition = self.nodes[*function][condition.0];
+                further_pages[*function] = Some(self.page_beyond_first(name, condition, pages)?);
+            }
+            if page_bits > 0 {
+                let upper = self.plan.scale("number_above", number, -in_page.int)?;
+                let format = Format::unsigned(page_bits as i32, 0);
+                let name = format!("{name}_further_page");
+                let of_number = self.narrow(&name, upper, format)?;
+                further_pages[*function] = Some(match further_pages[*function] {
+                    Some(of_condition) => self.plan.add(&name, of_condition, of_number)?,
+                    None => of_number,
+                });
+            }
         }
         let number = self.selected("number", &numbers)?;
-        let first = self.plan.lookup("pages", self.opcode, first_pages, 0)?;
-        let further = self.selected("further_page", &further_pages)?;
-        let page = self.plan.add("page", first, further)?;
+        let first = self.plan.lookup("pages", self.opcode, first_pages.clone(), 0)?;
+        let mut pages = vec![None; self.functions.len()];
+        for (function, _) in members {
+            pages[*function] = Some(match further_pages[*function] {
+                Some(further) => self.page_after(*function, first_pages[*function], further)?,
+                None => first,
+            });
+        }
+        let page = self.selected("page", &pages)?;
         let upper = self.plan.scale("page_above", page, table.number_bits as i32)?;
         let address = self.plan.add("place", upper, number)?;
         let address = self.narrow("place_in_table", address, table.polynomials.operand)?;
         let function = table.function();
         let values = table.polynomials.result.range();
-        let polynomials = Some(table.polynomials);
+        let polynomials = Some(table.polynomials.clone());
         let approximation = Approximation { function, polynomials };
         let value = self.plan.polynomial("curve", address, approximation, values)?;
         for (function, node) in members {
             self.give(*function, *node, value)?;
         }
         Ok(())
+    }
+
+    /// Returns the page number `first` + `further`. The sum is wiring if the first page is a multiple of a power of two above `further`.
+    fn page_after(
+        &mut self,
+        function: usize,
+        first: i128,
+        further: NodeId,
+    ) -> Result<NodeId, PlanRefusal> {
+        let name = format!("{}_page", self.functions[function].name);
+        let bits = self.plan.node(further).format.width();
+        if first == 0 {
+            return Ok(further);
+        }
+        if first & ((1 << bits) - 1) != 0 {
+            let first = self.plan.constant(&name, first, 0)?;
+            return self.plan.add(&name, first, further);
+        }
+        let above = self.plan.constant(&name, first >> bits, 0)?;
+        let above = self.plan.scale(&name, above, bits as i32)?;
+        self.plan.add(&name, above, further)
+    }
+
+    /// Returns by how much the page that a condition selects exceeds the smaller one.
+    fn page_beyond_first(
+        &mut self,
+        name: &str,
+        condition: NodeId,
+        pages: [i128; 2],
+    ) -> Result<NodeId, PlanRefusal> {
+        let least = pages[0].min(pages[1]);
+        let name = format!("{name}_page_of_condition");
+        if pages == [least, least + 1] {
+            return Ok(condition);
+        }
+        let zero = self.plan.constant(&name, pages[0] - least, 0)?;
+        let one = self.plan.constant(&name, pages[1] - least, 0)?;
+        self.plan.choose(&name, condition, [zero, one])
     }
 
     /// Returns the number of an operand within the domain of a function's table, with zeros below it up to `bits` bits.
@@ -490,35 +513,27 @@ impl Merger<'_> {
         let shifted = self.plan.scale(&names[1], number, (bits - own_bits) as i32)?;
         self.narrow(&names[1], shifted, Format::unsigned(bits as i32, 0))
     }
+}
 
-    /// Adds result number `number` as a word of a format. A function without such a result, and an opcode without a function, give 0.
-    fn add_result(&mut self, number: usize, name: &str, format: Format) -> Result<(), PlanRefusal> {
-        let mut cases = Vec::new();
-        let zero = self.plan.constant("zero", 0, 0)?;
-        for function in 0..self.functions.len() {
-            let Some(result) = self.own(function).results.get(number).copied() else {
-                cases.push(Some(zero));
-                continue;
-            };
-            let integer = self.raw(self.nodes[function][result.0])?;
-            let name = format!("{}_{name}", self.functions[function].name);
-            let signed = Format { signed: true, int: format.width() as i32 - 1, frac: 0 };
-            let is_negative = self.plan.node(integer).format.signed && !format.signed;
-            let word = match is_negative {
-                true => self.narrow(&format!("{name}_extended"), integer, signed)?,
-                false => integer,
-            };
-            cases.push(Some(self.narrow(&format!("{name}_word"), word, format)?));
+/// Returns the widths that most tables have; `None` if no table can be shared.
+fn common_widths(functions: &[UnitFunction]) -> Option<SharedWidths> {
+    let mut counts: Vec<(SharedWidths, usize)> = Vec::new();
+    for function in functions {
+        let own = &function.planned.plan;
+        for at in 0..own.nodes.len() {
+            let Some(table) = table_of(own, NodeId(at)) else { continue };
+            let Some(widths) = SharedWidths::of(&table) else { continue };
+            match counts.iter_mut().find(|(other, _)| fits(&widths, other) || fits(other, &widths))
+            {
+                Some((other, count)) => {
+                    *other = other.max(&widths);
+                    *count += 1;
+                }
+                None => counts.push((widths, 1)),
+            }
         }
-        cases.resize(1 << opcode_bits(self.functions.len()), Some(zero));
-        let selected = self.selected(&format!("{name}_selected"), &cases)?;
-        let result = self.narrow(&format!("{name}_result"), selected, format)?;
-        let is_operand = matches!(self.plan.node(result).operation, Operation::Operand(_));
-        let result = if is_operand { self.plan.copy(name, result)? } else { result };
-        self.plan.results.push(result);
-        self.plan.proved.push(result);
-        Ok(())
     }
+    counts.into_iter().max_by_key(|(_, count)| *count).map(|(widths, _)| widths)
 }
 
 /// Returns whether tables of these widths can be pages of one table: the widths of the coefficients agree.

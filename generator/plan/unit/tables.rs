@@ -22,18 +22,24 @@ pub(super) struct PagedTable {
 /// Returns a table with pages for each different table in `tables`, which must have the same [`SharedWidths`] apart from the
 /// number of segments and of bits of an offset. A page has as many segments as the smallest table; a larger table has several pages.
 ///
+/// `are_pairs` says of each table whether a condition chooses between it and the table after or before it. The tables of such a pair have
+/// an even page and the next one, if no other pair has one of them.
+///
 /// The operand of the new table is an integer: the page, and below it the number of the function's operand, whose top bits select the
 /// segment. A function whose operands have fewer bits has zeros below its number. The value of the new table has the raw value of
 /// the function's table.
-pub(super) fn paged(tables: &[Arc<Piecewise>]) -> PagedTable {
+pub(super) fn paged(tables: &[Arc<Piecewise>], are_pairs: &[bool]) -> PagedTable {
+    let mut in_order: Vec<(&Piecewise, bool)> =
+        tables.iter().map(|table| &**table).zip(are_pairs.iter().copied()).collect();
+    // The first page of a table is then a multiple of the number of its pages.
+    in_order
+        .sort_by_key(|(table, is_of_pair)| (std::cmp::Reverse(table.segments.prefix), !is_of_pair));
     let mut distinct: Vec<&Piecewise> = Vec::new();
-    for table in tables {
-        if !distinct.contains(&&**table) {
+    for (table, _) in in_order {
+        if !distinct.contains(&table) {
             distinct.push(table);
         }
     }
-    // The first page of a table is then a multiple of the number of its pages.
-    distinct.sort_by_key(|table| std::cmp::Reverse(table.segments.prefix));
     let prefix = distinct.iter().map(|table| table.segments.prefix).min().expect("a table");
     let widths = distinct.iter().filter_map(|table| SharedWidths::of(table));
     let widths = widths.reduce(|a, b| a.max(&b)).expect("tables with widths");
