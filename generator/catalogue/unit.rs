@@ -5,7 +5,7 @@
 
 use glint_base::text;
 use glint_config::{Config, Shared};
-use glint_plan::{StatedResult, UnitFunction, UnitPlan};
+use glint_plan::{StatedResult, UnitEquality, UnitFunction, UnitPlan};
 use glint_rtl::dsl::Designer;
 use glint_rtl::netlist::{About, CoreFunction, FunctionPort};
 
@@ -79,6 +79,17 @@ fn about(planned: &UnitPlan) -> About {
                 format!(
                     "Opcode {opcode}: {port} is {name} in {format}, with an error of at most {bound} units of its last \
                      place: {proof}."
+                )
+                .into(),
+            );
+        }
+    }
+    for (opcode, equality) in planned.equalities.iter().enumerate() {
+        if let UnitEquality::Open { node } = equality {
+            notes.push(
+                format!(
+                    "Opcode {opcode}: the unit is not proved to have the results of the function alone, because of {node}; some \
+                     operands were compared."
                 )
                 .into(),
             );

@@ -24,13 +24,19 @@ impl ExpressionPlan {
     ///
     /// # Panics
     /// Panics as [`ExpressionPlan::values`] does.
-    pub fn value(&self, id: NodeId, operands: &[i64], known: &dyn Fn(NodeId) -> i128) -> i128 {
+    pub fn value<F>(&self, id: NodeId, operands: &[i64], known: &F) -> i128
+    where
+        F: Fn(NodeId) -> i128 + ?Sized,
+    {
         // Operands outside their domains can give values beyond the format, as in the hardware.
         wrapped(self.node(id), self.whole_value(id, operands, known))
     }
 
     /// Returns the raw value of a node, with bits beyond the node's format.
-    fn whole_value(&self, id: NodeId, operands: &[i64], known: &dyn Fn(NodeId) -> i128) -> i128 {
+    pub(super) fn whole_value<F>(&self, id: NodeId, operands: &[i64], known: &F) -> i128
+    where
+        F: Fn(NodeId) -> i128 + ?Sized,
+    {
         let node = self.node(id);
         // Returns the raw value of `input` with `frac` fraction bits, if it has fewer.
         let aligned = |input: NodeId, frac: i32| {
@@ -110,7 +116,10 @@ fn left_by(raw: i128, places: i128) -> i128 {
 
 /// Returns the raw value after the bits beyond the format of the node are dropped.
 fn wrapped(node: &PlanNode, raw: i128) -> i128 {
-    node.format.raw(node.format.bits(raw))
+    match node.format.holds(raw) {
+        true => raw,
+        false => node.format.raw(node.format.bits(raw)),
+    }
 }
 
 /// Returns the bits of a word after it is shifted left until its top bit is 1, and the number of bits of the shift. By pairs,

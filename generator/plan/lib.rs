@@ -78,7 +78,7 @@ pub use schedule::SMALLEST_BLOCK;
 pub use statement::{
     ExpressionStatement, StatedOperand, StatedOverflow, StatedResult, StatedWidth,
 };
-pub use unit::{MOST_FUNCTIONS, StatedFunction, UnitFunction, UnitPlan, find_unit};
+pub use unit::{MOST_FUNCTIONS, StatedFunction, UnitEquality, UnitFunction, UnitPlan, find_unit};
 pub use written::target_function;
 
 #[cfg(test)]

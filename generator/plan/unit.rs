@@ -2,9 +2,10 @@
 //!
 //! Each function has a plan of its own, with a proved error. The plans share the bit widths of their tables ([`find_set`]). The
 //! module `merge` then makes one plan of all: operations of the same kind become one operation, in front of which choices by the
-//! opcode select the inputs. For every opcode, the merged plan has the results of the function's own plan.
+//! opcode select the inputs. For every opcode, the merged plan has the results of the function's own plan, which `equality` proves.
 
 mod align;
+mod equality;
 mod factors;
 mod merge;
 mod results;
@@ -12,11 +13,16 @@ mod select;
 mod shifts;
 mod sums;
 mod tables;
+mod unread;
 
 use std::sync::Arc;
 
 use glint_approximate::{Outside, Piecewise, TargetFunction};
 use glint_base::fixed::Format;
+use rayon::iter::{IntoParallelIterator, ParallelIterator};
+
+pub use equality::UnitEquality;
+use equality::{FunctionProof, MergedFunction};
 
 use super::find::{ProvedPlan, find_set};
 use super::node::Operation;
@@ -31,7 +37,7 @@ pub const MOST_FUNCTIONS: usize = 16;
 const OPERAND_NAMES: [&str; 8] = ["a", "b", "c", "d", "e", "f", "g", "h"];
 const RESULT_NAMES: [&str; 8] = ["r", "s", "t", "u", "v", "w", "x", "y"];
 
-/// The number of operands for which [`find_unit`] compares each function with its own plan.
+/// The number of operands for which [`find_unit`] compares a function with its own plan if it does not prove them equal.
 const COMPARED: u64 = 4096;
 
 /// A function of a unit, as the user states it.
@@ -61,9 +67,13 @@ pub struct UnitPlan {
     /// The results `r`, `s`, … with the formats of their words. A signed result of a function is extended to the width of the word.
     /// A result that a function does not have is 0.
     pub results: Vec<(&'static str, Format)>,
+    /// For each function, whether the merged plan is proved to have its results.
+    pub equalities: Vec<UnitEquality>,
+    /// For each function, its nodes in the merged plan.
+    nodes: Vec<MergedFunction>,
 }
 
-/// Finds a plan for each function, merges the plans, and compares the merged plan with them. A failure comes with the number of the
+/// Finds a plan for each function, merges the plans, and proves that the merged plan has their results. A failure comes with the number of the
 /// function that it concerns.
 ///
 /// With `shares_tables`, one table serves all functions, also if a function reads it several times. Only a sequential core can share
@@ -108,23 +118,28 @@ fn planned_functions(stated: &[StatedFunction]) -> Result<Vec<UnitFunction>, (us
 }
 
 impl UnitPlan {
-    /// Merges the plans of the functions, and compares the merged plan with them. Fails as [`find_unit`] does.
+    /// Merges the plans of the functions, and proves that the merged plan has their results. Where the proof stays open, the results are
+    /// compared for [`COMPARED`] operands. Fails as [`find_unit`] does.
     fn of_functions(
         functions: Vec<UnitFunction>,
         shares_tables: bool,
     ) -> Result<Self, (usize, PlanRefusal)> {
         let operands = operand_ports(&functions);
         let results = result_ports(&functions);
-        let plan = merge::merged(&functions, &operands, &results, shares_tables)
+        let (plan, nodes) = merge::merged(&functions, &operands, &results, shares_tables)
             .map_err(|refusal| (0, refusal))?;
         if !reads_opcode(&plan) {
             let message = "all functions of the unit compute the same results";
             let remedy = "keep one of them, as a configuration of the device expression";
             return Err((0, PlanRefusal::new(message, remedy)));
         }
-        let unit = Self { functions, plan, operands, results };
-        for opcode in 0..unit.functions.len() {
-            unit.compare(opcode).map_err(|refusal| (opcode, refusal))?;
+        let mut unit = Self { functions, plan, operands, results, nodes, equalities: Vec::new() };
+        let opcodes = (0..unit.functions.len()).into_par_iter();
+        unit.equalities = opcodes.map(|opcode| unit.proved_equality(opcode)).collect();
+        for (opcode, equality) in unit.equalities.iter().enumerate() {
+            if let UnitEquality::Open { .. } = equality {
+                unit.compare(opcode).map_err(|refusal| (opcode, refusal))?;
+            }
         }
         Ok(unit)
     }
@@ -188,6 +203,21 @@ impl UnitPlan {
         let values = own.values(&self.operands_of(opcode, words));
         let results: Vec<i128> = own.results.iter().map(|result| values[result.0]).collect();
         [merged, self.words_of(&results)]
+    }
+
+    /// Proves that the merged plan computes the results of the function with this opcode, for all operands for which it promises them.
+    fn proved_equality(&self, opcode: usize) -> UnitEquality {
+        let statement = &self.functions[opcode].planned.statement;
+        let operand = |number: usize, word: i128| {
+            let operand = &statement.operands[number];
+            let own = operand.format.raw(operand.format.bits(word));
+            operand.computed_raw(own as i64).into()
+        };
+        let word = |number: usize, raw: i128| {
+            let (_, format) = self.results[number];
+            format.raw(format.bits(raw))
+        };
+        FunctionProof::new(&self.plan, &self.nodes[opcode], opcode).prove(&operand, &word)
     }
 
     /// Compares the merged plan with the plan of a function, for operands that are spread over its domain. Fails if they differ.
@@ -364,6 +394,90 @@ mod tests {
             }
         }
         assert!(compared > 90_000, "{compared}");
+    }
+
+    #[test]
+    fn a_unit_is_proved_equal_to_its_functions() {
+        for bits in [8, 12, 16] {
+            let (names, statements) = functions(bits);
+            for shares_tables in [true, false] {
+                let unit = find_unit(&stated(&names, &statements), shares_tables).unwrap();
+                for (name, equality) in names.iter().zip(&unit.equalities) {
+                    let is_proved = matches!(equality, UnitEquality::Proved { .. });
+                    assert!(is_proved, "{name} of {bits} bits: {equality:?}");
+                }
+            }
+        }
+    }
+
+    /// Returns plans that differ from the plan of a unit in one operation: another constant, another word of a table, or the cases of a choice
+    /// the other way round.
+    fn wrong_plans(plan: &ExpressionPlan) -> Vec<ExpressionPlan> {
+        let mut wrong = Vec::new();
+        let is_read = plan.read_nodes();
+        for at in (0..plan.nodes.len()).filter(|at| is_read[*at]) {
+            let mut others = Vec::new();
+            match plan.nodes[at].operation.clone() {
+                Operation::Constant { raw, value } => {
+                    others.push(Operation::Constant { raw: raw + 1, value });
+                }
+                Operation::Choose { condition, cases: [zero, one] } => {
+                    others.push(Operation::Choose { condition, cases: [one, zero] });
+                }
+                Operation::Lookup { address, words } => {
+                    for place in 0..words.len() {
+                        let mut words = words.clone();
+                        words[place] ^= 1;
+                        others.push(Operation::Lookup { address, words });
+                    }
+                }
+                _ => {}
+            }
+            for operation in others {
+                let mut other = plan.clone();
+                other.nodes[at].operation = operation;
+                wrong.push(other);
+            }
+        }
+        wrong
+    }
+
+    /// Returns whether the unit has the results of its function, for each combination of operands for which it promises them.
+    fn has_results(unit: &UnitPlan, opcode: usize, bits: u32) -> bool {
+        let statement = &unit.functions[opcode].planned.statement;
+        let has_second = statement.operands.len() > 1;
+        (0..1 << bits).all(|a| {
+            (0..if has_second { 1 << bits } else { 1 }).all(|b| {
+                let raw = unit.operands_of(opcode, &[a, b]);
+                let limits: Vec<(i64, i64)> = raw.iter().map(|raw| (*raw, *raw)).collect();
+                let domain = statement.domain();
+                let mut inside = domain.iter().zip(&raw);
+                let is_inside = inside.all(|((first, last), raw)| (first..=last).contains(&raw));
+                let enclosed = statement.enclosed_operands(&limits);
+                let is_promised = statement.results[0].is_promised(&enclosed) != Some(false);
+                let [merged, own] = unit.both_results(opcode, &[a, b]);
+                !is_inside || !is_promised || merged == own
+            })
+        })
+    }
+
+    #[test]
+    fn a_wrong_unit_is_not_proved() {
+        const BITS: u32 = 6;
+        let (names, statements) = functions(BITS as i32);
+        let unit = find_unit(&stated(&names, &statements), true).unwrap();
+        let mut wrong = 0;
+        for plan in wrong_plans(&unit.plan) {
+            let unit = UnitPlan { plan, ..unit.clone() };
+            for (opcode, name) in names.iter().enumerate() {
+                if !has_results(&unit, opcode, BITS) {
+                    wrong += 1;
+                    let equality = unit.proved_equality(opcode);
+                    assert!(matches!(equality, UnitEquality::Open { .. }), "{name}: {equality:?}");
+                }
+            }
+        }
+        assert!(wrong > 100, "{wrong}");
     }
 
     #[test]

@@ -3,7 +3,6 @@
 //! A table of reciprocals of fractions from 1/2 on has values from 1 to 2. The value 2 alone needs the top bit, and a sign makes the factor one
 //! bit wider than the other factors. With v = 1 + r, the product v · b is b + r · b, and r has one bit less than v. Its bits are bits of v.
 
-use glint_base::fixed::Format;
 use glint_base::interval::Interval;
 
 use crate::node::{NodeId, Operation, PlanNode};
@@ -83,8 +82,9 @@ fn product_of_rest(
     let integer = plan.scale(&format!("{name}_integer"), v, format.frac)?;
     let top = plan.bit(&format!("{name}_top"), integer, format.width() - 1)?;
     let above = plan.scale(&format!("{name}_above"), top, width - 2)?;
-    let low = Format::unsigned(width - 2, 0);
-    let below = plan.low_bits(&format!("{name}_below"), integer, low)?;
+    let halves = plan.scale(&format!("{name}_halves"), integer, 2 - width)?;
+    let [_, fraction] = plan.split(&format!("{name}_halves"), halves)?;
+    let below = plan.scale(&format!("{name}_below"), fraction, width - 2)?;
     let rest = plan.add(&format!("{name}_rest"), above, below)?;
     let rest = plan.scale(&format!("{name}_rest"), rest, -format.frac)?;
     let of_rest = plan.multiply(&product.name, rest, b)?;

@@ -11,6 +11,7 @@ use glint_base::fixed::Format;
 use glint_formula::Enclosure;
 
 use super::align::{MergedOperation, SharedKind, TableRead, shared_operations, slots};
+use super::equality::MergedFunction;
 use super::factors::with_narrow_factors;
 use super::select::OpcodeChoices;
 use super::tables::{PagedTable, paged};
@@ -50,7 +51,7 @@ struct SetTable {
     paged: PagedTable,
 }
 
-/// Returns the merged plan. Its operands are `ports`, the opcode first, and its results are words with the given formats. With
+/// Returns the merged plan, and the nodes of each function in it. Its operands are `ports`, the opcode first, and its results are words with the given formats. With
 /// `shares_tables`, one table serves all polynomials of shared widths. A function can read it several times, one after the other.
 ///
 /// # Errors
@@ -60,7 +61,7 @@ pub(super) fn merged(
     ports: &[StatedOperand],
     results: &[(&'static str, Format)],
     shares_tables: bool,
-) -> Result<ExpressionPlan, PlanRefusal> {
+) -> Result<(ExpressionPlan, Vec<MergedFunction>), PlanRefusal> {
     let mut plan = ExpressionPlan { is_shared: true, ..ExpressionPlan::default() };
     let mut nodes = Vec::new();
     for (number, port) in ports.iter().enumerate() {
@@ -100,13 +101,28 @@ pub(super) fn merged(
     for (number, (name, format)) in results.iter().enumerate() {
         merger.add_result(number, name, *format)?;
     }
+    let nodes = merger.function_nodes();
     merger.choices.finish(&mut merger.plan);
-    Ok(merger.plan)
+    Ok((merger.plan, nodes))
 }
 
 impl Merger<'_> {
     pub(super) fn own(&self, function: usize) -> &ExpressionPlan {
         &self.plans[function]
+    }
+
+    /// Returns the nodes of each function in the merged plan.
+    fn function_nodes(&self) -> Vec<MergedFunction> {
+        let mut functions = Vec::new();
+        for (function, nodes) in self.nodes.iter().enumerate() {
+            let mut merged = Vec::new();
+            for (at, node) in nodes.iter().enumerate() {
+                let is_hidden = self.is_part_of_choice(function, NodeId(at));
+                merged.push((!is_hidden).then_some(*node));
+            }
+            functions.push(MergedFunction { plan: self.plans[function].clone(), merged });
+        }
+        functions
     }
 
     /// Returns the operations of each function that may be shared.

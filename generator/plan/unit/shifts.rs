@@ -12,6 +12,7 @@ use super::align::{MergedOperation, SharedKind};
 use super::merge::Merger;
 use super::sums::ResultSum;
 use super::tables::wide_enough;
+use super::unread::unread_bits;
 use crate::node::{NodeId, Operation};
 use crate::plan::ExpressionPlan;
 use crate::refusal::PlanRefusal;
@@ -171,30 +172,4 @@ impl Merger<'_> {
             }
         }
     }
-}
-
-/// Returns the number of low bits of a node that no other node reads, and no result.
-fn unread_bits(plan: &ExpressionPlan, node: NodeId) -> i32 {
-    if plan.results.contains(&node) {
-        return 0;
-    }
-    let frac = plan.node(node).format.frac;
-    let mut unread: Option<i32> = None;
-    for (at, reader) in plan.nodes.iter().enumerate() {
-        if !reader.operation.inputs().contains(&node) {
-            continue;
-        }
-        let dropped = frac - reader.format.frac;
-        let own = match reader.operation {
-            Operation::Scale(_) => unread_bits(plan, NodeId(at)),
-            Operation::Narrow(_, Rounding::Truncate) if dropped >= 0 => {
-                dropped + unread_bits(plan, NodeId(at))
-            }
-            // The adder reads the highest bit that is dropped.
-            Operation::Narrow(_, Rounding::Nearest) if dropped > 0 => dropped - 1,
-            _ => 0,
-        };
-        unread = Some(unread.map_or(own, |other| other.min(own)));
-    }
-    unread.unwrap_or(0)
 }

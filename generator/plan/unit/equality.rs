@@ -1,0 +1,412 @@
+//! Proves that the merged plan of a unit computes what the plan of each function computes alone, for all operands.
+//!
+//! The proof goes through the nodes of a function's plan in their order. The merged plan has a node for each of them. If the inputs of a
+//! node have the right values in the merged plan, so has the node itself:
+//!
+//! - The merged plan has the same operation on the nodes of the inputs, or
+//! - both are products, and the factors are equal, or
+//! - both values are computed for every combination of the inputs' values, and are equal.
+//!
+//! The opcode is a constant in the proof, so that a choice by the opcode is the case that it selects. Low bits that no reader of a node needs do
+//! not count. Combinations are computed whether or not their values can occur together. They may differ only where a value of the function alone
+//! exceeds its format: the proof of its error shows that it does not.
+
+use glint_base::fixed::Rounding;
+use glint_base::interval::{self, Interval};
+
+use super::unread::{bits_unread_by, unread_bits};
+use crate::node::{NodeId, Operation};
+use crate::plan::ExpressionPlan;
+
+/// The plan of a function, and where its values are in the merged plan.
+#[derive(Clone, Debug)]
+pub(super) struct MergedFunction {
+    /// The plan of the function, with narrow factors.
+    pub(super) plan: ExpressionPlan,
+    /// For each node of the plan, the node of the merged plan; `None` for a polynomial that the merged plan reads with another one.
+    pub(super) merged: Vec<Option<NodeId>>,
+}
+
+/// The most combinations of values for which the proof computes a node.
+const MOST_COMBINATIONS: u128 = 1 << 22;
+
+/// What the comparison of a unit with one of its functions found.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum UnitEquality {
+    /// The results are equal for all operands. The number counts the combinations of values that were computed.
+    Proved { combinations: u64 },
+    /// The proof does not reach a node, whose name this is. The unit need not be wrong.
+    Open { node: String },
+}
+
+/// The proof for one function.
+pub(super) struct FunctionProof<'u> {
+    merged: &'u ExpressionPlan,
+    own: &'u MergedFunction,
+    /// The values of the merged nodes that depend on the opcode alone.
+    constants: Vec<Option<i128>>,
+    combinations: u64,
+}
+
+/// The nodes from which two values are computed: the nodes of the function's plan that the values depend on, and the nodes between.
+struct Cones {
+    /// The inputs: nodes of the function's plan.
+    inputs: Vec<NodeId>,
+    own: Vec<NodeId>,
+    merged: Vec<NodeId>,
+}
+
+impl<'u> FunctionProof<'u> {
+    pub(super) fn new(merged: &'u ExpressionPlan, own: &'u MergedFunction, opcode: usize) -> Self {
+        let mut proof = Self { merged, own, constants: Vec::new(), combinations: 0 };
+        for at in 0..merged.nodes.len() {
+            let constant = proof.constant(NodeId(at), opcode as i64);
+            proof.constants.push(constant);
+        }
+        proof
+    }
+
+    /// Proves the nodes that the results read, and the results. `word` gives the word of a result at its port, from its number and its raw
+    /// value in the function's plan; a function may have fewer results than the unit. `operand` gives the raw value of an operand, from its
+    /// number and the word at its port.
+    pub(super) fn prove(
+        mut self,
+        operand: &dyn Fn(usize, i128) -> i128,
+        word: &dyn Fn(usize, i128) -> i128,
+    ) -> UnitEquality {
+        let own = &self.own.plan;
+        let is_read = own.read_nodes();
+        for at in (0..own.nodes.len()).filter(|at| is_read[*at]) {
+            let node = NodeId(at);
+            let Some(merged) = self.own.merged[at] else { continue };
+            let is_proved = match own.node(node).operation {
+                Operation::Operand(number) => {
+                    self.is_operand(node, merged, &|word| operand(number, word))
+                }
+                _ => self.is_equal(node, merged),
+            };
+            if !is_proved {
+                return self.open(node);
+            }
+        }
+        for (number, merged) in self.merged.results.clone().into_iter().enumerate() {
+            let is_proved = match own.results.get(number) {
+                Some(result) => self.is_result(*result, merged, &|raw| word(number, raw)),
+                None => self.constants[merged.0] == Some(0),
+            };
+            if !is_proved {
+                return self.open(own.results.get(number).copied().unwrap_or(NodeId(0)));
+            }
+        }
+        UnitEquality::Proved { combinations: self.combinations }
+    }
+
+    fn open(&self, node: NodeId) -> UnitEquality {
+        UnitEquality::Open { node: self.own.plan.node(node).name.clone() }
+    }
+
+    /// Returns the value of a node of the merged plan if it depends on the opcode alone. All nodes before it have their entries.
+    fn constant(&self, id: NodeId, opcode: i64) -> Option<i128> {
+        let node = self.merged.node(id);
+        match node.operation {
+            Operation::Operand(number) => (number == 0).then_some(opcode.into()),
+            Operation::Polynomial(..) => None,
+            _ => {
+                let inputs = self.merged_inputs(id);
+                if inputs.iter().any(|input| self.constants[input.0].is_none()) {
+                    return None;
+                }
+                let known = |input: NodeId| self.constants[input.0].unwrap_or(0);
+                Some(self.merged.value(id, &[opcode], &known))
+            }
+        }
+    }
+
+    /// Returns the nodes on which the value of a node of the merged plan depends.
+    fn merged_inputs(&self, id: NodeId) -> Vec<NodeId> {
+        if self.constants.get(id.0).is_some_and(Option::is_some) {
+            return Vec::new();
+        }
+        if let Operation::Choose { condition, cases } = self.merged.node(id).operation
+            && let Some(chosen) = self.constants[condition.0]
+        {
+            return vec![cases[chosen as usize]];
+        }
+        value_inputs(self.merged, id)
+    }
+
+    /// Returns whether the merged node has the value of an operand, for each word at the port.
+    fn is_operand(&mut self, own: NodeId, merged: NodeId, value: &dyn Fn(i128) -> i128) -> bool {
+        let Operation::Operand(number) = self.own.plan.node(own).operation else { return false };
+        let mut cone = Vec::new();
+        let mut port = None;
+        let mut open = vec![merged];
+        while let Some(node) = open.pop() {
+            if cone.contains(&node) || self.constants[node.0].is_some() {
+                continue;
+            }
+            cone.push(node);
+            if let Operation::Operand(of_unit) = self.merged.node(node).operation {
+                // Operand 0 of the unit is the opcode.
+                if of_unit != number + 1 {
+                    return false;
+                }
+                port = Some(node);
+            }
+            open.extend(self.merged_inputs(node));
+        }
+        cone.sort_by_key(|node| node.0);
+        let Some(port) = port else { return false };
+        let (first, last) = self.merged.node(port).format.range();
+        if last - first >= MOST_COMBINATIONS as i128 {
+            // The low bits of a word, in the format of the operand.
+            return cone.iter().all(|node| {
+                let operation = &self.merged.node(*node).operation;
+                *node == port
+                    || matches!(operation, Operation::Scale(_))
+                    || matches!(operation, Operation::Narrow(_, Rounding::Truncate))
+            });
+        }
+        if self.merged.node(merged).format.frac != self.own.plan.node(own).format.frac {
+            return false;
+        }
+        cone.retain(|node| *node != port);
+        let mut values = self.known_values();
+        for word in first..=last {
+            values[port.0] = word;
+            compute(self.merged, &cone, &mut values);
+            self.combinations += 1;
+            if values[merged.0] != value(word) {
+                return false;
+            }
+        }
+        true
+    }
+
+    /// Returns whether a node of the merged plan has the value of a node of the function's plan, apart from low bits that nothing reads.
+    fn is_equal(&mut self, own: NodeId, merged: NodeId) -> bool {
+        if self.is_copy(own, merged) {
+            return true;
+        }
+        let [own_node, merged_node] = [self.own.plan.node(own), self.merged.node(merged)];
+        if own_node.format.frac != merged_node.format.frac {
+            return false;
+        }
+        if let Operation::Multiply(a, b) = own_node.operation {
+            return self.is_product(own, merged, [a, b]);
+        }
+        let unread = unread_bits(&self.own.plan, own);
+        self.are_equal(own.0, own, merged, &|own, merged| own >> unread == merged >> unread)
+    }
+
+    /// Returns whether the merged node has the operation of the function's node, on the nodes of its inputs.
+    fn is_copy(&self, own: NodeId, merged: NodeId) -> bool {
+        let [own_node, merged_node] = [self.own.plan.node(own), self.merged.node(merged)];
+        let own_inputs = own_node.operation.inputs();
+        let inputs = merged_node.operation.inputs();
+        let mut pairs = own_inputs.iter().zip(&inputs);
+        // Equal words can have been shifted by different numbers of places.
+        let is_places = matches!(own_node.operation, Operation::Places(_));
+        !is_places
+            && own_node.is_alike(merged_node)
+            && own_inputs.len() == inputs.len()
+            && pairs.all(|(own, merged)| self.own.merged[own.0] == Some(*merged))
+    }
+
+    /// Returns whether the merged node has all bits of a product, whose factors have the values of the nodes `factors`.
+    fn is_product(&mut self, own: NodeId, merged: NodeId, factors: [NodeId; 2]) -> bool {
+        let range = self.own.plan.node(own).range;
+        let mut product = merged;
+        let [a, b] = loop {
+            let node = self.merged.node(product);
+            let is_kept = interval::fits(range, node.format);
+            product = match node.operation {
+                Operation::Multiply(a, b) => break [a, b],
+                Operation::Scale(before) if is_kept => before,
+                Operation::Narrow(before, _)
+                    if is_kept && self.merged.node(before).format.frac == node.format.frac =>
+                {
+                    before
+                }
+                _ => return false,
+            };
+        };
+        let same_raw = |own: i128, merged: i128| own == merged;
+        let mut have_values = |[first, second]: [NodeId; 2]| {
+            self.are_equal(own.0, first, a, &same_raw)
+                && self.are_equal(own.0, second, b, &same_raw)
+        };
+        have_values(factors) || have_values([factors[1], factors[0]])
+    }
+
+    /// Returns whether the merged node has the word of a result.
+    fn is_result(&mut self, own: NodeId, merged: NodeId, word: &dyn Fn(i128) -> i128) -> bool {
+        let end = self.own.plan.nodes.len();
+        self.are_equal(end, own, merged, &|own, merged| word(own) == merged)
+    }
+
+    /// Returns whether `compare` holds for the raw values of a node of the function's plan and of a node of the merged plan, for every
+    /// combination of the values of nodes before `end`, which are proved.
+    fn are_equal(
+        &mut self,
+        end: usize,
+        own: NodeId,
+        merged: NodeId,
+        compare: &dyn Fn(i128, i128) -> bool,
+    ) -> bool {
+        let Some(cones) = self.cones(end, own, merged) else { return false };
+        let mut values_of_inputs = Vec::new();
+        let mut combinations = 1u128;
+        for input in &cones.inputs {
+            let Some(values) = self.values_of(*input, &cones) else { return false };
+            combinations = combinations.saturating_mul(values.count());
+            values_of_inputs.push(values);
+        }
+        if combinations > MOST_COMBINATIONS {
+            return false;
+        }
+        let mut of_own = vec![0; self.own.plan.nodes.len()];
+        let mut of_merged = self.known_values();
+        for combination in 0..combinations {
+            let mut rest = combination;
+            for (input, values) in cones.inputs.iter().zip(&values_of_inputs) {
+                let raw = values.get(rest % values.count());
+                rest /= values.count();
+                of_own[input.0] = raw;
+                if let Some(merged) = self.own.merged[input.0] {
+                    of_merged[merged.0] = raw;
+                }
+            }
+            compute(&self.own.plan, &cones.own, &mut of_own);
+            compute(self.merged, &cones.merged, &mut of_merged);
+            let is_equal = compare(of_own[own.0], of_merged[merged.0]);
+            if !is_equal && fit_formats(&self.own.plan, &cones.own, &of_own) {
+                return false;
+            }
+        }
+        self.combinations += combinations as u64;
+        true
+    }
+
+    /// Returns the values of the merged nodes that depend on the opcode alone, and 0 for the others.
+    fn known_values(&self) -> Vec<i128> {
+        self.constants.iter().map(|constant| constant.unwrap_or(0)).collect()
+    }
+
+    /// Returns the nodes from which a node of the function's plan and a node of the merged plan are computed. Returns `None` if the merged
+    /// node reads a port.
+    fn cones(&self, end: usize, own: NodeId, merged: NodeId) -> Option<Cones> {
+        let mut inputs = Vec::new();
+        let mut merged_cone = Vec::new();
+        let mut open = vec![merged];
+        while let Some(node) = open.pop() {
+            if merged_cone.contains(&node) || self.constants[node.0].is_some() {
+                continue;
+            }
+            if let Some(input) = self.own_before(end, node) {
+                if !inputs.contains(&input) {
+                    inputs.push(input);
+                }
+                continue;
+            }
+            if let Operation::Operand(_) = self.merged.node(node).operation {
+                return None;
+            }
+            merged_cone.push(node);
+            open.extend(self.merged_inputs(node));
+        }
+        let mut own_cone = Vec::new();
+        let mut open = vec![own];
+        while let Some(node) = open.pop() {
+            if own_cone.contains(&node) || inputs.contains(&node) {
+                continue;
+            }
+            match self.own.plan.node(node).operation {
+                Operation::Operand(_) => inputs.push(node),
+                _ => {
+                    own_cone.push(node);
+                    open.extend(value_inputs(&self.own.plan, node));
+                }
+            }
+        }
+        own_cone.sort_by_key(|node| node.0);
+        merged_cone.sort_by_key(|node| node.0);
+        Some(Cones { inputs, own: own_cone, merged: merged_cone })
+    }
+
+    /// Returns the node of the function's plan before `end` whose value a merged node has.
+    fn own_before(&self, end: usize, merged: NodeId) -> Option<NodeId> {
+        let before = &self.own.merged[..end];
+        before.iter().position(|node| *node == Some(merged)).map(NodeId)
+    }
+
+    /// Returns the values that an input can have. Returns `None` if a cone reads bits of the input in which the merged node may differ.
+    fn values_of(&self, input: NodeId, cones: &Cones) -> Option<InputValues> {
+        let node = self.own.plan.node(input);
+        let of_own = bits_unread_by(&self.own.plan, input, &cones.own);
+        let of_merged = match self.own.merged[input.0] {
+            Some(merged) => bits_unread_by(self.merged, merged, &cones.merged),
+            None => of_own,
+        };
+        let dropped = of_own.min(of_merged);
+        if dropped < unread_bits(&self.own.plan, input) {
+            return None;
+        }
+        let mut range = node.range;
+        for reader in &cones.own {
+            if let Operation::Polynomial(operand, approximation) =
+                &self.own.plan.node(*reader).operation
+                && *operand == input
+            {
+                // The function promises nothing for operands beyond the domain of its table.
+                let (first, last) = approximation.function.domain;
+                range = (range.0.max(first.into()), range.1.min(last.into()));
+            }
+        }
+        let dropped = dropped.min(i32::try_from(node.format.width()).unwrap_or(0)) as u32;
+        Some(InputValues { range: (range.0 >> dropped, range.1 >> dropped), dropped })
+    }
+}
+
+/// Computes the values of nodes, in their order, from the values of the nodes before them.
+fn compute(plan: &ExpressionPlan, nodes: &[NodeId], values: &mut [i128]) {
+    for node in nodes {
+        values[node.0] = plan.value(*node, &[], &|input: NodeId| values[input.0]);
+    }
+}
+
+/// Returns whether the values of nodes fit their formats. The proof of the function's error shows that they do, for all operands for which the
+/// function promises a result. A fraction is the low bits of a number, and a choice can leave out a value that does not fit.
+fn fit_formats(plan: &ExpressionPlan, nodes: &[NodeId], values: &[i128]) -> bool {
+    let is_choice = |node: &NodeId| matches!(plan.node(*node).operation, Operation::Choose { .. });
+    nodes.iter().any(is_choice)
+        || nodes.iter().all(|node| {
+            let value = plan.whole_value(*node, &[], &|input: NodeId| values[input.0]);
+            let is_fraction = matches!(plan.node(*node).operation, Operation::FractionPart(..));
+            is_fraction || plan.node(*node).format.holds(value)
+        })
+}
+
+/// The raw values of an input that the proof computes: all multiples of a power of two within a range.
+struct InputValues {
+    range: Interval,
+    dropped: u32,
+}
+
+impl InputValues {
+    fn count(&self) -> u128 {
+        (self.range.1 - self.range.0 + 1).max(0).cast_unsigned()
+    }
+
+    fn get(&self, number: u128) -> i128 {
+        (self.range.0 + number.cast_signed()) << self.dropped
+    }
+}
+
+/// Returns the nodes that the value of a node depends on. The places of a shift depend on the word before it was shifted.
+fn value_inputs(plan: &ExpressionPlan, id: NodeId) -> Vec<NodeId> {
+    match plan.node(id).operation {
+        Operation::Places(normalised) => plan.node(normalised).operation.inputs(),
+        _ => plan.node(id).operation.inputs(),
+    }
+}
