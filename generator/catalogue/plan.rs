@@ -251,10 +251,8 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
             },
             Operation::Subtract(a, b) => match plan.is_inversion(*a, *b) {
                 true => {
-                    let format = plan.node(*a).format;
-                    let wide = format!("{name}_wide");
-                    let b = d.narrow(&wide, input(b), format, Rounding::Truncate, Overflow::Wrap);
-                    d.not(name, b)
+                    let wide = self.in_format(name, input(b), plan.node(*a).format);
+                    d.not(name, wide)
                 }
                 false => d.sub(name, input(a), input(b)),
             },

@@ -6,7 +6,7 @@
 //! combination of conditions has a constant base. One adder therefore computes the whole chain, although the plan has a
 //! difference and a choice for each mirror.
 
-use glint_base::fixed::Rounding;
+use glint_base::fixed::{Format, Rounding};
 
 use super::node::{NodeId, Operation};
 use super::plan::ExpressionPlan;
@@ -146,7 +146,9 @@ fn mirror_at(plan: &ExpressionPlan, id: NodeId) -> Option<(Mirror, NodeId, NodeI
         return None;
     };
     let Operation::Constant { raw, .. } = plan.node(constant).operation else { return None };
-    if subtrahend != value || readers(plan, mirrored) != [id] {
+    // The opposite of a bit needs no adder.
+    let is_bit = plan.node(value).format == Format::BIT;
+    if subtrahend != value || is_bit || readers(plan, mirrored) != [id] {
         return None;
     }
     let constant = (raw, plan.node(constant).format.frac);

@@ -25,7 +25,7 @@ pub use equality::UnitEquality;
 use equality::{FunctionProof, MergedFunction};
 
 use super::find::{ProvedPlan, find_set};
-use super::node::Operation;
+use super::node::{NodeId, Operation};
 use super::plan::ExpressionPlan;
 use super::refusal::PlanRefusal;
 use super::statement::{ExpressionStatement, StatedOperand};
@@ -134,6 +134,7 @@ impl UnitPlan {
             return Err((0, PlanRefusal::new(message, remedy)));
         }
         let mut unit = Self { functions, plan, operands, results, nodes, equalities: Vec::new() };
+        unit.rename_shared_nodes();
         let opcodes = (0..unit.functions.len()).into_par_iter();
         unit.equalities = opcodes.map(|opcode| unit.proved_equality(opcode)).collect();
         for (opcode, equality) in unit.equalities.iter().enumerate() {
@@ -142,6 +143,31 @@ impl UnitPlan {
             }
         }
         Ok(unit)
+    }
+
+    /// Leaves out the name of a function at the beginning of the name of a node that several functions read.
+    fn rename_shared_nodes(&mut self) {
+        let mut readers = vec![0; self.plan.nodes.len()];
+        for (opcode, nodes) in self.nodes.iter().enumerate() {
+            let is_read = FunctionProof::new(&self.plan, nodes, opcode).read_nodes();
+            for (count, is_read) in readers.iter_mut().zip(is_read) {
+                *count += usize::from(is_read);
+            }
+        }
+        for (at, readers) in readers.into_iter().enumerate() {
+            let is_operand = matches!(self.plan.nodes[at].operation, Operation::Operand(_));
+            let name = self.plan.nodes[at].name.clone();
+            let mut functions = self.functions.iter();
+            let without_function =
+                functions.find_map(|it| name.strip_prefix(&it.name)?.strip_prefix('_'));
+            if let Some(shared) = without_function
+                && readers > 1
+                && !is_operand
+            {
+                self.plan
+                    .rename(NodeId(at), shared.trim_end_matches(|it: char| it.is_ascii_digit()));
+            }
+        }
     }
 
     /// Returns the unit with another plan of one function, such as one whose table has other words.

@@ -101,6 +101,19 @@ impl<'u> FunctionProof<'u> {
         UnitEquality::Proved { combinations: self.combinations }
     }
 
+    /// Returns for each node of the merged plan whether the function reads it.
+    pub(super) fn read_nodes(&self) -> Vec<bool> {
+        let mut is_read = vec![false; self.merged.nodes.len()];
+        let mut open = self.merged.results.clone();
+        while let Some(node) = open.pop() {
+            if !is_read[node.0] {
+                is_read[node.0] = true;
+                open.extend(self.merged_inputs(node));
+            }
+        }
+        is_read
+    }
+
     fn open(&self, node: NodeId) -> UnitEquality {
         UnitEquality::Open { node: self.own.plan.node(node).name.clone() }
     }
