@@ -5,7 +5,8 @@
 //!
 //! - The merged plan has the same operation on the nodes of the inputs, or
 //! - both are products, and the factors are equal, or
-//! - both values are computed for every combination of the inputs' values, and are equal.
+//! - both values are computed for every combination of the inputs' values, and are equal. For sums and roundings of a long input, two periods are
+//!   enough ([`super::periods`]).
 //!
 //! The opcode is a constant in the proof, so that a choice by the opcode is the case that it selects. Low bits that no reader of a node needs do
 //! not count. Combinations are computed whether or not their values can occur together. They may differ only where a value of the function alone
@@ -14,6 +15,8 @@
 use glint_base::fixed::Rounding;
 use glint_base::interval::{self, Interval};
 
+use super::factors::table_values;
+use super::periods::{all_fit, fit_before_end, period_bits};
 use super::unread::{bits_unread_by, unread_bits};
 use crate::node::{NodeId, Operation};
 use crate::plan::ExpressionPlan;
@@ -27,8 +30,8 @@ pub(super) struct MergedFunction {
     pub(super) merged: Vec<Option<NodeId>>,
 }
 
-/// The most combinations of values for which the proof computes a node.
-const MOST_COMBINATIONS: u128 = 1 << 22;
+/// The most combinations of values for which the proof computes a node, in a unit of a user.
+pub(super) const MOST_COMBINATIONS: u128 = 1 << 22;
 
 /// What the comparison of a unit with one of its functions found.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -45,7 +48,22 @@ pub(super) struct FunctionProof<'u> {
     own: &'u MergedFunction,
     /// The values of the merged nodes that depend on the opcode alone.
     constants: Vec<Option<i128>>,
+    /// For each node of the function's plan, the number of low bits in which the merged node may differ.
+    unequal_bits: Vec<i32>,
+    /// The most combinations of values for which the proof computes a node.
+    most_combinations: u128,
     combinations: u64,
+}
+
+/// Two nodes whose values are compared.
+#[derive(Clone, Copy)]
+struct NodeComparison {
+    /// The nodes of the function's plan before this index are proved.
+    end: usize,
+    own: NodeId,
+    merged: NodeId,
+    /// The number of low bits that do not count.
+    unread: i32,
 }
 
 /// The nodes from which two values are computed: the nodes of the function's plan that the values depend on, and the nodes between.
@@ -57,8 +75,20 @@ struct Cones {
 }
 
 impl<'u> FunctionProof<'u> {
-    pub(super) fn new(merged: &'u ExpressionPlan, own: &'u MergedFunction, opcode: usize) -> Self {
-        let mut proof = Self { merged, own, constants: Vec::new(), combinations: 0 };
+    pub(super) fn new(
+        merged: &'u ExpressionPlan,
+        own: &'u MergedFunction,
+        opcode: usize,
+        most_combinations: u128,
+    ) -> Self {
+        let mut proof = Self {
+            merged,
+            own,
+            constants: Vec::new(),
+            unequal_bits: vec![0; own.plan.nodes.len()],
+            most_combinations,
+            combinations: 0,
+        };
         for at in 0..merged.nodes.len() {
             let constant = proof.constant(NodeId(at), opcode as i64);
             proof.constants.push(constant);
@@ -170,8 +200,11 @@ impl<'u> FunctionProof<'u> {
         }
         cone.sort_by_key(|node| node.0);
         let Some(port) = port else { return false };
+        if self.merged.node(merged).format != self.own.plan.node(own).format {
+            return false;
+        }
         let (first, last) = self.merged.node(port).format.range();
-        if last - first >= MOST_COMBINATIONS as i128 {
+        if last - first >= self.most_combinations.cast_signed() {
             // The low bits of a word, in the format of the operand.
             return cone.iter().all(|node| {
                 let operation = &self.merged.node(*node).operation;
@@ -179,9 +212,6 @@ impl<'u> FunctionProof<'u> {
                     || matches!(operation, Operation::Scale(_))
                     || matches!(operation, Operation::Narrow(_, Rounding::Truncate))
             });
-        }
-        if self.merged.node(merged).format.frac != self.own.plan.node(own).format.frac {
-            return false;
         }
         cone.retain(|node| *node != port);
         let mut values = self.known_values();
@@ -198,7 +228,10 @@ impl<'u> FunctionProof<'u> {
 
     /// Returns whether a node of the merged plan has the value of a node of the function's plan, apart from low bits that nothing reads.
     fn is_equal(&mut self, own: NodeId, merged: NodeId) -> bool {
-        if self.is_copy(own, merged) {
+        if self.is_copy(own, merged)
+            && let Some(unequal) = self.unequal_bits_of_copy(own)
+        {
+            self.unequal_bits[own.0] = unequal;
             return true;
         }
         let [own_node, merged_node] = [self.own.plan.node(own), self.merged.node(merged)];
@@ -209,7 +242,11 @@ impl<'u> FunctionProof<'u> {
             return self.is_product(own, merged, [a, b]);
         }
         let unread = unread_bits(&self.own.plan, own);
-        self.are_equal(own.0, own, merged, &|own, merged| own >> unread == merged >> unread)
+        [0, unread].into_iter().any(|unread| {
+            self.unequal_bits[own.0] = unread;
+            let nodes = NodeComparison { end: own.0, own, merged, unread };
+            self.are_equal(nodes, &|own, merged| own >> unread == merged >> unread)
+        })
     }
 
     /// Returns whether the merged node has the operation of the function's node, on the nodes of its inputs.
@@ -224,6 +261,27 @@ impl<'u> FunctionProof<'u> {
             && own_node.is_alike(merged_node)
             && own_inputs.len() == inputs.len()
             && pairs.all(|(own, merged)| self.own.merged[own.0] == Some(*merged))
+    }
+
+    /// Returns the number of low bits in which a node may differ from its copy in the merged plan. Returns `None` if these are not the low bits
+    /// of its input.
+    fn unequal_bits_of_copy(&self, own: NodeId) -> Option<i32> {
+        let node = self.own.plan.node(own);
+        let inputs = node.operation.inputs();
+        let of_inputs = inputs.iter().map(|input| self.unequal_bits[input.0]).max().unwrap_or(0);
+        match node.operation {
+            _ if of_inputs == 0 => Some(0),
+            Operation::Scale(_) => Some(of_inputs),
+            Operation::Narrow(input, rounding) => {
+                let dropped = self.own.plan.node(input).format.frac - node.format.frac;
+                match rounding {
+                    Rounding::Truncate => Some((of_inputs - dropped).max(0)),
+                    // A rounding to the nearest reads the highest bit that it drops.
+                    Rounding::Nearest => (of_inputs < dropped).then_some(0),
+                }
+            }
+            _ => None,
+        }
     }
 
     /// Returns whether the merged node has all bits of a product, whose factors have the values of the nodes `factors`.
@@ -245,9 +303,15 @@ impl<'u> FunctionProof<'u> {
             };
         };
         let same_raw = |own: i128, merged: i128| own == merged;
+        let compared = |factor: NodeId, merged: NodeId| NodeComparison {
+            end: own.0,
+            own: factor,
+            merged,
+            unread: 0,
+        };
         let mut have_values = |[first, second]: [NodeId; 2]| {
-            self.are_equal(own.0, first, a, &same_raw)
-                && self.are_equal(own.0, second, b, &same_raw)
+            self.are_equal(compared(first, a), &same_raw)
+                && self.are_equal(compared(second, b), &same_raw)
         };
         have_values(factors) || have_values([factors[1], factors[0]])
     }
@@ -255,27 +319,33 @@ impl<'u> FunctionProof<'u> {
     /// Returns whether the merged node has the word of a result.
     fn is_result(&mut self, own: NodeId, merged: NodeId, word: &dyn Fn(i128) -> i128) -> bool {
         let end = self.own.plan.nodes.len();
-        self.are_equal(end, own, merged, &|own, merged| word(own) == merged)
+        let nodes = NodeComparison { end, own, merged, unread: 0 };
+        self.are_equal(nodes, &|own, merged| word(own) == merged)
     }
 
     /// Returns whether `compare` holds for the raw values of a node of the function's plan and of a node of the merged plan, for every
-    /// combination of the values of nodes before `end`, which are proved.
-    fn are_equal(
-        &mut self,
-        end: usize,
-        own: NodeId,
-        merged: NodeId,
-        compare: &dyn Fn(i128, i128) -> bool,
-    ) -> bool {
-        let Some(cones) = self.cones(end, own, merged) else { return false };
+    /// combination of the values of nodes before them, which are proved.
+    fn are_equal(&mut self, nodes: NodeComparison, compare: &dyn Fn(i128, i128) -> bool) -> bool {
+        let NodeComparison { own, merged, .. } = nodes;
+        let Some(cones) = self.cones(nodes.end, own, merged) else { return false };
         let mut values_of_inputs = Vec::new();
-        let mut combinations = 1u128;
         for input in &cones.inputs {
             let Some(values) = self.values_of(*input, &cones) else { return false };
-            combinations = combinations.saturating_mul(values.count());
             values_of_inputs.push(values);
         }
-        if combinations > MOST_COMBINATIONS {
+        let count = |values: &[InputValues]| {
+            values.iter().fold(1u128, |product, it| product.saturating_mul(it.count()))
+        };
+        let has_periods = count(&values_of_inputs) > self.most_combinations;
+        if has_periods {
+            for (input, values) in cones.inputs.iter().zip(&mut values_of_inputs) {
+                if let Some(bits) = self.period_bits(*input, &cones) {
+                    values.keep_two_periods(bits + nodes.unread);
+                }
+            }
+        }
+        let combinations = count(&values_of_inputs);
+        if combinations > self.most_combinations {
             return false;
         }
         let mut of_own = vec![0; self.own.plan.nodes.len()];
@@ -293,12 +363,25 @@ impl<'u> FunctionProof<'u> {
             compute(&self.own.plan, &cones.own, &mut of_own);
             compute(self.merged, &cones.merged, &mut of_merged);
             let is_equal = compare(of_own[own.0], of_merged[merged.0]);
-            if !is_equal && fit_formats(&self.own.plan, &cones.own, &of_own) {
+            let are_whole = !has_periods
+                || all_fit(&self.own.plan, &cones.own, &of_own)
+                    && fit_before_end(self.merged, merged, &cones.merged, &of_merged);
+            if !are_whole || !is_equal && fit_formats(&self.own.plan, &cones.own, &of_own) {
                 return false;
             }
         }
         self.combinations += combinations as u64;
         true
+    }
+
+    /// Returns the number of bits whose power of two is a period of both cones in an input.
+    fn period_bits(&self, input: NodeId, cones: &Cones) -> Option<i32> {
+        let of_own = period_bits(&self.own.plan, input, &cones.own)?;
+        let of_merged = match self.own.merged[input.0] {
+            Some(merged) => period_bits(self.merged, merged, &cones.merged)?,
+            None => 0,
+        };
+        Some(of_own.max(of_merged))
     }
 
     /// Returns the values of the merged nodes that depend on the opcode alone, and 0 for the others.
@@ -362,10 +445,10 @@ impl<'u> FunctionProof<'u> {
             None => of_own,
         };
         let dropped = of_own.min(of_merged);
-        if dropped < unread_bits(&self.own.plan, input) {
+        if dropped < self.unequal_bits[input.0] {
             return None;
         }
-        let mut range = node.range;
+        let mut range = table_values(&self.own.plan, input).unwrap_or(node.range);
         for reader in &cones.own {
             if let Operation::Polynomial(operand, approximation) =
                 &self.own.plan.node(*reader).operation
@@ -377,7 +460,8 @@ impl<'u> FunctionProof<'u> {
             }
         }
         let dropped = dropped.min(i32::try_from(node.format.width()).unwrap_or(0)) as u32;
-        Some(InputValues { range: (range.0 >> dropped, range.1 >> dropped), dropped })
+        let range = (range.0 >> dropped, range.1 >> dropped);
+        Some(InputValues { range, last: None, dropped })
     }
 }
 
@@ -400,19 +484,34 @@ fn fit_formats(plan: &ExpressionPlan, nodes: &[NodeId], values: &[i128]) -> bool
         })
 }
 
-/// The raw values of an input that the proof computes: all multiples of a power of two within a range.
+/// The raw values of an input that the proof computes: all multiples of a power of two within a range, and perhaps one more.
 struct InputValues {
     range: Interval,
+    /// A multiple beyond the range, the last one that the input has.
+    last: Option<i128>,
     dropped: u32,
 }
 
 impl InputValues {
     fn count(&self) -> u128 {
-        (self.range.1 - self.range.0 + 1).max(0).cast_unsigned()
+        let within = (self.range.1 - self.range.0 + 1).max(0).cast_unsigned();
+        within + u128::from(self.last.is_some())
     }
 
     fn get(&self, number: u128) -> i128 {
-        (self.range.0 + number.cast_signed()) << self.dropped
+        let multiple = self.range.0 + number.cast_signed();
+        let beyond = self.last.filter(|_| multiple > self.range.1);
+        beyond.unwrap_or(multiple) << self.dropped
+    }
+
+    /// Leaves two periods of 2 to the power of `bits`, and the last value.
+    fn keep_two_periods(&mut self, bits: i32) {
+        let period = 1i128 << (bits - self.dropped as i32).clamp(0, 100);
+        let (first, last) = self.range;
+        if last - first > 2 * period {
+            self.range = (first, first + 2 * period - 1);
+            self.last = Some(last);
+        }
     }
 }
 

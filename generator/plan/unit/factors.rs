@@ -55,7 +55,7 @@ fn has_wide_top(plan: &ExpressionPlan, factor: NodeId) -> bool {
 }
 
 /// Returns the smallest and the largest raw value of a node that has the value of a table; `None` for other nodes.
-fn table_values(plan: &ExpressionPlan, node: NodeId) -> Option<Interval> {
+pub(super) fn table_values(plan: &ExpressionPlan, node: NodeId) -> Option<Interval> {
     match &plan.node(node).operation {
         Operation::Scale(before) => table_values(plan, *before),
         Operation::Polynomial(_, approximation) => {

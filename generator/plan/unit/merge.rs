@@ -51,8 +51,9 @@ struct SetTable {
     paged: PagedTable,
 }
 
-/// Returns the merged plan, and the nodes of each function in it. Its operands are `ports`, the opcode first, and its results are words with the given formats. With
-/// `shares_tables`, one table serves all polynomials of shared widths. A function can read it several times, one after the other.
+/// Returns the merged plan, and the nodes of each function in it. Its operands are `ports`, the opcode first, and its results are words with the
+/// given formats. With `shares_tables`, one table serves all polynomials of shared widths. A function can read it several times, one after
+/// the other.
 ///
 /// # Errors
 /// Fails if an operation has too many bits.

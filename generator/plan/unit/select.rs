@@ -107,31 +107,26 @@ impl OpcodeChoices {
         let mut common = cases.to_vec();
         for at in 0..common.len() {
             let Some(case) = common[at] else { continue };
-            let source = self.source_of(plan, case);
-            let frac = plan.node(case).format.frac;
-            let is_alike: Vec<bool> = common
-                .iter()
-                .map(|other| {
-                    other.is_some_and(|other| {
-                        plan.node(other).format.frac == frac
-                            && self.source_of(plan, other) == source
-                    })
-                })
-                .collect();
-            let alike = || common.iter().zip(&is_alike).filter(|(_, it)| **it);
-            let formats = alike().filter_map(|(node, _)| Some(plan.node((*node)?).format));
-            let format = formats.reduce(wide_enough).expect("the case itself");
-            if alike().all(|(node, _)| *node == Some(case)) {
+            let WordBits { word, dropped } = self.source_of(plan, case);
+            let mut format = plan.node(case).format;
+            let mut alike = Vec::new();
+            for (place, other) in common.iter().enumerate() {
+                let Some(other) = *other else { continue };
+                let own = plan.node(other).format;
+                let has_same_bits = self.source_of(plan, other) == WordBits { word, dropped };
+                if has_same_bits && own.frac == format.frac {
+                    format = wide_enough(format, own);
+                    alike.push(place);
+                }
+            }
+            if alike.iter().all(|place| common[*place] == Some(case)) {
                 continue;
             }
-            let WordBits { word, dropped } = source;
-            let scaled = plan.node(word).format.frac - dropped - frac;
-            let bits = plan.scale(name, word, scaled)?;
+            let exponent = plan.node(word).format.frac - dropped - format.frac;
+            let bits = plan.scale(name, word, exponent)?;
             let bits = plan.low_bits(name, bits, format)?;
-            for (other, is_alike) in common.iter_mut().zip(is_alike) {
-                if is_alike {
-                    *other = Some(bits);
-                }
+            for place in alike {
+                common[place] = Some(bits);
             }
         }
         Ok(common)

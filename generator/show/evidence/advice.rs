@@ -54,7 +54,9 @@ struct Better {
 pub fn of(core: &Core) -> Option<Advice> {
     let device = core.device();
     let bound = core.contract.bounds().governing().clone();
-    let first = better(device, core.config(), &bound)?;
+    // A smaller bound of outputs with other formats is in other units, and need not be a smaller error.
+    let formats = output_formats(core.contract.as_ref());
+    let first = better(device, core.config(), &bound, &formats)?;
     let single = advice(device, core.config(), &first);
     if bound.keeps() {
         return Some(single);
@@ -64,7 +66,7 @@ pub fn of(core: &Core) -> Option<Advice> {
         if here.bound.keeps() {
             return Some(advice(device, core.config(), &needed(device, core.config(), here)));
         }
-        match better(device, &here.config, &here.bound) {
+        match better(device, &here.config, &here.bound, &formats) {
             Some(next) => here = next,
             None => break,
         }
@@ -72,11 +74,9 @@ pub fn of(core: &Core) -> Option<Advice> {
     Some(single)
 }
 
-/// Changes the key that reduces the bound most, by the smallest of [`STEPS`] that reduces it at all.
-fn better(device: &Device, config: &Config, bound: &Bound) -> Option<Better> {
+/// Changes the key that reduces the bound most, by the smallest of [`STEPS`] that reduces it at all. The outputs keep their `formats`.
+fn better(device: &Device, config: &Config, bound: &Bound, formats: &[Format]) -> Option<Better> {
     let schema = (device.schema)();
-    // A smaller bound of outputs with other formats is in other units, and need not be a smaller error.
-    let formats = output_formats(contract_of(device, config)?.as_ref());
     for step in STEPS {
         let mut best: Option<Better> = None;
         for (key, value) in candidates(&schema, config, bound, step) {
