@@ -147,7 +147,8 @@ impl UnitPlan {
         Ok(unit)
     }
 
-    /// Leaves out the name of a function at the beginning of the name of a node that several functions read.
+    /// Leaves out the name of a function at the beginning of the name of a node that several functions read, unless nets of the hardware could
+    /// then have the same name.
     fn rename_shared_nodes(&mut self) {
         let mut readers = vec![0; self.plan.nodes.len()];
         for (opcode, nodes) in self.nodes.iter().enumerate() {
@@ -162,12 +163,11 @@ impl UnitPlan {
             let mut functions = self.functions.iter();
             let without_function =
                 functions.find_map(|it| name.strip_prefix(&it.name)?.strip_prefix('_'));
-            if let Some(shared) = without_function
-                && readers > 1
-                && !is_operand
-            {
-                self.plan
-                    .rename(NodeId(at), shared.trim_end_matches(|it: char| it.is_ascii_digit()));
+            let Some(shared) = without_function.map(without_number) else { continue };
+            let mut others = self.plan.nodes.iter().map(|node| node.name.as_str());
+            let is_free = !others.any(|other| other != name && may_share_nets(shared, other));
+            if readers > 1 && !is_operand && is_free {
+                self.plan.rename(NodeId(at), shared);
             }
         }
     }
@@ -186,6 +186,22 @@ impl UnitPlan {
         functions[opcode].planned = Arc::new(planned);
         Self::of_functions(functions, shares_tables).map_err(|(_, refusal)| refusal)
     }
+}
+
+/// Returns a name without the number at its end.
+fn without_number(name: &str) -> &str {
+    name.trim_end_matches(|it: char| it.is_ascii_digit())
+}
+
+/// Returns whether nets of two nodes could have the same name, because one name is the other with an ending. A net has the name of its node with
+/// an ending, such as `curve_bits`.
+fn may_share_nets(name: &str, other: &str) -> bool {
+    let is_longer = |longer: &str, name: &str| {
+        let ending = longer.strip_prefix(without_number(name));
+        let after_number = ending.map(|it| it.trim_start_matches(|it: char| it.is_ascii_digit()));
+        after_number.is_some_and(|it| it.starts_with('_'))
+    };
+    is_longer(name, other) || is_longer(other, name)
 }
 
 /// Returns whether a result depends on the opcode, which is operand 0.

@@ -134,6 +134,39 @@ fn each_function_of_the_preset_takes_its_own_clocks() {
     assert_eq!(clocks, expected.map(|(name, clocks)| (name, Some(clocks))));
 }
 
+/// A value that several functions read has a name without a function, which no other net has.
+#[test]
+fn shared_values_have_names_of_their_own() {
+    let text = r#"
+device = "unit"
+name = "u"
+architecture = "sequential"
+
+[functions.f0]
+operands.x = { bits = 11, fraction = 11 }
+results.q = { formula = "x^(1/3)", fraction = 6, error = 0.9 }
+
+[functions.f1]
+operands.x = { bits = 11, fraction = 10, signed = true }
+operands.y = { bits = 11, fraction = 10, signed = true }
+results.a = { formula = "atan2(y, x) / pi", fraction = 14, error = 1.5, where = "x^2 + y^2 > 0" }
+
+[functions.f2]
+operands.x = { bits = 11, fraction = 9 }
+results.q = { formula = "exp(-x^2)", fraction = 4, error = 0.75 }
+
+[functions.f3]
+operands.x = { bits = 11, fraction = 11 }
+results.q = { formula = "x^2.2", fraction = 4, error = 0.75 }
+
+[functions.f4]
+operands.x = { bits = 14, fraction = 13, signed = true }
+results.q = { formula = "abs(x)", fraction = 4 }
+"#;
+    let core = parsed("u.toml", text);
+    assert_agrees(&core, 200, 1, "u");
+}
+
 #[test]
 fn an_opcode_without_a_function_gives_0() {
     let core = parsed("few.toml", SMALL);
