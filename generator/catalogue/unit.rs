@@ -5,7 +5,7 @@
 
 use glint_base::text;
 use glint_config::{Config, Shared};
-use glint_plan::{StatedResult, UnitEquality, UnitFunction, UnitPlan};
+use glint_plan::{COMPARED, StatedResult, UnitEquality, UnitFunction, UnitPlan};
 use glint_rtl::dsl::Designer;
 use glint_rtl::netlist::{About, CoreFunction, FunctionPort};
 
@@ -88,8 +88,8 @@ fn about(planned: &UnitPlan) -> About {
         if let UnitEquality::Open { node } = equality {
             notes.push(
                 format!(
-                    "Opcode {opcode}: the unit is not proved to have the results of the function alone, because of {node}; some \
-                     operands were compared."
+                    "Opcode {opcode}: Glint has not proved for all operands that the unit has the results of the function alone; the proof \
+                     ends at the operation {node}. The results are equal for {COMPARED} operands."
                 )
                 .into(),
             );

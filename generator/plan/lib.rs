@@ -78,7 +78,9 @@ pub use schedule::SMALLEST_BLOCK;
 pub use statement::{
     ExpressionStatement, StatedOperand, StatedOverflow, StatedResult, StatedWidth,
 };
-pub use unit::{MOST_FUNCTIONS, StatedFunction, UnitEquality, UnitFunction, UnitPlan, find_unit};
+pub use unit::{
+    COMPARED, MOST_FUNCTIONS, StatedFunction, UnitEquality, UnitFunction, UnitPlan, find_unit,
+};
 pub use written::target_function;
 
 #[cfg(test)]

@@ -79,7 +79,7 @@ impl PlanSchedule {
         present.filter(is_own).or_else(|| read.find(is_own))
     }
 
-    /// Returns the nodes whose values the register of `node` stores: `node` and those that share its register, in their order.
+    /// Returns the nodes whose values the register of `node` stores: `node`, and each node that shares its register, in their order.
     pub fn register_sharers(&self, node: NodeId) -> Vec<NodeId> {
         let owner = self.register_owners[node.0];
         let nodes = (0..self.register_owners.len()).map(NodeId);

@@ -39,7 +39,7 @@ const OPERAND_NAMES: [&str; 8] = ["a", "b", "c", "d", "e", "f", "g", "h"];
 const RESULT_NAMES: [&str; 8] = ["r", "s", "t", "u", "v", "w", "x", "y"];
 
 /// The number of operands for which [`find_unit`] compares a function with its own plan if it does not prove them equal.
-const COMPARED: u64 = 4096;
+pub const COMPARED: u64 = 4096;
 
 /// A function of a unit, as the user states it.
 pub struct StatedFunction {

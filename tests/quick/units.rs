@@ -167,6 +167,27 @@ results.q = { formula = "abs(x)", fraction = 4 }
     assert_agrees(&core, 200, 1, "u");
 }
 
+/// The logarithm is below 0, and passes the shifter that the reciprocal needs.
+#[test]
+fn a_negative_value_passes_the_shifter() {
+    let text = r#"
+device = "unit"
+name = "u"
+
+[functions.rcp]
+operands.x = { bits = 8, fraction = 4 }
+results.r = { formula = "1 / x", fraction = 4, where = "x > 0" }
+
+[functions.opposite]
+operands.x = { bits = 8, fraction = 4 }
+results.r = { formula = "-log2(x)", fraction = 6, where = "x > 0" }
+"#;
+    let core = parsed("u.toml", text);
+    let is_signed_shift = |net: &Net| net.name.starts_with("shifted_") && net.format.signed;
+    assert!(core.design.nets.iter().any(is_signed_shift));
+    assert_agrees(&core, 500, 1, "u");
+}
+
 #[test]
 fn an_opcode_without_a_function_gives_0() {
     let core = parsed("few.toml", SMALL);

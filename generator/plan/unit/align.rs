@@ -29,7 +29,7 @@ impl MergedOperation {
     }
 }
 
-/// What a function reads from a shared table: a polynomial of an operand, or one of two polynomials of the same operand.
+/// A read of a shared table by a function: a polynomial of an operand, or one of two polynomials of the same operand.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct TableRead {
     /// The operand of the polynomials.

@@ -33,7 +33,7 @@ pub(super) struct MergedFunction {
 /// The most combinations of values for which the proof computes a node, in a unit of a user.
 pub(super) const MOST_COMBINATIONS: u128 = 1 << 22;
 
-/// What the comparison of a unit with one of its functions found.
+/// The outcome of the proof that a unit has the results of one of its functions.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum UnitEquality {
     /// The results are equal for all operands. The number counts the combinations of values that were computed.

@@ -23,6 +23,7 @@ use crate::statement::StatedOperand;
 
 const ANYTHING: Enclosure = Enclosure::between(f64::NEG_INFINITY, f64::INFINITY);
 
+/// The merged plan so far, and where the values of each function are in it.
 pub(super) struct Merger<'u> {
     pub(super) functions: &'u [UnitFunction],
     /// The plan of each function, with narrow factors.
