@@ -52,6 +52,16 @@ struct SetTable {
     paged: PagedTable,
 }
 
+/// The place of a function's operand in the table of several functions.
+struct TablePlace {
+    /// The node of the operand's number within its page.
+    number: NodeId,
+    /// The page, or the first of several.
+    first_page: i128,
+    /// The node of the number of pages after the first one; `None` for a single page.
+    further_page: Option<NodeId>,
+}
+
 /// Returns the merged plan, and the nodes of each function in it. Its operands are `ports`, the opcode first, and its results are words with the
 /// given formats. With `shares_tables`, one table serves all polynomials of shared widths. A function can read it several times, one after
 /// the other.
@@ -416,38 +426,13 @@ impl Merger<'_> {
         };
         let table = &set.paged;
         let mut numbers = vec![None; self.functions.len()];
-        // The page of each function, or its first one, if a condition or the top of an operand's number selects one of several.
-        let mut first_pages = vec![0; 1 << opcode_bits(self.functions.len())];
         let mut further_pages = vec![None; self.functions.len()];
+        let mut first_pages = vec![0; 1 << opcode_bits(self.functions.len())];
         for (function, node) in members {
-            let read = self.table_read(*function, *node).expect("a node that reads a table");
-            let [zero, one] = read.polynomials.map(|polynomial| {
-                let mut all = set.members.iter();
-                all.position(|it| *it == (*function, polynomial)).expect("a page")
-            });
-            let operand = self.nodes[*function][read.operand.0];
-            let page_bits = table.page_bits[zero];
-            let bits = table.number_bits + page_bits;
-            let number = self.number(*function, operand, &set.tables[zero], bits)?;
-            let name = &self.functions[*function].name.clone();
-            let in_page = Format::unsigned(table.number_bits as i32, 0);
-            numbers[*function] = Some(self.narrow(&format!("{name}_in_page"), number, in_page)?);
-            let pages = [zero, one].map(|member| table.pages[member] as i128);
-            first_pages[*function] = pages[0].min(pages[1]);
-            if let Some(condition) = read.condition {
-                let condition = self.nodes[*function][condition.0];
-                further_pages[*function] = Some(self.page_beyond_first(name, condition, pages)?);
-            }
-            if page_bits > 0 {
-                let upper = self.plan.scale("number_above", number, -in_page.int)?;
-                let format = Format::unsigned(page_bits as i32, 0);
-                let name = format!("{name}_further_page");
-                let of_number = self.narrow(&name, upper, format)?;
-                further_pages[*function] = Some(match further_pages[*function] {
-                    Some(of_condition) => self.plan.add(&name, of_condition, of_number)?,
-                    None => of_number,
-                });
-            }
+            let place = self.place_in_table(*function, *node, &set)?;
+            numbers[*function] = Some(place.number);
+            further_pages[*function] = place.further_page;
+            first_pages[*function] = place.first_page;
         }
         let number = self.selected("number", &numbers)?;
         let first = self.plan.lookup("pages", self.opcode, first_pages.clone(), 0)?;
@@ -471,6 +456,46 @@ impl Merger<'_> {
             self.give(*function, *node, value)?;
         }
         Ok(())
+    }
+
+    /// Returns where a function reads a table at a node of its plan.
+    fn place_in_table(
+        &mut self,
+        function: usize,
+        node: NodeId,
+        set: &SetTable,
+    ) -> Result<TablePlace, PlanRefusal> {
+        let table = &set.paged;
+        let read = self.table_read(function, node).expect("a node that reads a table");
+        let [zero, one] = read.polynomials.map(|polynomial| {
+            let mut all = set.members.iter();
+            all.position(|it| *it == (function, polynomial)).expect("a page")
+        });
+        let operand = self.nodes[function][read.operand.0];
+        let page_bits = table.page_bits[zero];
+        let bits = table.number_bits + page_bits;
+        let whole_number = self.number(function, operand, &set.tables[zero], bits)?;
+        let name = self.functions[function].name.clone();
+        let in_page = Format::unsigned(table.number_bits as i32, 0);
+        let number = self.narrow(&format!("{name}_in_page"), whole_number, in_page)?;
+        let pages = [zero, one].map(|member| table.pages[member] as i128);
+        let first_page = pages[0].min(pages[1]);
+        let mut further_page = None;
+        if let Some(condition) = read.condition {
+            let condition = self.nodes[function][condition.0];
+            further_page = Some(self.page_beyond_first(&name, condition, pages)?);
+        }
+        if page_bits > 0 {
+            let upper = self.plan.scale("number_above", whole_number, -in_page.int)?;
+            let format = Format::unsigned(page_bits as i32, 0);
+            let name = format!("{name}_further_page");
+            let of_number = self.narrow(&name, upper, format)?;
+            further_page = Some(match further_page {
+                Some(of_condition) => self.plan.add(&name, of_condition, of_number)?,
+                None => of_number,
+            });
+        }
+        Ok(TablePlace { number, first_page, further_page })
     }
 
     /// Returns the page number `first` + `further`. The sum is wiring if the first page is a multiple of a power of two above `further`.

@@ -1,7 +1,7 @@
 //! Adds the results of a merged plan: an adder that the results of several functions share, and the choice of 0 where a function has
 //! no such result.
 
-use glint_base::fixed::{Format, Rounding};
+use glint_base::fixed::Format;
 
 use super::merge::Merger;
 use super::opcode_bits;
@@ -11,6 +11,13 @@ use crate::refusal::PlanRefusal;
 
 /// Results share an adder if at least so many of them need one.
 const FEWEST_ADDERS: usize = 2;
+
+/// The nodes of a result ±v + base of one function.
+struct SumParts {
+    value: NodeId,
+    is_negative: NodeId,
+    base: NodeId,
+}
 
 impl Merger<'_> {
     /// Adds result number `number` as a word of a format. A function without such a result, and an opcode without a function, give 0.
@@ -72,41 +79,15 @@ impl Merger<'_> {
         name: &str,
         sums: &[Option<ResultSum>],
     ) -> Result<NodeId, PlanRefusal> {
-        let frac = sums.iter().flatten().map(|sum| sum.frac).max().unwrap_or(0);
         let mut values = vec![None; sums.len()];
         let mut signs = vec![None; sums.len()];
         let mut bases = vec![None; sums.len()];
         for (function, sum) in sums.iter().enumerate() {
             let Some(sum) = sum else { continue };
-            let result = self.own(function).results[number];
-            let result_frac = self.own(function).node(result).format.frac;
-            let own = &self.functions[function].name.clone();
-            let routed = self.routed[function].filter(|_| number == 0);
-            let value = routed.unwrap_or(self.nodes[function][sum.value.0]);
-            let below_result = self.own(function).node(sum.value).format.frac - result_frac;
-            let name_of_value = format!("{own}_{name}_value");
-            let value = self.plan.scale(&name_of_value, value, result_frac)?;
-            let format = self.plan.node(value).format;
-            let kept = Format { frac: below_result.min(sum.frac), ..format };
-            values[function] = Some(self.narrow(&name_of_value, value, kept)?);
-            let conditions: Vec<NodeId> =
-                sum.conditions.iter().map(|condition| self.nodes[function][condition.0]).collect();
-            signs[function] = Some(self.is_odd(&format!("{own}_{name}_is_negative"), &conditions)?);
-            let mut base = self.constant_base(&format!("{own}_{name}_base"), sum, &conditions)?;
-            if let Some(addend) = sum.addend {
-                let addend = self.nodes[function][addend.0];
-                let scaled =
-                    self.plan.scale(&format!("{own}_{name}_addend"), addend, result_frac)?;
-                let whole = Format { frac: 0, ..self.plan.node(scaled).format };
-                let whole = self.plan.narrow(
-                    &format!("{own}_{name}_whole"),
-                    scaled,
-                    whole,
-                    Rounding::Truncate,
-                )?;
-                base = self.plan.add(&format!("{own}_{name}_base"), whole, base)?;
-            }
-            bases[function] = Some(base);
+            let parts = self.sum_parts(function, number, name, sum)?;
+            values[function] = Some(parts.value);
+            signs[function] = Some(parts.is_negative);
+            bases[function] = Some(parts.base);
         }
         let value = self.selected(&format!("{name}_value"), &values)?;
         let is_negative = self.selected(&format!("{name}_is_negative"), &signs)?;
@@ -121,10 +102,45 @@ impl Merger<'_> {
             }
         };
         let sum = self.plan.add(&format!("{name}_sum"), base, signed)?;
-        let whole =
-            Format { frac: self.plan.node(sum).format.frac.min(0), ..self.plan.node(sum).format };
-        debug_assert!(self.plan.node(sum).format.frac <= frac, "the fraction bits of a sum");
-        self.plan.narrow(&format!("{name}_whole"), sum, whole, Rounding::Truncate)
+        let format = self.plan.node(sum).format;
+        let whole = Format { frac: format.frac.min(0), ..format };
+        self.narrow(&format!("{name}_whole"), sum, whole)
+    }
+
+    /// Returns v, its sign and the base of a result of a function, in units of the last bit of this result.
+    fn sum_parts(
+        &mut self,
+        function: usize,
+        number: usize,
+        name: &str,
+        sum: &ResultSum,
+    ) -> Result<SumParts, PlanRefusal> {
+        let own = self.own(function);
+        let result_frac = own.node(own.results[number]).format.frac;
+        let below_result = own.node(sum.value).format.frac - result_frac;
+        let name = format!("{}_{name}", self.functions[function].name);
+        let routed = self.routed[function].filter(|_| number == 0);
+        let value = routed.unwrap_or(self.nodes[function][sum.value.0]);
+        let name_of_value = format!("{name}_value");
+        let value = self.plan.scale(&name_of_value, value, result_frac)?;
+        let kept = Format { frac: below_result.min(sum.frac), ..self.plan.node(value).format };
+        let value = self.narrow(&name_of_value, value, kept)?;
+        let mut conditions = Vec::new();
+        for condition in &sum.conditions {
+            conditions.push(self.nodes[function][condition.0]);
+        }
+        let is_negative = self.is_odd(&format!("{name}_is_negative"), &conditions)?;
+        let name_of_base = format!("{name}_base");
+        let constant = self.constant_base(&name_of_base, sum, &conditions)?;
+        let Some(addend) = sum.addend else {
+            return Ok(SumParts { value, is_negative, base: constant });
+        };
+        let addend = self.nodes[function][addend.0];
+        let scaled = self.plan.scale(&format!("{name}_addend"), addend, result_frac)?;
+        let whole = Format { frac: 0, ..self.plan.node(scaled).format };
+        let whole = self.narrow(&format!("{name}_whole"), scaled, whole)?;
+        let base = self.plan.add(&name_of_base, whole, constant)?;
+        Ok(SumParts { value, is_negative, base })
     }
 
     /// Returns a node that is 1 if an odd number of conditions is 1.
