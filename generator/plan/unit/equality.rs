@@ -68,9 +68,15 @@ struct NodeComparison {
 
 /// The nodes from which two values are computed: the nodes of the function's plan that the values depend on, and the nodes between.
 struct Cones {
-    /// The inputs: nodes of the function's plan.
-    inputs: Vec<NodeId>,
+    inputs: Vec<ConeInput>,
     own: Vec<NodeId>,
+    merged: Vec<NodeId>,
+}
+
+/// A proved node of the function's plan, from which a value is computed.
+struct ConeInput {
+    node: NodeId,
+    /// The nodes of the merged plan with the same raw value.
     merged: Vec<NodeId>,
 }
 
@@ -330,7 +336,7 @@ impl<'u> FunctionProof<'u> {
         let Some(cones) = self.cones(nodes.end, own, merged) else { return false };
         let mut values_of_inputs = Vec::new();
         for input in &cones.inputs {
-            let Some(values) = self.values_of(*input, &cones) else { return false };
+            let Some(values) = self.values_of(input, &cones) else { return false };
             values_of_inputs.push(values);
         }
         let count = |values: &[InputValues]| {
@@ -339,7 +345,7 @@ impl<'u> FunctionProof<'u> {
         let has_periods = count(&values_of_inputs) > self.most_combinations;
         if has_periods {
             for (input, values) in cones.inputs.iter().zip(&mut values_of_inputs) {
-                if let Some(bits) = self.period_bits(*input, &cones) {
+                if let Some(bits) = self.period_bits(input, &cones) {
                     values.keep_two_periods(bits + nodes.unread);
                 }
             }
@@ -355,8 +361,8 @@ impl<'u> FunctionProof<'u> {
             for (input, values) in cones.inputs.iter().zip(&values_of_inputs) {
                 let raw = values.get(rest % values.count());
                 rest /= values.count();
-                of_own[input.0] = raw;
-                if let Some(merged) = self.own.merged[input.0] {
+                of_own[input.node.0] = raw;
+                for merged in &input.merged {
                     of_merged[merged.0] = raw;
                 }
             }
@@ -375,12 +381,9 @@ impl<'u> FunctionProof<'u> {
     }
 
     /// Returns the number of bits whose power of two is a period of both cones in an input.
-    fn period_bits(&self, input: NodeId, cones: &Cones) -> Option<i32> {
-        let of_own = period_bits(&self.own.plan, input, &cones.own)?;
-        let of_merged = match self.own.merged[input.0] {
-            Some(merged) => period_bits(self.merged, merged, &cones.merged)?,
-            None => 0,
-        };
+    fn period_bits(&self, input: &ConeInput, cones: &Cones) -> Option<i32> {
+        let of_own = period_bits(&self.own.plan, &[input.node], &cones.own)?;
+        let of_merged = period_bits(self.merged, &input.merged, &cones.merged)?;
         Some(of_own.max(of_merged))
     }
 
@@ -392,16 +395,18 @@ impl<'u> FunctionProof<'u> {
     /// Returns the nodes from which a node of the function's plan and a node of the merged plan are computed. Returns `None` if the merged
     /// node reads a port.
     fn cones(&self, end: usize, own: NodeId, merged: NodeId) -> Option<Cones> {
-        let mut inputs = Vec::new();
+        let mut inputs: Vec<ConeInput> = Vec::new();
         let mut merged_cone = Vec::new();
         let mut open = vec![merged];
         while let Some(node) = open.pop() {
             if merged_cone.contains(&node) || self.constants[node.0].is_some() {
                 continue;
             }
-            if let Some(input) = self.own_before(end, node) {
-                if !inputs.contains(&input) {
-                    inputs.push(input);
+            if let Some(own_node) = self.own_before(end, node) {
+                match inputs.iter_mut().find(|input| input.node == own_node) {
+                    Some(input) if input.merged.contains(&node) => {}
+                    Some(input) => input.merged.push(node),
+                    None => inputs.push(ConeInput { node: own_node, merged: vec![node] }),
                 }
                 continue;
             }
@@ -414,11 +419,12 @@ impl<'u> FunctionProof<'u> {
         let mut own_cone = Vec::new();
         let mut open = vec![own];
         while let Some(node) = open.pop() {
-            if own_cone.contains(&node) || inputs.contains(&node) {
+            let is_input = inputs.iter().any(|input| input.node == node);
+            if own_cone.contains(&node) || is_input {
                 continue;
             }
             match self.own.plan.node(node).operation {
-                Operation::Operand(_) => inputs.push(node),
+                Operation::Operand(_) => inputs.push(ConeInput { node, merged: Vec::new() }),
                 _ => {
                     own_cone.push(node);
                     open.extend(value_inputs(&self.own.plan, node));
@@ -430,21 +436,33 @@ impl<'u> FunctionProof<'u> {
         Some(Cones { inputs, own: own_cone, merged: merged_cone })
     }
 
-    /// Returns the node of the function's plan before `end` whose value a merged node has.
+    /// Returns the node of the function's plan before `end` whose raw value a merged node has, perhaps with another binary point.
     fn own_before(&self, end: usize, merged: NodeId) -> Option<NodeId> {
         let before = &self.own.merged[..end];
-        before.iter().position(|node| *node == Some(merged)).map(NodeId)
+        let bits = self.without_scales(merged);
+        let same = before.iter().position(|node| *node == Some(merged));
+        let with_same_bits = || {
+            before.iter().position(|node| node.is_some_and(|it| self.without_scales(it) == bits))
+        };
+        same.or_else(with_same_bits).map(NodeId)
+    }
+
+    /// Returns the merged node from which a node differs only by its binary point.
+    fn without_scales(&self, mut merged: NodeId) -> NodeId {
+        while let Operation::Scale(before) = self.merged.node(merged).operation {
+            merged = before;
+        }
+        merged
     }
 
     /// Returns the values that an input can have. Returns `None` if a cone reads bits of the input in which the merged node may differ.
-    fn values_of(&self, input: NodeId, cones: &Cones) -> Option<InputValues> {
+    fn values_of(&self, input: &ConeInput, cones: &Cones) -> Option<InputValues> {
+        let ConeInput { node: input, ref merged } = *input;
         let node = self.own.plan.node(input);
-        let of_own = bits_unread_by(&self.own.plan, input, &cones.own);
-        let of_merged = match self.own.merged[input.0] {
-            Some(merged) => bits_unread_by(self.merged, merged, &cones.merged),
-            None => of_own,
-        };
-        let dropped = of_own.min(of_merged);
+        let mut dropped = bits_unread_by(&self.own.plan, input, &cones.own);
+        for node in merged {
+            dropped = dropped.min(bits_unread_by(self.merged, *node, &cones.merged));
+        }
         if dropped < self.unequal_bits[input.0] {
             return None;
         }

@@ -9,11 +9,17 @@ use glint_base::fixed::Format;
 use crate::node::{NodeId, Operation};
 use crate::plan::ExpressionPlan;
 
-/// Returns the number of bits whose power of two is a period of the nodes of a cone in the input `input`. Returns `None` if a node of the cone
+/// Returns the number of bits whose power of two is a period of the nodes of a cone in an input, which the nodes `inputs` have. Returns `None` if a node of the cone
 /// is not a sum or a rounding of the input, or a choice that does not depend on it.
-pub(super) fn period_bits(plan: &ExpressionPlan, input: NodeId, cone: &[NodeId]) -> Option<i32> {
+pub(super) fn period_bits(
+    plan: &ExpressionPlan,
+    inputs: &[NodeId],
+    cone: &[NodeId],
+) -> Option<i32> {
     let mut dropped: Vec<Option<i32>> = vec![None; plan.nodes.len()];
-    dropped[input.0] = Some(0);
+    for input in inputs {
+        dropped[input.0] = Some(0);
+    }
     let mut most = 0;
     for id in cone {
         let node = plan.node(*id);
