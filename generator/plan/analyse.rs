@@ -154,7 +154,13 @@ pub(super) fn joins(plan: &ExpressionPlan, needed: &[bool], result: NodeId) -> V
         if !is_on_a_way[at] || !needed[at] {
             continue;
         }
-        for input in plan.nodes[at].operation.inputs() {
+        let operation = &plan.nodes[at].operation;
+        // A branch of a word decides whether the word is 0.
+        let branching = match operation {
+            Operation::NonZero(word) => normalised_words(plan, *word),
+            _ => Vec::new(),
+        };
+        for input in [operation.inputs(), branching].concat() {
             next[input.0] = match is_on_a_way[input.0] {
                 false => Some(at),
                 true => common_way(&next, next[input.0], Some(at)),
@@ -178,6 +184,12 @@ pub(super) fn joins(plan: &ExpressionPlan, needed: &[bool], result: NodeId) -> V
         joins[node] = join.filter(|join| *join != result.0).map(NodeId);
     }
     joins
+}
+
+/// Returns the nodes that normalise the word.
+fn normalised_words(plan: &ExpressionPlan, word: NodeId) -> Vec<NodeId> {
+    let normalises = |node: &PlanNode| matches!(node.operation, Operation::Normalise { word: own, .. } if own == word);
+    (0..plan.nodes.len()).filter(|at| normalises(&plan.nodes[*at])).map(NodeId).collect()
 }
 
 /// Returns limits that contain the values of all branches of an analysis, which `run` visits. The branches have the nodes in `known` and
@@ -614,6 +626,15 @@ impl ErrorAnalysis<'_> {
             Enclosure::between((before.low - unit).max(least), (before.high + unit).min(most))
         };
         match node.operation {
+            Operation::Constant { raw, .. } => Enclosure::exactly(node.format.to_f64(raw)),
+            Operation::Choose { condition, cases } => {
+                let [zero, one] = cases.map(input);
+                match fixed(input(condition)) {
+                    Some(0.0) => zero,
+                    Some(_) => one,
+                    None => zero.hull(one),
+                }
+            }
             Operation::Add(a, b) => input(a) + input(b),
             Operation::Subtract(a, b) => input(a) - input(b),
             Operation::Multiply(a, b) if a == b => squared(input(a)),
@@ -638,7 +659,9 @@ impl ErrorAnalysis<'_> {
                 shortened(a, after)
             }
             // A shift keeps the sign.
-            Operation::ShiftRight(a, _) | Operation::Scale(a) if input(a).low >= 0.0 => {
+            Operation::ShiftLeft(a, _) | Operation::ShiftRight(a, _) | Operation::Scale(a)
+                if input(a).low >= 0.0 =>
+            {
                 Enclosure::between(0.0, f64::INFINITY)
             }
             Operation::Middle(a) => {
@@ -647,6 +670,12 @@ impl ErrorAnalysis<'_> {
                 let (low, high) = raw_limits(input(a), before);
                 let [low, high] = [low, high].map(|raw| node.format.to_f64(middle(raw, places)));
                 shortened(a, Enclosure::between(low, high))
+            }
+            // The table was computed for every operand, so that its format is known. Without a sign, no value is below 0.
+            Operation::Polynomial(_, ref approximation)
+                if approximation.polynomials.is_some() && !node.format.signed =>
+            {
+                Enclosure::between(0.0, f64::INFINITY)
             }
             _ => ANYTHING,
         }

@@ -232,11 +232,6 @@ impl LimitedPart {
     }
 }
 
-/// Returns whether a formula is a polynomial of operands, whose value the plan computes without rounding.
-pub(super) fn is_polynomial(statement: &ExpressionStatement, formula: &Expression) -> bool {
-    OperandPolynomial::of(formula, statement).is_some()
-}
-
 /// Returns whether the conditions of the uses of a part state a fact about the part itself.
 pub(super) fn has_fact(
     statement: &ExpressionStatement,

@@ -69,7 +69,7 @@ impl GuardedFormula {
         let is_guarded = |kind: &Kind| {
             let is_extreme =
                 matches!(kind, Kind::Binary(Operator::Max | Operator::Min, a, _) if a.varies());
-            is_extreme || matches!(kind, Kind::If(..))
+            is_extreme || matches!(kind, Kind::If(..)) || order::is_mixture(kind)
         };
         let is_plain = facts.is_empty() && !formula.has(&is_guarded);
         if is_plain {

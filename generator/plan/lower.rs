@@ -19,6 +19,7 @@ mod root;
 mod shape;
 mod table;
 mod wave;
+mod whole_root;
 
 pub(crate) use quotient::fewest_dividends;
 pub(crate) use table::has_functions_of_operands;
@@ -47,6 +48,7 @@ use rational::{
 };
 use shape::{core_of, dyadic, floor_of, modulus_exponent, number, power_of_two, products_of};
 use table::is_short_operand;
+use whole_root::WholeRoot;
 
 /// The widest operand of a table of polynomials, in bits. A wider one is shortened first.
 const WIDEST_OPERAND: u32 = 20;
@@ -447,7 +449,10 @@ impl<'s> Lowering<'s> {
             return self.operation(part);
         }
         let has_remainder = part.has(&|kind| matches!(kind, Kind::Binary(Operator::Mod, ..)));
-        let is_kept = self.guards.style.keeps_functions && is_short_operand(self.statement, core);
+        let has_whole_root = has_remainder && part.count(&whole_root::is_whole_root) > 0;
+        let is_kept = self.guards.style.keeps_functions
+            && is_short_operand(self.statement, core)
+            && !has_whole_root;
         let core = match has_remainder || is_kept {
             true => core.clone(),
             false => self.table_operand(part, core)?,
@@ -458,6 +463,9 @@ impl<'s> Lowering<'s> {
         if has_remainder && rational_quotient(&core).is_some_and(|it| Self::is_exact_quotient(&it))
         {
             // The integer part of a quotient is exact; a table would read a rounded quotient.
+            return self.operation(part);
+        }
+        if has_whole_root {
             return self.operation(part);
         }
         if self.can_be_one_table(part, &core)? {
@@ -618,6 +626,11 @@ impl<'s> Lowering<'s> {
                 Ok(whole)
             }
             Operator::Sub if let Some(exponent) = floor_of(a, b) => {
+                if let Some(root) = WholeRoot::of_difference(a, b)
+                    && let Some(node) = self.whole_root(&root, part)?
+                {
+                    return Ok(node);
+                }
                 let [whole, _] = self.division(a, exponent)?;
                 Ok(whole)
             }

@@ -1,8 +1,9 @@
-//! Limits that follow from a maximum or a minimum for parts of formulas that compare numbers with it.
+//! Limits of parts of formulas in which the same part occurs twice, so that interval arithmetic, which counts both as independent,
+//! shows no limit.
 //!
 //! A number minus a maximum that includes it is never above 0: `v0 - max(v0, v1)` ≤ 0. At least one of these
 //! differences is 0, so that a sum of functions of all of them has a lower limit: `exp(v0 - m) + exp(v1 - m)` ≥ 1, with m the
-//! maximum. Interval arithmetic alone shows neither, because it counts the number and the maximum as independent.
+//! maximum. A mixture `x + (y - x) * t` with t from 0 to 1 lies between x and y.
 
 use std::sync::Arc;
 
@@ -35,7 +36,8 @@ pub(super) fn limits(part: &Expression, operands: &[(&str, Enclosure)]) -> Enclo
             }
         }
         Kind::Binary(Operator::Add, ..) => {
-            if let Some(least) = least_sum(part, operands) {
+            let least = least_sum(part, operands).or_else(|| least_of_mixture(part, operands));
+            if let Some(least) = least {
                 limits.low = least;
             }
         }
@@ -144,6 +146,27 @@ fn least_sum(sum: &Expression, operands: &[(&str, Enclosure)]) -> Option<f64> {
     (numbers.is_empty() && least.is_finite()).then_some(least)
 }
 
+/// Returns whether a formula is a mixture `x + (y - x) * t`.
+pub(super) fn is_mixture(kind: &Kind) -> bool {
+    mixture_of(kind).is_some()
+}
+
+/// Returns x, y and t of a mixture `x + (y - x) * t`. Returns `None` for another formula.
+fn mixture_of(kind: &Kind) -> Option<[&Expression; 3]> {
+    let Kind::Binary(Operator::Add, first, product) = kind else { return None };
+    let Kind::Binary(Operator::Mul, difference, share) = &product.kind else { return None };
+    let Kind::Binary(Operator::Sub, second, subtracted) = &difference.kind else { return None };
+    (subtracted == first).then_some([first, second, share])
+}
+
+/// Returns a lower limit of a mixture `x + (y - x) * t`, with x and y not below 0 and t from 0 to 1. Returns `None` for another sum.
+fn least_of_mixture(sum: &Expression, operands: &[(&str, Enclosure)]) -> Option<f64> {
+    let [first, second, share] = mixture_of(&sum.kind)?;
+    let share = share.enclose(operands).ok()?;
+    let ends = first.enclose(operands).ok()?.hull(second.enclose(operands).ok()?);
+    (ends.low >= 0.0 && share.low >= 0.0 && share.high <= 1.0).then_some(ends.low)
+}
+
 /// Returns the first part of a term that is the difference of a number and a maximum with this number.
 fn difference_in(term: &Expression) -> Option<&Expression> {
     if let Kind::Binary(Operator::Sub, number, largest) = &term.kind
@@ -179,6 +202,18 @@ mod tests {
         assert_eq!(limits_of("max(a, b, c) - min(c, b)").low, 0.0);
         assert_eq!(limits_of("min(a, b) - max(b, c)").high, 0.0);
         assert_eq!(limits_of("max(a, b) - min(c, 2)").low, f64::NEG_INFINITY);
+    }
+
+    #[test]
+    fn a_mixture_lies_between_its_ends() {
+        let share = "(a + 4) / 8";
+        assert_eq!(limits_of(&format!("b^2 + (c^2 - b^2) * ({share})")).low, 0.0);
+        assert_eq!(limits_of(&format!("(b^2 + 2) + (3 - (b^2 + 2)) * ({share})")).low, 2.0);
+        // An end below 0, a share above 1, and another number in the difference state nothing.
+        let nothing = f64::NEG_INFINITY;
+        assert_eq!(limits_of(&format!("b + (c^2 - b) * ({share})")).low, nothing);
+        assert_eq!(limits_of("b^2 + (c^2 - b^2) * ((a + 5) / 8)").low, nothing);
+        assert_eq!(limits_of(&format!("b^2 + (c^2 - a^2) * ({share})")).low, nothing);
     }
 
     /// Returns whether a lower limit is `exact`, or just below it.

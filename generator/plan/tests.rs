@@ -279,6 +279,44 @@ fn integer_parts_and_powers_of_0_keep_their_bounds() {
     assert!(proved.len() >= 6, "only these are proved: {proved:?}");
 }
 
+/// A root that is rounded down, up or to the nearest integer is exact, also beside squares of integers, where an estimate alone could
+/// take the wrong integer. The expected integers come from integer arithmetic.
+#[test]
+fn whole_roots_are_exact() {
+    let format = Format::unsigned(26, 0);
+    let exact_results =
+        ["floor(sqrt(x))", "ceil(sqrt(x))", "round(sqrt(x))", "floor(4 * sqrt(x) / 3)"];
+    let results = exact_results.map(|formula| result("r", formula, 0)).to_vec();
+    let nearest = StatedResult { error: 0.5, ..result("nearest", "sqrt(0.3 * x)", 2) };
+    let results = [results, vec![nearest]].concat();
+    let statement = ExpressionStatement { operands: vec![operand("x", format)], results };
+    let found = find(&statement).expect("a plan");
+    assert_eq!(found.bounds[..4], [0.0; 4]);
+    assert!(found.bounds[4] <= 0.5 + ROUNDING, "{:?}", found.bounds);
+    let mut operands = Vec::new();
+    for root in [0i64, 1, 2, 3, 100, 1447, 4095, 4096, 5792, 8191] {
+        for square in [root * root, root * (root + 1), root * root * 9 / 16] {
+            operands.extend([square - 1, square, square + 1]);
+        }
+    }
+    operands.retain(|x| (0..1 << 26).contains(x));
+    assert!(operands.len() > 80, "{operands:?}");
+    for x in operands {
+        let values = found.plan.values(&[x]);
+        let given: Vec<i128> = found.plan.results.iter().map(|node| values[node.0]).collect();
+        let x = x as u64;
+        let down = x.isqrt();
+        let up = if down * down == x { down } else { down + 1 };
+        // round(√x) is the floor of (√(4 · x) + 1) / 2.
+        let near = ((4 * x).isqrt() + 1) / 2;
+        let scaled = (16 * x / 9).isqrt();
+        // With two fraction bits, √(0.3 · x) is a quarter of √(4.8 · x) = √(24 · x / 5).
+        let nearest = ((4 * 24 * x / 5).isqrt() + 1) / 2;
+        let expected = [down, up, near, scaled, nearest].map(i128::from);
+        assert_eq!(given, expected, "x = {x}");
+    }
+}
+
 /// For operands outside their domains, every node still has a value of its format, like a net of the hardware.
 #[test]
 fn values_outside_the_domain_are_of_the_formats() {

@@ -28,7 +28,7 @@ const TINY: &str =
 operands.c = { bits = 3, fraction = 40 }\noperands.d = { bits = 3, fraction = 40 }";
 
 /// Operands, and results that other results read or that need no operation.
-const CASES: [(&str, &str); 50] = [
+const CASES: [(&str, &str); 53] = [
     (
         // A choice with a hole, divided by a constant; the root of a sum of integers; digits of a number of seconds.
         "operands.x = { bits = 6, fraction = 3, signed = true }\noperands.y = { bits = 5, fraction = 0 }",
@@ -73,6 +73,26 @@ operands.u = { bits = 3, fraction = 0 }\noperands.v = { bits = 3, fraction = 0 }
         "results.mean = { formula = \"if(u + v == 0, 0, (a * u + b * v) / (u + v))\", fraction = 0, error = 0.5 }
 results.blend = { formula = \"15 - (15 - a) * (15 - b) / 15\", fraction = 0, error = 0.5 }
 results.stretch = { formula = \"if(b > a, int(15 * (u - a) / (b - a)), 0)\", fraction = 0, error = 0.5, where = \"u >= a and b >= u\" }",
+    ),
+    (
+        // Integer roots are exact, and the nearest value of a root whose operand has constants that are not exact in binary.
+        "operands.a = { bits = 6, fraction = 1, signed = true }\noperands.b = { bits = 5, fraction = 0 }",
+        "results.down = { formula = \"floor(hypot(a, b))\", fraction = 0, error = 0.5 }
+results.up = { formula = \"ceil(2 * sqrt(abs(a * b)))\", fraction = 0, error = 0.5 }
+results.nearest = { formula = \"round(sqrt(a^2 + b))\", fraction = 0, error = 0.5 }
+results.root = { formula = \"sqrt(a^2 / 3 + 0.1 * b)\", fraction = 2, error = 0.5 }",
+    ),
+    (
+        // A mixture of numbers that are not negative is not negative, and nor is a discriminant where `where` says so.
+        "operands.a = { bits = 4, fraction = 4 }\noperands.b = { bits = 4, fraction = 4 }\noperands.t = { bits = 4, fraction = 4 }",
+        "results.mixed = { formula = \"sqrt(mix(a^2, b^2, t))\", fraction = 5 }
+results.solved = { formula = \"(-b + sqrt(b^2 - 4 * a * t)) / (2 * (a + 1/16))\", fraction = 4, where = \"b^2 - 4 * a * t >= 0\" }
+results.powers = { formula = \"sqrt(a^2.2 + b^2.2)\", fraction = 5 }",
+    ),
+    (
+        // Where the exponential function is 0, so is the dividend.
+        "operands.x = { bits = 7, fraction = 4, signed = true }\noperands.s = { from = 0.25, to = 1, fraction = 5 }",
+        "results.density = { formula = \"exp(-x^2 / (2 * s^2)) / s\", fraction = 6 }",
     ),
     (
         // The hue of a colour: quotients by the difference of a maximum and a minimum, where it is not 0.

@@ -11,9 +11,8 @@ use std::sync::Arc;
 use glint_base::fixed::{Format, Rounding, exp2};
 use glint_formula::{Comparison, Enclosure, Expression, Function, Kind, Operator, TextSpan};
 
-use super::nearest::has_no_function;
 use super::rational::{QuotientParts, quotient_of};
-use super::shape::number;
+use super::shape::{has_no_function, number};
 use super::{FixedGuard, KnownPart, Lowering};
 use crate::node::{NodeId, Operation, PlanNode, ValueAccuracy};
 use crate::refusal::PlanRefusal;

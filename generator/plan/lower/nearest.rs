@@ -1,48 +1,23 @@
 //! Rewrites a quotient or a square root of exact numbers so that the result is the nearest value, with an error of at most half a
 //! unit.
 //!
-//! An estimate with an error of at most a quarter of a unit, plus a quarter, rounded down, is the nearest value or the value below
-//! it. The exact difference of the operand and the square of this estimate decides which. A quotient is rounded by an integer
-//! division ([`super::division`]): the nearest integer to a / b is floor((a + b / 2) / b).
+//! A root is rounded by [`super::whole_root`]. A quotient is rounded by an integer division ([`super::division`]): the nearest integer
+//! to a / b is floor((a + b / 2) / b).
 
 use std::sync::Arc;
 
-use glint_base::fixed::{Format, Rounding, exp2};
-use glint_formula::{Comparison, Enclosure, Expression, Function, Kind, Operator, TextSpan};
+use glint_base::fixed::{Format, exp2};
+use glint_formula::{Comparison, Expression, Function, Kind, Operator, TextSpan};
 
+use super::Lowering;
 use super::rational::{QuotientParts, rational_quotient};
-use super::shape::number;
-use super::{FixedGuard, Lowering};
-use crate::facts::is_polynomial;
+use super::shape::{has_no_function, number};
+use super::whole_root::RootRounding;
 use crate::node::{NodeId, Operation, PlanNode, ValueAccuracy};
 use crate::refusal::PlanRefusal;
 
-/// The largest error of the estimate of a root, in units of the result.
-const LARGEST_ERROR: f64 = 0.25;
-
-/// The fraction bits beyond the result's that the estimate of a root has at least, and the most that are tried.
-const GUARD_BITS: std::ops::RangeInclusive<i32> = 2..=8;
-
-/// The integer bits of a root that its guard bits include.
-const FEW_BITS: i32 = 2;
-
 /// The largest power of two by which a formula is multiplied at once.
 const LARGEST_SHIFT: i32 = 30;
-
-/// Returns whether a formula has sums, products, remainders, absolute values and choices alone, so that its value can be exact.
-pub(super) fn has_no_function(formula: &Expression) -> bool {
-    let is_function = |kind: &Kind| match kind {
-        Kind::Unary(function, _) => !matches!(function, Function::Negate | Function::Abs),
-        Kind::Binary(operator, _, exponent) => match operator {
-            Operator::Power => exponent.varies(),
-            Operator::Div => exponent.varies(),
-            Operator::Atan2 => true,
-            _ => false,
-        },
-        _ => false,
-    };
-    !formula.has(&is_function)
-}
 
 impl Lowering<'_> {
     /// Returns the node of `formula`, rounded to the nearest value with `frac` fraction bits. Returns `None` unless `formula` is a
@@ -59,9 +34,9 @@ impl Lowering<'_> {
             return self.nearest_choice(comparison, yes, no, frac);
         }
         let integer = if let Kind::Unary(Function::Sqrt, square) = &formula.kind
-            && is_polynomial(self.statement, square)
+            && let Some(exact) = self.exact_root(square)?
         {
-            self.nearest_root(formula, square, frac)?
+            self.rounded_root(formula, &exact, frac, RootRounding::Nearest)?
         } else if let Some(QuotientParts { dividend, divisor }) = rational_quotient(formula)
             && has_no_function(&dividend)
             && has_no_function(&divisor)
@@ -161,62 +136,5 @@ impl Lowering<'_> {
         let dividend = binary(Operator::Add, &shifted, &half);
         let [whole, _] = self.whole_quotient(&dividend, b, span)?;
         Ok(whole)
-    }
-
-    /// Returns the node of the nearest integer n to √s · 2^`frac`. `root` must be the formula √s. Let m be the estimate, which is n
-    /// or n − 1. The nearest integer is m + 1 if s · 4^`frac` is at least (m + 1/2)² = m² + m + 1/4. Fails if a node has too many
-    /// bits.
-    fn nearest_root(
-        &mut self,
-        root: &Expression,
-        square: &Expression,
-        frac: i32,
-    ) -> Result<NodeId, PlanRefusal> {
-        let most = (self.range(root)?.high * exp2(frac)).floor() as i128 + 1;
-        let estimate = self.estimated_root(root, frac)?;
-        let scaled = self.plan.scale("root_estimate", estimate, frac)?;
-        let quarter = self.plan.constant("quarter", 1, 2)?;
-        let above = self.plan.add("root_above", scaled, quarter)?;
-        let floor = self.plan.shorten("root_floor", above, 0, Rounding::Truncate)?;
-        let integers = Format::holding(0, most, 0);
-        let first = self.plan.narrow("root_first", floor, integers, Rounding::Truncate)?;
-        let one = self.plan.constant("one", 1, 0)?;
-        let next = self.plan.add("root_next", first, one)?;
-        let product = self.plan.multiply("root_times_next", first, next)?;
-        let operand = self.part(square)?;
-        let operand = self.plan.scale("square_scaled", operand, 2 * frac)?;
-        let rest = self.plan.subtract("root_rest", operand, product)?;
-        // The estimate is at most one below the nearest integer, and at most half a unit above the root.
-        let limit = 2.0 * (most as f64 + 2.0);
-        let rest =
-            self.plan.limited("root_rest_limited", rest, Enclosure::between(-limit, limit))?;
-        let is_nearest = self.plan.less("root_is_nearest", rest, quarter)?;
-        let nearest = self.plan.choose("nearest_root", is_nearest, [next, first])?;
-        self.plan.narrow("nearest_root_within", nearest, integers, Rounding::Truncate)
-    }
-
-    /// Returns the node of an estimate of `root` with an error of at most a quarter of 2^−`frac`, for all results that read the part
-    /// that is being rewritten. Fails if no number of guard bits shows this, or if a node has too many bits.
-    fn estimated_root(&mut self, root: &Expression, frac: i32) -> Result<NodeId, PlanRefusal> {
-        // A factor of a large root needs as many bits more as the root has integer bits.
-        let bits = (self.range(root)?.high + 1.0).log2().ceil() as i32;
-        let value_bits = if bits <= FEW_BITS { 0 } else { bits };
-        for guard in GUARD_BITS {
-            let fixed = FixedGuard { guard: frac + guard - self.finest, value_bits };
-            let before = self.fixed_guard.replace(fixed);
-            let estimate = self.new_part(root);
-            self.fixed_guard = before;
-            let estimate = estimate?;
-            let unit = exp2(frac - self.plan.node(estimate).format.frac);
-            let errors = self.errors_by_result(estimate);
-            let mut readers = self.uses.readers.iter().zip(&errors).filter(|(reads, _)| **reads);
-            if readers.all(|(_, units)| *units * unit <= LARGEST_ERROR) {
-                return Ok(estimate);
-            }
-        }
-        Err(PlanRefusal::new(
-            "Glint finds no estimate of this root with an error below a quarter of a unit",
-            "give the operands fewer bits, or allow a larger error",
-        ))
     }
 }

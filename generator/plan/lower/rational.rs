@@ -80,9 +80,9 @@ pub(super) fn quotient_of(formula: &Expression) -> Option<QuotientParts> {
 }
 
 /// A formula whose constants are exact in binary, and an odd number above 0 by which it is divided.
-struct OverNumber {
-    dividend: Expression,
-    divisor: RBig,
+pub(super) struct OverNumber {
+    pub(super) dividend: Expression,
+    pub(super) divisor: RBig,
 }
 
 impl OverNumber {
@@ -162,8 +162,9 @@ pub(super) fn without_fractions(comparison: &Comparison) -> Option<Comparison> {
     (divisor != RBig::ONE).then_some(Comparison { left, right, or_equal })
 }
 
-/// Returns `None` for a formula with a function, a quotient by a number that varies, or an irrational constant.
-fn over_number(formula: &Expression) -> Option<OverNumber> {
+/// Writes a formula with constants that are exact in binary, over an odd number. Returns `None` for a formula with a function, a quotient
+/// by a number that varies, or an irrational constant.
+pub(super) fn over_number(formula: &Expression) -> Option<OverNumber> {
     let with_kind = |kind: Kind| Expression::new(kind, formula.span.clone());
     if !formula.varies() {
         let value = formula.rational()?;
@@ -256,7 +257,8 @@ fn odd_part(value: RBig) -> (isize, RBig) {
     }
 }
 
-fn times(formula: &Expression, factor: &RBig) -> Expression {
+/// Returns a formula times a number, or the formula itself for the number 1.
+pub(super) fn times(formula: &Expression, factor: &RBig) -> Expression {
     if *factor == RBig::ONE {
         return formula.clone();
     }

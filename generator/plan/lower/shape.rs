@@ -84,6 +84,21 @@ fn is_only_read_through(formula: &Expression, core: &Expression, part: &Expressi
     replaced.count(&|inner| inner == core) == 0
 }
 
+/// Returns whether a formula has sums, products, remainders, absolute values and choices alone, so that its value can be exact.
+pub(super) fn has_no_function(formula: &Expression) -> bool {
+    let is_function = |kind: &Kind| match kind {
+        Kind::Unary(function, _) => !matches!(function, Function::Negate | Function::Abs),
+        Kind::Binary(operator, _, exponent) => match operator {
+            Operator::Power => exponent.varies(),
+            Operator::Div => exponent.varies(),
+            Operator::Atan2 => true,
+            _ => false,
+        },
+        _ => false,
+    };
+    !formula.has(&is_function)
+}
+
 /// Returns whether a part is the absolute value of `core`.
 pub(super) fn is_size_of(part: &Expression, core: &Expression) -> bool {
     matches!(&part.kind, Kind::Unary(Function::Abs, a) if **a == *core)

@@ -13,6 +13,12 @@ use crate::range::LIMIT_THE_OPERANDS;
 use crate::refusal::PlanRefusal;
 use crate::statement::ExpressionStatement;
 
+/// The number of parts of a domain in which the values of a function are enclosed.
+const PIECES: i64 = 64;
+
+/// The most parts that are halved because interval arithmetic shows no limits of the values in them.
+const MOST_HALVINGS: usize = 1000;
+
 impl Lowering<'_> {
     /// Returns the part of `part` whose value a table reads: `core`, or a part that dominates it. A table over the values of `core`
     /// would be large where a part is limited, or where a root, a reciprocal or a logarithm spans octaves. For example,
@@ -253,20 +259,28 @@ fn function_of_number(function: &Expression, number: f64) -> Option<Expression> 
     Some(function.substitute(&Expression::operand("x"), &value, &function.span))
 }
 
-/// Returns limits of the values of a function of x over the raw domain. Returns `None` if the limits are not finite.
+/// Returns limits of the values of a function of x over the raw domain. A part of the domain in which interval arithmetic shows no limits
+/// is halved, down to single operands: `sqrt(2 * x - x^2)` has a value for 2, and none for an interval about 2. Returns `None` if the
+/// limits are not finite.
 fn function_range(function: &Expression, operand: Format, domain: (i64, i64)) -> Option<Enclosure> {
-    const PIECES: i64 = 64;
     let (first, last) = domain;
-    let length = last - first;
+    let length = i128::from(last - first);
     let mut total: Option<Enclosure> = None;
-    for piece in 0..PIECES {
-        let end = |at: i64| {
-            let way = i128::from(length) * i128::from(at) / i128::from(PIECES);
-            operand.to_f64(i128::from(first) + way)
-        };
-        let x = Enclosure::between(end(piece), end(piece + 1));
-        let value = function.enclose(&[("x", x)]).ok().filter(|value| value.is_finite())?;
-        total = Some(total.map_or(value, |total| total.hull(value)));
+    let mut halvings = 0;
+    let end = |at: i64| first + (length * i128::from(at) / i128::from(PIECES)) as i64;
+    let mut open: Vec<(i64, i64)> = (0..PIECES).map(|at| (end(at), end(at + 1))).collect();
+    while let Some((from, to)) = open.pop() {
+        let x = Enclosure::between(operand.to_f64(from.into()), operand.to_f64(to.into()));
+        let value = function.enclose(&[("x", x)]).ok().filter(|value| value.is_finite());
+        match value {
+            Some(value) => total = Some(total.map_or(value, |total| total.hull(value))),
+            None if from == to || halvings == MOST_HALVINGS => return None,
+            None => {
+                halvings += 1;
+                let middle = from + (to - from) / 2;
+                open.extend([(from, middle), (middle + 1, to)]);
+            }
+        }
     }
     total
 }
