@@ -19,6 +19,7 @@ mod root;
 mod shape;
 mod table;
 mod wave;
+mod whole_line;
 mod whole_root;
 
 pub(crate) use quotient::fewest_dividends;
@@ -46,7 +47,9 @@ use errors::ErrorMemo;
 use rational::{
     QuotientParts, ceiling_of, floor_of_quotient, rational_quotient, with_single_division,
 };
-use shape::{core_of, dyadic, floor_of, modulus_exponent, number, power_of_two, products_of};
+use shape::{
+    core_of, dyadic, floor_of, has_no_function, modulus_exponent, number, power_of_two, products_of,
+};
 use table::is_short_operand;
 use whole_root::WholeRoot;
 
@@ -443,6 +446,12 @@ impl<'s> Lowering<'s> {
         {
             return Ok(node);
         }
+        if let Some(rewritten) = whole_line::with_remainder(part) {
+            return self.part(&rewritten);
+        }
+        if has_no_function(part) && part.count(&whole_line::is_irrational_division) > 0 {
+            return self.operation(part);
+        }
         let core = core_of(part);
         if products_of(part, core).is_some_and(|products| products <= MOST_PRODUCTS) || core == part
         {
@@ -591,6 +600,11 @@ impl<'s> Lowering<'s> {
                 Ok(fraction)
             }
             Operator::Mod => {
+                if whole_line::is_irrational_remainder(part)
+                    && let Some(node) = self.remainder_of_line(a, b, part)?
+                {
+                    return Ok(node);
+                }
                 let [_, remainder] = self.whole_quotient(a, b, &part.span)?;
                 Ok(remainder)
             }
@@ -628,6 +642,11 @@ impl<'s> Lowering<'s> {
             Operator::Sub if let Some(exponent) = floor_of(a, b) => {
                 if let Some(root) = WholeRoot::of_difference(a, b)
                     && let Some(node) = self.whole_root(&root, part)?
+                {
+                    return Ok(node);
+                }
+                if exponent == 0
+                    && let Some(node) = self.whole_of_line(a, part)?
                 {
                     return Ok(node);
                 }

@@ -308,10 +308,10 @@ fn whole_roots_are_exact() {
         let down = x.isqrt();
         let up = if down * down == x { down } else { down + 1 };
         // round(√x) is the floor of (√(4 · x) + 1) / 2.
-        let near = ((4 * x).isqrt() + 1) / 2;
+        let near = ((4 * x).isqrt() + 1) >> 1;
         let scaled = (16 * x / 9).isqrt();
         // With two fraction bits, √(0.3 · x) is a quarter of √(4.8 · x) = √(24 · x / 5).
-        let nearest = ((4 * 24 * x / 5).isqrt() + 1) / 2;
+        let nearest = ((4 * 24 * x / 5).isqrt() + 1) >> 1;
         let expected = [down, up, near, scaled, nearest].map(i128::from);
         assert_eq!(given, expected, "x = {x}");
     }

@@ -28,7 +28,7 @@ const TINY: &str =
 operands.c = { bits = 3, fraction = 40 }\noperands.d = { bits = 3, fraction = 40 }";
 
 /// Operands, and results that other results read or that need no operation.
-const CASES: [(&str, &str); 53] = [
+const CASES: [(&str, &str); 54] = [
     (
         // A choice with a hole, divided by a constant; the root of a sum of integers; digits of a number of seconds.
         "operands.x = { bits = 6, fraction = 3, signed = true }\noperands.y = { bits = 5, fraction = 0 }",
@@ -81,6 +81,15 @@ results.stretch = { formula = \"if(b > a, int(15 * (u - a) / (b - a)), 0)\", fra
 results.up = { formula = \"ceil(2 * sqrt(abs(a * b)))\", fraction = 0, error = 0.5 }
 results.nearest = { formula = \"round(sqrt(a^2 + b))\", fraction = 0, error = 0.5 }
 results.root = { formula = \"sqrt(a^2 / 3 + 0.1 * b)\", fraction = 2, error = 0.5 }",
+    ),
+    (
+        // The number of turns in an angle is exact, and so an angle is never a turn off.
+        "operands.a = { bits = 12, fraction = 7, signed = true }",
+        "results.turns = { formula = \"floor(a / (2 * pi))\", fraction = 0, error = 0.5 }
+results.rest = { formula = \"a % (2 * pi)\", fraction = 7 }
+results.wrapped = { formula = \"a - 2 * pi * floor((a + pi) / (2 * pi))\", fraction = 7 }
+results.nearest = { formula = \"a - round(a / (pi / 2)) * (pi / 2)\", fraction = 9 }
+results.sine = { formula = \"sin(mod(1 - 3 * a, 2 * pi))\", fraction = 8 }",
     ),
     (
         // A mixture of numbers that are not negative is not negative, and nor is a discriminant where `where` says so.
