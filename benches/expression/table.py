@@ -22,7 +22,7 @@ import tempfile
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 GLINT = ROOT / "target/release/glint"
 NAMES = ["divide", "hypot", "atan2", "polar", "sincos", "rotate", "pow", "multiply-add", "lerp", "attenuation"]
-SETTINGS = ["pipeline.clock_mhz=150", "pipeline.multipliers=registered", "pipeline.stall=none"]
+SETTINGS = ["pipeline.clock_mhz=150", "pipeline.multipliers=registered", "pipeline.stall=none", "pipeline.delays=auto"]
 
 
 def tools(directory):

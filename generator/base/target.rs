@@ -39,13 +39,18 @@ pub struct DelayMemory {
 }
 
 impl DelayMemory {
+    /// Returns the number of look-up tables of the memories for `words` words of `bits` bits, without the address counter.
+    pub fn tables_for(self, words: usize, bits: u32) -> u32 {
+        bits.div_ceil(self.width) * (words as u32).div_ceil(self.words) * self.tables
+    }
+
     /// Returns whether a memory of `words` words of `bits` bits takes fewer look-up tables and registers than the registers that
     /// it replaces. Its address counter counts too. On ECP5, 3 words of 4 bits do, and 2 words do not. A single word never does.
     pub fn pays(self, words: usize, bits: u32) -> bool {
+        let tables = self.tables_for(words, bits);
         let words = words as u32;
-        let memories = bits.div_ceil(self.width) * words.div_ceil(self.words);
         let counter = words.next_power_of_two().trailing_zeros();
-        words > 1 && words * bits > memories * self.tables + 2 * counter
+        words > 1 && words * bits > tables + 2 * counter
     }
 }
 
@@ -156,7 +161,7 @@ impl Chip {
 /// Estimates the cost of a core without synthesis.
 #[derive(Debug)]
 pub struct Estimate {
-    /// The weight of each number in `tune::Features` for the number of look-up tables. One weight is the constant number of every
+    /// The weight of each number in `glint_rtl::area::Features` for the number of look-up tables. One weight is the constant number of every
     /// core.
     pub weights: [f64; 6],
     /// The measured clock period divided by the period that the delays predict.
@@ -278,6 +283,11 @@ impl Timing {
     /// Returns the target with this name, such as `ecp5`.
     pub fn named(name: &str) -> Option<&'static Self> {
         TIMINGS.iter().find(|timing| timing.name == name)
+    }
+
+    /// Returns the family with these delays; `None` for the target without a family, `generic`.
+    pub fn family(&self) -> Option<&'static Family> {
+        FAMILIES.iter().find(|family| family.timing.name == self.name)
     }
 
     /// Returns the delay of an adder with `width` bits: 21 bits take 2.4 ns on ECP5.

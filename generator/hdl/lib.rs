@@ -40,6 +40,7 @@
 //! # Ok::<(), anyhow::Error>(())
 //! ```
 
+pub mod area;
 pub mod blocks;
 pub mod dsl;
 pub mod netlist;

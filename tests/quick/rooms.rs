@@ -13,7 +13,7 @@ use regex::Regex;
 /// The rooms of each crate that has several, from the bottom: a room imports from those before it. What a crate can see of others
 /// is in its `Cargo.toml`.
 const ROOMS: [(&str, &[&str]); 4] = [
-    ("hdl", &["netlist", "retime", "dsl", "blocks", "sim", "pipeline", "verilog"]),
+    ("hdl", &["netlist", "area", "retime", "dsl", "blocks", "sim", "pipeline", "verilog"]),
     ("core", &["observation", "package", "cosim", "registry", "core"]),
     ("show", &["figures", "evidence", "render", "pages"]),
     ("prove", &["batch", "synth", "equality", "certify", "mutate", "tune", "verify"]),

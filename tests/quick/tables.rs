@@ -14,13 +14,14 @@ use glint::base::text::{grouped, rounded_up};
 use glint::config::{Config, Value as ConfigValue};
 use glint::core::{Core, TEST_POINTS, TEST_SEED};
 use glint::evidence::comparison::{accuracy, clocks_per_point};
+use glint::hdl::area::Features;
 use glint::hdl::netlist::Pipeline;
 use glint::keys::function::{plan, schema};
 use glint::keys::presets;
 use glint::mutate::{GOAL_MEMORY, GOAL_TEXT};
 use glint::registry::Registry;
 use glint::synth::{self, Figures, Frequency, Rate, SynthesisRecord, Target};
-use glint::tune::{Cost, Features};
+use glint::tune::{self, Cost};
 use rayon::prelude::*;
 use serde::Deserialize;
 use serde_json::Value;
@@ -306,7 +307,8 @@ fn records_of_synthesis_are_of_todays_netlists() {
             let sum = |Features { adder, mux, logic, rom, product, delay }: Features| {
                 adder + mux + logic + rom + product + delay
             };
-            let (now, then) = (sum(Features::new(&core.design, target)), sum(netlist));
+            let (now, then) =
+                (sum(Features::new(&core.design, tune::family(target))), sum(netlist));
             assert!((now - then).abs() <= 0.05 * then, "{path}, {target}: {now}, was {then}");
             let mhz = Cost::new(&core.design, target).mhz;
             let apart = (mhz - estimated_mhz).abs();

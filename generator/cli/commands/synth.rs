@@ -23,7 +23,8 @@ use glint_core::registry::Registry;
 use glint_prove::synth::{
     Figures, Flow, RECORDED_TARGETS, Rate, SynthesisRecord, SynthesisSubject, TARGETS, Target,
 };
-use glint_prove::tune::{Cost, Features};
+use glint_prove::tune::{self, Cost};
+use glint_rtl::area::Features;
 use glint_show::evidence::comparison;
 use glint_tools::gates::cells::LIBERTY;
 use show::SynthesisReport;
@@ -270,7 +271,7 @@ impl Measurement<'_> {
         let design = &self.one.core.design;
         FigureRecord {
             figures,
-            netlist: Features::new(design, figures.target),
+            netlist: Features::new(design, tune::family(figures.target)),
             estimated_mhz: Cost::new(design, figures.target).mhz,
         }
     }

@@ -57,6 +57,7 @@ fn options(keys: &Shared) -> pipeline::Options {
         side: keys.side,
         delays: match keys.delays.as_str() {
             "registers" => pipeline::Delays::Registers,
+            "auto" => pipeline::Delays::Auto,
             _ => pipeline::Delays::Memory,
         },
     }

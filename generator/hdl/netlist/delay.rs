@@ -1,8 +1,10 @@
 //! Finds the delay lines of a pipeline, which the Verilog may replace by memories.
 
-use std::collections::BTreeMap;
+use std::cmp::Reverse;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::{Design, Driver, NetId, Op, Pipeline, RegId, WritePort};
+use glint_base::target::DelayMemory;
 
 /// Registers of a pipeline that carry values from one stage to a later stage, with no reader in between. All its values travel
 /// between the same two stages.
@@ -89,7 +91,43 @@ impl Design {
             let bits = line.values.iter().map(|it| self.width(it.data)).sum();
             memory.pays(line.words(), bits)
         });
+        self.retain_worthwhile(&mut lines, memory, pipeline.registers_beside_tables);
         lines
+    }
+
+    /// Removes the delay lines whose registers stand beside look-up tables that are there anyway. `beside_tables` is the number of these
+    /// registers. The lines with the most registers for each look-up table of their memory stay.
+    fn retain_worthwhile(
+        &self,
+        lines: &mut Vec<DelayLine>,
+        memory: DelayMemory,
+        beside_tables: u32,
+    ) {
+        let bits_of = |line: &DelayLine| -> u32 {
+            line.values.iter().map(|value| self.width(value.data)).sum()
+        };
+        let saved = |line: &DelayLine| bits_of(line) * line.words() as u32;
+        let tables = |line: &DelayLine| memory.tables_for(line.words(), bits_of(line));
+        let mut left = 0;
+        for (at, register) in self.registers.iter().enumerate() {
+            // The output register of a multiplier is inside its block.
+            if self.multiplier(RegId(at as u32)).is_none() {
+                left += self.width(register.q);
+            }
+        }
+        let mut beside_tables = beside_tables;
+        let mut best: Vec<&DelayLine> = lines.iter().collect();
+        best.sort_by_key(|line| Reverse((saved(line) / tables(line), line.from, line.to)));
+        let mut kept: BTreeSet<(usize, usize)> = BTreeSet::new();
+        for line in best {
+            if left <= beside_tables {
+                break;
+            }
+            kept.insert((line.from, line.to));
+            left -= saved(line);
+            beside_tables += tables(line);
+        }
+        lines.retain(|line| kept.contains(&(line.from, line.to)));
     }
 
     /// Returns the register that follows register `at` in a delay line: its only reader, with the same enable. Neither may have a

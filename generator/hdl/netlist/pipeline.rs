@@ -31,6 +31,9 @@ pub struct Pipeline {
     pub side: u32,
     /// The kind of memory that replaces delay lines in the Verilog. `None` if their registers stay.
     pub delay_memory: Option<DelayMemory>,
+    /// The number of registers that need no memory in their place, because they stand beside look-up tables that are there anyway.
+    /// Memories replace delay lines only until no more registers are left.
+    pub registers_beside_tables: u32,
     /// The stages, from the operands on. The results are in the registers behind the last one, so there are as many stages as
     /// clocks from a point to its results: `rough_pipelined` has 18.
     pub stages: Vec<Stage>,

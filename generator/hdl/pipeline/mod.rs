@@ -56,6 +56,8 @@ pub enum Delays {
     Memory,
     /// In a register at the end of each stage.
     Registers,
+    /// In registers as long as they stand beside look-up tables that the logic needs anyway, and beyond that in memories.
+    Auto,
 }
 
 /// A user's request, for example a clock of 100 MHz on ECP5, a point every clock, no stalls.

@@ -8,11 +8,13 @@ use super::sharing;
 use super::split::integer;
 use super::unroll::Unrolled;
 use super::{Delays, Goal, Options};
+use crate::area::Features;
 use crate::netlist::{
     self, About, Checkpoint, Delayed, Design, Driver, Net, NetId, NetlistRom, Op, Pipeline, Port,
     RegId, RegisterKind, Role, RomId, Stage, TABLE_LOAD, TABLE_READY, Topic, WritePort,
 };
 use glint_base::fixed::Format;
+use glint_base::target::Timing;
 
 /// Builds the netlist of a pipeline: the logic of every stage, the registers between stages, and the handshake. `sequential` is
 /// the design that was unrolled; names, comments and notes come from it. `interval` is the number of clocks between points.
@@ -42,7 +44,7 @@ pub fn assemble(
         interval,
         stall: options.stall,
         side: options.side,
-        delay_memory: options.target.delay_memory.filter(|_| options.delays == Delays::Memory),
+        delay_memory: options.target.delay_memory.filter(|_| options.delays != Delays::Registers),
         ..Pipeline::default()
     };
     let mut builder = StageBuilder {
@@ -81,8 +83,21 @@ pub fn assemble(
         _ => 3,
     });
     design.pipeline = Some(Pipeline { stages, checkpoints, ..pipeline });
+    if options.delays == Delays::Auto {
+        keep_registers_beside_tables(&mut design, options.target);
+    }
     count_delayed(&mut design);
     design
+}
+
+/// Lets as many registers stay in delay lines as the logic has look-up tables: each look-up table has a register beside it.
+fn keep_registers_beside_tables(design: &mut Design, target: &Timing) {
+    let Some(family) = target.family() else { return };
+    let features = Features::new(design, family);
+    let luts = features.luts(family) - features.delay;
+    if let Some(pipeline) = &mut design.pipeline {
+        pipeline.registers_beside_tables = luts as u32;
+    }
 }
 
 /// Moves bits that memories store in place of registers from the stages' `register_bits` to their `delayed_bits`.

@@ -245,6 +245,58 @@ fn a_delay_line_begins_behind_a_registered_multiplier() {
     assert!(values.iter().all(|it| it.registers.iter().all(|at| !registered.contains(at))));
 }
 
+/// Computes (x² + z)² + y with a wide y, which waits for the products, and compares another number with some constants.
+fn sum_behind_products(comparisons: u32) -> Design {
+    design(|d| {
+        let x = d.operand("x", Format::unsigned(9, 0));
+        let y = d.operand("y", Format::unsigned(40, 0));
+        let z = d.operand("z", Format::unsigned(17, 0));
+        let square = d.register("square", Format::unsigned(18, 0));
+        let near = d.register("near", Format::unsigned(19, 0));
+        let fourth = d.register("fourth", Format::unsigned(38, 0));
+        let total = d.register("total", Format::unsigned(41, 0));
+        square.takes(d.mul("x_square", x.q(), x.q()));
+        near.takes(d.add("near_sum", square.q(), z.q()));
+        fourth.takes(d.mul("near_square", near.q(), near.q()));
+        total.takes(d.add("total_sum", fourth.q(), y.q()));
+        d.output("total_out", total.q());
+        let compared = d.operand("compared", Format::unsigned(40, 0));
+        let mut is_any = d.less("below_first", compared.q(), z.q());
+        for number in 0..comparisons {
+            let limit = d.constant(
+                &format!("limit{number}"),
+                f64::from(2 * number + 1),
+                Format::unsigned(40, 0),
+            );
+            let is_below = d.less(&format!("below{number}"), compared.q(), limit);
+            is_any = d.xor(&format!("any{number}"), is_any, is_below);
+        }
+        d.output("any_out", is_any);
+        vec![
+            step("square", [square.load()]),
+            step("near", [near.load()]),
+            step("fourth", [fourth.load()]),
+            step("total", [total.load()]),
+        ]
+    })
+}
+
+/// Registers stay as long as there are no more than look-up tables, and memories replace those beyond them.
+#[test]
+fn registers_stay_beside_look_up_tables() {
+    let lines = |delays: Delays, comparisons: u32| {
+        let options = Options { delays, ..options(Goal::ClockMhz(120.0)) };
+        let made = pipeline(&sum_behind_products(comparisons), &options);
+        made.unwrap_or_else(|wrong| panic!("{wrong}")).delay_lines().len()
+    };
+    let [little_logic, much_logic] = [0, 12];
+    assert_eq!(lines(Delays::Memory, little_logic), 1);
+    assert_eq!(lines(Delays::Auto, little_logic), 1);
+    assert_eq!(lines(Delays::Memory, much_logic), 1);
+    assert_eq!(lines(Delays::Auto, much_logic), 0);
+    assert_eq!(lines(Delays::Registers, little_logic), 0);
+}
+
 /// Computes `(taken ? x : 0) + y`, and a fourth power that takes longer, so that the scheduler may delay the sum.
 fn row_beside_a_power() -> Design {
     design(|d| {

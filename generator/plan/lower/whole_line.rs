@@ -215,7 +215,7 @@ impl KnownLine {
         Some(near)
     }
 
-    /// Finds the constants with the fewest fraction bits whose integer parts are those of the line. `whole_at` must return the integer
+    /// Finds the constants with the fewest fraction bits that give the integer parts of the line. `whole_at` must return the integer
     /// part of the exact line at A. Returns `None` if no constants have these integer parts, or if an integer part is not known.
     fn exact_line(
         &self,

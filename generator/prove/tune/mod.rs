@@ -7,7 +7,6 @@
 //! DSP blocks. It also changes them to minimise DSP blocks, or if no other configuration fits the chip.
 
 pub mod architectures;
-mod bits;
 pub mod model;
 mod search;
 mod space;
@@ -20,7 +19,7 @@ use serde::Serialize;
 use glint_config::{Config, Shared, Value};
 use glint_core::registry::Device;
 use glint_golden::Bounds;
-pub use model::{Cost, Features, area};
+pub use model::{Cost, area, family};
 use search::Search;
 pub use search::{Answer, Candidate};
 use space::SearchSpace;

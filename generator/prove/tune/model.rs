@@ -1,39 +1,17 @@
 //! Estimates the area and the clock frequency of a core from its netlist, without synthesis.
 //!
-//! DSP blocks and block RAMs follow from the bit widths. LUTs are a weighted sum of [`Features`] of the netlist;
-//! `benches/tune/fit` fits the weights to records of `glint synth`. The frequency follows from the longest path between
+//! DSP blocks and block RAMs follow from the bit widths. LUTs are a weighted sum of [`Features`] of the netlist. The frequency follows from the longest path between
 //! registers, with the delays of [`Timing`](glint_base::target::Timing), which the scheduler of pipelines uses too.
 
 use std::collections::BTreeSet;
 
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
-use super::bits::BitSources;
 use crate::synth::Target;
 use glint_base::target::{ECP5, Family};
+use glint_rtl::area::{Features, slices};
 use glint_rtl::netlist::{Design, Driver, NetId, Op, RegId};
 use glint_rtl::pipeline::delay_of;
-
-/// Counts of a netlist's logic, from which the number of look-up tables is estimated. Bits that are constants, or copies of other bits
-/// (`bits.rs`), do not count.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Features {
-    /// The number of bits of sums, differences and comparisons.
-    pub adder: f64,
-    /// The number of bits of muxes, for each input beyond the first. For example, a mux of 3 inputs of 8 bits counts 16. A constant
-    /// input counts half.
-    pub mux: f64,
-    /// The number of bits of gates. A reduction counts a third of its operand's bits, and an equality a third of the bits of
-    /// both operands. Inverters do not count.
-    pub logic: f64,
-    /// The number of bits of the ROMs that are made of look-up tables, divided by 16.
-    pub rom: f64,
-    /// The number of bits in the sums of partial products: half the width of the product for each multiplier beyond the first.
-    /// For a family without DSP blocks, the number of look-up tables that its products take.
-    pub product: f64,
-    /// The number of look-up tables of delay memories.
-    pub delay: f64,
-}
 
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Cost {
@@ -45,8 +23,8 @@ pub struct Cost {
     pub mhz: f64,
 }
 
-/// Standard cells have no model of their own and use the model of ECP5, the most similar family.
-fn family(target: Target) -> &'static Family {
+/// Returns the family of a target. Standard cells have no model of their own and use the model of ECP5, the most similar family.
+pub fn family(target: Target) -> &'static Family {
     target.family().unwrap_or(&ECP5)
 }
 
@@ -54,13 +32,7 @@ impl Cost {
     /// For standard cells, the estimate is the one for ECP5.
     pub fn new(design: &Design, target: Target) -> Self {
         let family = family(target);
-        let features = Features::new(design, target);
-        let Features { adder, mux, logic, rom, product, delay } = features;
-        let parts = [adder, mux, logic, rom, product, 1.0];
-        let mut luts = delay;
-        for (part, weight) in parts.iter().zip(family.estimate.weights) {
-            luts += part * weight;
-        }
+        let luts = Features::new(design, family).luts(family);
         let mut dsps = 0;
         for net in &design.nets {
             if let Driver::Op(Op::Mul(a, b)) = net.driver
@@ -112,65 +84,6 @@ pub fn area(target: Target, luts: f64, dsps: u64, block_rams: u64) -> f64 {
     luts + dsp * dsps as f64 + block * block_rams as f64
 }
 
-impl Features {
-    /// For standard cells, the counts are the ones for ECP5.
-    pub fn new(design: &Design, target: Target) -> Self {
-        let family = family(target);
-        let sources = BitSources::of(design);
-        let mut sum = Self::default();
-        let width = |net: NetId| f64::from(design.width(net));
-        for (id, net) in design.iter() {
-            let Driver::Op(op) = &net.driver else {
-                continue;
-            };
-            match op {
-                Op::Add { a, b, .. } | Op::Sub(a, b) => {
-                    sum.adder += sources.added(id, *a, *b) as f64;
-                }
-                Op::Less(a, _) => sum.adder += width(*a),
-                Op::And(..) | Op::Or(..) | Op::Xor(..) => sum.logic += sources.computed(id) as f64,
-                Op::Any(a) | Op::All(a) => sum.logic += sources.varying(*a) as f64 / 3.0,
-                Op::Equal(a, _) => sum.logic += 2.0 * width(*a) / 3.0,
-                Op::Mux { inputs, .. } => sum.mux += sources.chosen(id, inputs),
-                Op::Mul(a, b) => {
-                    let factors = [*a, *b].map(|factor| sources.varying(factor) as u32);
-                    sum.product += luts_of_product(family, factors, width(id));
-                }
-                Op::Relabel(_) | Op::Extend(_) | Op::Slice { .. } | Op::Concat(_) | Op::Not(_) => {}
-            }
-        }
-        for rom in &design.roms {
-            let (words, width) = (rom.words.len() as u64, u64::from(design.width(rom.data)));
-            if !rom.synchronous || !family.timing.blocks.takes(words, width) {
-                sum.rom += (words * width) as f64 / 16.0;
-            }
-        }
-        if let Some(memory) = family.timing.delay_memory {
-            for line in design.delay_lines() {
-                let bits: u32 = line.values.iter().map(|value| design.width(value.data)).sum();
-                let memories =
-                    bits.div_ceil(memory.width) * (line.words() as u32).div_ceil(memory.words);
-                sum.delay += f64::from(memories * memory.tables);
-            }
-        }
-        sum
-    }
-}
-
-/// Returns the look-up tables of a product of factors with these numbers of varying bits: all, for a family without DSP blocks, and
-/// otherwise the bits in the sums of partial products. `width` is the width of the product.
-fn luts_of_product(family: &Family, factors: [u32; 2], width: f64) -> f64 {
-    let [a, b] = factors;
-    if let Some(product) = family.fabric_product {
-        let luts = product.luts;
-        return luts(u64::from(a), u64::from(b)) as f64;
-    }
-    let (wide, narrow) = family.timing.multiplier;
-    let one_way = slices(a, wide).len() * slices(b, narrow).len();
-    let other_way = slices(b, wide).len() * slices(a, narrow).len();
-    one_way.min(other_way).saturating_sub(1) as f64 * width / 2.0
-}
-
 /// Returns the number of DSP blocks of a product, with the operands in the order that takes fewer blocks.
 fn dsps_of_product(design: &Design, family: &Family, a: NetId, b: NetId) -> u64 {
     let [a, b] = [a, b].map(|net| {
@@ -194,18 +107,6 @@ fn dsps_one_way(family: &Family, first: u32, second: u32) -> u64 {
         }
     }
     blocks
-}
-
-/// Returns the widths of the slices into which Yosys divides an operand: slices of the width of a block, and a rest. A rest of
-/// a single bit is left out, because it becomes a row of gates. For example, 35 bits for blocks of 16 are 16, 16 and 3, and 33
-/// bits are 16 and 16.
-fn slices(operand: u32, block: u32) -> Vec<u32> {
-    let mut slices = vec![block; (operand / block) as usize];
-    let rest = operand % block;
-    if rest > 1 || operand < block {
-        slices.push(rest);
-    }
-    slices
 }
 
 /// Returns the smaller number of partial products in both orders. For example, on iCE40, whose blocks multiply 16 by 16 bits,

@@ -4,7 +4,7 @@
 
 use std::collections::BTreeSet;
 
-use glint_rtl::netlist::{Design, Driver, NetId, Op};
+use crate::netlist::{Design, Driver, NetId, Op};
 
 /// The origin of a bit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
