@@ -170,6 +170,9 @@ pub struct Estimate {
     pub sign: u32,
     /// A product, or a part of a wide product, becomes look-up tables instead of a DSP block if its result has fewer bits.
     pub least_product: u32,
+    /// The part of its own delay that a sum adds to the delay of a sum before it. It is below 1 where the low bits of the second sum
+    /// do not wait for the high bits of the first.
+    pub chained_sum: f64,
 }
 
 /// Kinds of cells in a netlist of Yosys, each with the number of resources that it counts for: `("CCU2C", 2)` counts each carry

@@ -70,7 +70,7 @@ keys! {
             .only_when("architecture", "pipelined"),
         delays: String = Key::choice("pipeline.delays", "memory", &["memory", "registers", "auto"],
             "How the pipeline delays values that no logic reads for several stages. memory: small memories in \
-             look-up tables, if the target has them. registers: one register per stage. auto: registers, which stand \
+             look-up tables, if the target has them. registers: one register per stage. auto: registers, which are \
              beside the look-up tables of the logic, and memories for values beyond them.").only_when("architecture", "pipelined"),
         side: u32 = Key::integer("pipeline.side", 0, 0..=64,
             "The width of side_in and side_out, which carry data of a point past the pipeline. For example, \

@@ -65,5 +65,6 @@ pub const ECP5: Family = Family {
         scale: 0.98,
         sign: 0,
         least_product: 9,
+        chained_sum: 1.0,
     },
 };

@@ -77,6 +77,7 @@ pub const GATEMATE: Family = Family {
         scale: 1.0,
         sign: 0,
         least_product: 9,
+        chained_sum: 1.0,
     },
 };
 

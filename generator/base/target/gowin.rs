@@ -76,6 +76,7 @@ const ESTIMATE: Estimate = Estimate {
     scale: 1.0,
     sign: 0,
     least_product: 9,
+    chained_sum: 1.0,
 };
 
 /// The delays are for speed grade C8/I7 and the chip GW2AR-18 of the Tang Nano 20K.

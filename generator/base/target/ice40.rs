@@ -77,6 +77,7 @@ pub const ICE40: Family = Family {
         scale: 0.92,
         sign: 0,
         least_product: 11,
+        chained_sum: 1.0,
     },
 };
 
@@ -111,6 +112,7 @@ pub const ICE40_HX: Family = Family {
         scale: 1.0,
         sign: 0,
         least_product: 9,
+        chained_sum: 0.8,
     },
     ..ICE40
 };

@@ -72,5 +72,6 @@ pub const NEXUS: Family = Family {
         scale: 1.04,
         sign: 0,
         least_product: 9,
+        chained_sum: 1.0,
     },
 };

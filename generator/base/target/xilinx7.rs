@@ -40,5 +40,6 @@ pub const XILINX7: Family = Family {
         scale: 1.0,
         sign: 1,
         least_product: 9,
+        chained_sum: 1.0,
     },
 };

@@ -95,7 +95,7 @@ impl Design {
         lines
     }
 
-    /// Removes the delay lines whose registers stand beside look-up tables that are there anyway. `beside_tables` is the number of these
+    /// Removes the delay lines whose registers are beside look-up tables that are there anyway. `beside_tables` is the number of these
     /// registers. The lines with the most registers for each look-up table of their memory stay.
     fn retain_worthwhile(
         &self,

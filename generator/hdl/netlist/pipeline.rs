@@ -31,7 +31,7 @@ pub struct Pipeline {
     pub side: u32,
     /// The kind of memory that replaces delay lines in the Verilog. `None` if their registers stay.
     pub delay_memory: Option<DelayMemory>,
-    /// The number of registers that need no memory in their place, because they stand beside look-up tables that are there anyway.
+    /// The number of registers that need no memory in their place, because they are beside look-up tables that are there anyway.
     /// Memories replace delay lines only until no more registers are left.
     pub registers_beside_tables: u32,
     /// The stages, from the operands on. The results are in the registers behind the last one, so there are as many stages as

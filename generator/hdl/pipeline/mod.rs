@@ -56,7 +56,7 @@ pub enum Delays {
     Memory,
     /// In a register at the end of each stage.
     Registers,
-    /// In registers as long as they stand beside look-up tables that the logic needs anyway, and beyond that in memories.
+    /// In registers as long as they are beside look-up tables that the logic needs anyway, and beyond that in memories.
     Auto,
 }
 

@@ -150,14 +150,23 @@ fn period(design: &Design, family: &Family) -> f64 {
     }
     for id in order {
         let mut before = 0.0_f64;
+        let mut latest = None;
         for input in design.combinational_inputs(id) {
-            before = before.max(arrival[input.index()]);
+            if arrival[input.index()] > before {
+                before = arrival[input.index()];
+                latest = Some(input);
+            }
         }
+        let is_behind_sum =
+            latest.is_some_and(|latest| is_sum(design, behind_wires(design, latest)));
         let delay = match (&design.net(id).driver, delays.registered) {
             (Driver::Op(Op::Mul(..)), Some(multiplier)) if registered.contains(&id) => {
                 multiplier.product
             }
             (Driver::Op(Op::Mul(..)), None) if registered.contains(&id) => delays.product,
+            (driver, _) if is_behind_sum && is_sum(design, id) => {
+                family.estimate.chained_sum * cell_delay(design, family, id, driver)
+            }
             (driver, _) => cell_delay(design, family, id, driver),
         };
         arrival[id.index()] = before + delay;
@@ -166,11 +175,35 @@ fn period(design: &Design, family: &Family) -> f64 {
     longest + delays.register
 }
 
+fn is_sum(design: &Design, id: NetId) -> bool {
+    matches!(design.net(id).driver, Driver::Op(Op::Add { .. } | Op::Sub(..)))
+}
+
+/// Returns the net whose cell computes the upper bits of a net.
+fn behind_wires(design: &Design, id: NetId) -> NetId {
+    match &design.net(id).driver {
+        Driver::Op(Op::Relabel(a) | Op::Extend(a) | Op::Slice { of: a, .. }) => {
+            behind_wires(design, *a)
+        }
+        Driver::Op(Op::Concat(parts)) => behind_wires(design, parts[0]),
+        _ => id,
+    }
+}
+
+/// The part of a product's delay in an array of logic that does not depend on the width of the operands.
+const FIXED_PART_OF_PRODUCT: f64 = 0.3;
+
 /// Returns the delay of a net's cell, in nanoseconds.
 fn cell_delay(design: &Design, family: &Family, id: NetId, driver: &Driver) -> f64 {
     let delays = &family.timing;
     let levels = |inputs: u32| delays.logic * f64::from(inputs.max(2).ilog2().div_ceil(2).max(1));
     match driver {
+        Driver::Op(Op::Mul(a, b)) if family.fabric_product.is_some() => {
+            let (_, rows) = delays.multiplier;
+            let narrow = design.width(*a).min(design.width(*b)).min(rows);
+            let part = f64::from(narrow) / f64::from(rows);
+            delays.product * (FIXED_PART_OF_PRODUCT + (1.0 - FIXED_PART_OF_PRODUCT) * part)
+        }
         Driver::Op(Op::Mul(a, b)) if blocks(family, design.width(*a), design.width(*b)) > 1 => {
             delays.product + delays.chain(design.width(id) / 2)
         }
