@@ -19,8 +19,8 @@ use glint_core::cosim::batch::{Engine, Golden, RustHdl};
 use glint_core::registry::Registry;
 use glint_prove::batch::Verilog;
 use glint_show::render::{
-    self, BuiltIn, Light, Material, Object, PictureDifference, Relief, Rendered, Scene, Settings,
-    Shape, Vector, View,
+    self, BuiltIn, GivenOperand, Light, Material, Object, PictureDifference, Relief, Rendered,
+    Scene, SceneCosine, Settings, Shape, Vector, View,
 };
 use glint_tools::VerilogSimulator;
 
@@ -96,9 +96,11 @@ pub struct Arguments {
     /// The specular exponent n [default: 80, or the largest that the device takes]
     #[arg(long, value_name = "N")]
     exponent: Option<u32>,
-    /// The value of an operand at every point, for an operand of your own device that the scene does not give
+    /// What an operand gets that the scene does not give by its name: a number, or the cosine nh, nl, nv or vh between the normal N,
+    /// the half vector H, and the directions L to the light and V to the viewer. The first result of a device without colours is
+    /// the share of the light that is reflected, for example --operand c=vh --operand f=0.04 for `fresnel`
     #[arg(long = "operand", value_name = "NAME=VALUE", value_parser = operand)]
-    operands: Vec<(String, f64)>,
+    operands: Vec<(String, GivenOperand)>,
     /// k_s, the share of the light in the specular term, which the device computes, 0 to 1
     #[arg(long, value_name = "SHARE", default_value_t = Material::usual(0).specular, value_parser = share)]
     specular: f64,
@@ -342,9 +344,13 @@ impl CommandReport for RenderedPicture<'_> {
         let Self { name, core, settings, rendered, degenerate, .. } = *self;
         let (width, height) = settings.size;
         let (path, through) = (self.path(), self.through());
+        let has_exponent = render::exponents(core.contract.as_ref()).is_some();
+        let exponent = match has_exponent || settings.operands.is_empty() {
+            true => format!("n = {}, ", settings.material.exponent),
+            false => String::new(),
+        };
         say!(
-            "{path}: {width}x{height} pixels, n = {}, {} points of {name} through {through}",
-            settings.material.exponent,
+            "{path}: {width}x{height} pixels, {exponent}{} points of {name} through {through}",
             text::grouped(rendered.points)
         );
         if degenerate > 0 {
@@ -397,13 +403,18 @@ fn numbers(text: &str) -> Result<Vec<f64>, String> {
         .collect()
 }
 
-/// Parses for example `alpha2=0.04`; the value must be one finite number.
-fn operand(text: &str) -> Result<(String, f64), String> {
+/// Parses for example `alpha2=0.04` or `c=nh`; the value must be one finite number, or the name of a cosine.
+fn operand(text: &str) -> Result<(String, GivenOperand), String> {
     let (name, value) =
-        text.split_once('=').ok_or("expected NAME=VALUE, for example alpha2=0.04")?;
-    match numbers(value)?.as_slice() {
-        &[value] => Ok((name.trim().to_owned(), value)),
-        _ => Err("expected one number".to_owned()),
+        text.split_once('=').ok_or("expected NAME=VALUE, for example alpha2=0.04 or c=nh")?;
+    let name = name.trim().to_owned();
+    if let Some(cosine) = SceneCosine::named(value.trim()) {
+        return Ok((name, GivenOperand::Cosine(cosine)));
+    }
+    let of_scene = "; a cosine of the scene is nh, nl, nv or vh";
+    match numbers(value).map_err(|message| message + of_scene)?.as_slice() {
+        &[value] => Ok((name, GivenOperand::Value(value))),
+        _ => Err(format!("expected one number{of_scene}")),
     }
 }
 

@@ -3,7 +3,7 @@
 //! The host is the software around the device. It computes visibility, normals, half vectors, and the ambient and diffuse
 //! light in f64. An [`Engine`] computes the specular term of each sample for each light that falls on it, point by point or
 //! along lines of points. A device that takes normals as operands, such as `shading`, also computes the ambient and diffuse
-//! light.
+//! light. A device without colours, such as a formula of a cosine, computes the share of the light that is reflected.
 //!
 //! The same picture has the same bytes on every machine, because `libm` computes the transcendental functions. For a core
 //! without mistakes, the bytes depend neither on the engine nor on the number of threads.
@@ -27,7 +27,7 @@ use rayon::prelude::*;
 pub use camera::View;
 pub use height::Relief;
 pub use mesh::{CREASE, Mesh};
-pub use operands::{Feed, Point, exponents, walks_lines};
+pub use operands::{Feed, GivenOperand, Point, SceneCosine, exponents, walks_lines};
 pub use picture::{Picture, PictureDifference};
 pub use scene::{BACKGROUND, BuiltIn, COLOUR, Light, Object, Scene, Shape};
 pub use shade::{Material, point};
@@ -71,8 +71,8 @@ pub struct Settings {
     pub background: Vector,
     /// Whether to render also Blinn's function cosⁿγ in f64, for comparison.
     pub compare: bool,
-    /// Operands that have the same value at every point, among them all operands that a scene cannot supply.
-    pub operands: Vec<(String, f64)>,
+    /// What the user gives for operands, among them all operands that a scene cannot supply by their names.
+    pub operands: Vec<(String, GivenOperand)>,
 }
 
 #[derive(Clone, Debug)]
@@ -283,6 +283,12 @@ impl Portions<'_> {
         for row in rows {
             let count = row.points.result_count();
             match &row.places {
+                None if self.feed.is_term() => {
+                    let lights = row.lights.iter().enumerate();
+                    all.extend(
+                        lights.map(|(at, light)| self.feed.share_of(*light, result(first + at))),
+                    );
+                }
                 None => {
                     all.extend((first..first + count).map(|at| self.feed.colour(|_| result(at))))
                 }

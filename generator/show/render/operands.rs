@@ -30,6 +30,59 @@ pub struct Point {
     pub colour: Vector,
     /// A device that computes ambient and diffuse light too needs the surface.
     pub surface: Surface,
+    /// The cosines that operands of a formula may get.
+    pub cosines: SceneCosines,
+}
+
+/// The cosines between the perturbed normal N, the half vector H, the direction L to the light and the direction V to the viewer.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct SceneCosines {
+    pub normal_half: f64,
+    pub normal_light: f64,
+    pub normal_viewer: f64,
+    pub viewer_half: f64,
+}
+
+/// One of the [`SceneCosines`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SceneCosine {
+    NormalHalf,
+    NormalLight,
+    NormalViewer,
+    ViewerHalf,
+}
+
+impl SceneCosine {
+    /// The names of the cosines on the command line.
+    const NAMES: [(&'static str, Self); 4] = [
+        ("nh", Self::NormalHalf),
+        ("nl", Self::NormalLight),
+        ("nv", Self::NormalViewer),
+        ("vh", Self::ViewerHalf),
+    ];
+
+    /// Returns the cosine with this name, such as `nh`.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::NAMES.iter().find(|(own, _)| *own == name).map(|(_, cosine)| *cosine)
+    }
+
+    fn of(self, cosines: &SceneCosines) -> f64 {
+        match self {
+            Self::NormalHalf => cosines.normal_half,
+            Self::NormalLight => cosines.normal_light,
+            Self::NormalViewer => cosines.normal_viewer,
+            Self::ViewerHalf => cosines.viewer_half,
+        }
+    }
+}
+
+/// What the user gives for an operand.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum GivenOperand {
+    /// The same value at every point.
+    Value(f64),
+    /// A cosine of the scene at each point. A cosine outside the operand's domain becomes the nearest value of the domain.
+    Cosine(SceneCosine),
 }
 
 /// A point of a surface under one light: its normal, its vectors and its light.
@@ -67,6 +120,7 @@ enum OperandMeaning {
     Diffuse(usize),
     Specular(usize),
     Given(f64),
+    Cosine(SceneCosine),
 }
 
 impl OperandMeaning {
@@ -131,6 +185,8 @@ pub struct Feed {
     /// The largest number of intervals of a line, if the device computes lines.
     longest: Option<usize>,
     surfaces: bool,
+    /// The value of one unit of the first result, if the device has no colours: the result is then the share of the specular light.
+    term: Option<f64>,
 }
 
 /// Returns the domain of the operand `exponent`, if the device has it.
@@ -154,12 +210,17 @@ impl Feed {
         Self::with(device, contract, &[])
     }
 
-    /// Does the same as [`Feed::new`], but every operand named in `given` has its value there at every point.
+    /// Does the same as [`Feed::new`], but every operand named in `given` has its value, or its cosine, from there. A device without
+    /// colours then computes the share of the specular light: its first result.
     ///
     /// # Errors
     /// Fails as [`Feed::new`] does. Fails also if the device has no operand with a name in `given`, if that operand is a
     /// colour, or if its value is beyond its domain.
-    pub fn with(device: &str, contract: &dyn Contract, given: &[(String, f64)]) -> Result<Self> {
+    pub fn with(
+        device: &str,
+        contract: &dyn Contract,
+        given: &[(String, GivenOperand)],
+    ) -> Result<Self> {
         let surfaces = contract.operands().iter().any(|it| it.name == OF_SURFACES[10].0);
         let names: &[(&str, OperandMeaning)] = match (walks_lines(contract), surfaces) {
             (true, _) => &OF_LINES,
@@ -170,7 +231,7 @@ impl Feed {
         let mut operands = Vec::new();
         for operand in contract.operands() {
             let quantity = match given.iter().find(|(name, _)| *name == operand.name) {
-                Some(&(_, value)) => Some(fixed(operand, value)?),
+                Some(&(_, value)) => Some(of_user(operand, value)?),
                 None => quantity(operand, names),
             };
             match quantity {
@@ -183,7 +244,7 @@ impl Feed {
             let known: Vec<&str> = names.iter().map(|(name, _)| *name).collect();
             bail!(
                 "Glint cannot compute {} of the device `{device}` from a scene; it computes only {}; \
-                 `{Program} render --operand NAME=VALUE` sets an operand to a constant",
+                 `{Program} render --operand NAME=VALUE` sets an operand to a number, or to a cosine of the scene: nh, nl, nv or vh",
                 unknown.join(", "),
                 known.join(", ")
             );
@@ -194,8 +255,21 @@ impl Feed {
                 "--operand {name}: the device `{device}` has no such operand"
             );
         }
-        let mut feed =
-            Self { operands, channels: [0; 3], scales: [0.0; 3], longest: None, surfaces };
+        let has_colours = contract.operands().iter().any(|operand| operand.colour);
+        let is_term = !given.is_empty() && !surfaces && !walks_lines(contract) && !has_colours;
+        let mut feed = Self {
+            operands,
+            channels: [0; 3],
+            scales: [0.0; 3],
+            longest: None,
+            surfaces,
+            term: None,
+        };
+        if is_term {
+            let output = contract.outputs().first();
+            feed.term = output.map(|output| output.format.to_f64(1));
+            return Ok(feed);
+        }
         if walks_lines(contract) {
             for (name, quantity) in OF_LINES {
                 ensure!(
@@ -246,6 +320,11 @@ impl Feed {
         self.surfaces
     }
 
+    /// Returns whether the first result of the device is the share of the specular light.
+    pub fn is_term(&self) -> bool {
+        self.term.is_some()
+    }
+
     /// Returns whether the device has the operand `cos_dgamma`. In such a device, `cos_gamma` belongs to the angle γ between
     /// the smooth normal and the half vector, and dγ is the amount by which the perturbed normal of a rough surface changes
     /// this angle. In any other device, `cos_gamma` belongs to the perturbed normal.
@@ -265,9 +344,10 @@ impl Feed {
     pub fn outside(&self, values: &[f64]) -> Option<usize> {
         let mut operands = self.operands.iter().zip(values);
         operands.position(|(&(quantity, format, domain), &value)| match quantity {
-            OperandMeaning::CosGamma | OperandMeaning::ZetaStart | OperandMeaning::DeltaZeta => {
-                false
-            }
+            OperandMeaning::CosGamma
+            | OperandMeaning::Cosine(_)
+            | OperandMeaning::ZetaStart
+            | OperandMeaning::DeltaZeta => false,
             _ => {
                 (format.to_f64(i128::from(number(value, format, domain))) - value).abs()
                     >= format.to_f64(1)
@@ -312,6 +392,7 @@ impl Feed {
             OperandMeaning::Diffuse(at) => point.surface.diffuse.0[at] * format.to_f64(high.into()),
             OperandMeaning::Specular(at) => point.colour.0[at] * format.to_f64(high.into()),
             OperandMeaning::Given(value) => value,
+            OperandMeaning::Cosine(cosine) => cosine.of(&point.cosines),
             // Only devices that compute lines have these operands.
             OperandMeaning::Amplitude
             | OperandMeaning::ZetaStart
@@ -394,6 +475,13 @@ impl Feed {
         Ok(self.operands.iter().zip(self.line_values(line)).map(raw).collect())
     }
 
+    /// Returns the light that a device without colours lets through of `light`, in which 255 is full light. `result` has the results of
+    /// the computation.
+    pub fn share_of(&self, light: Vector, result: &[i64]) -> Vector {
+        let unit = self.term.unwrap_or(0.0);
+        light * (result[0] as f64 * unit * 255.0)
+    }
+
     /// Returns a colour, in which 255 is full light. `outputs` returns the outputs of the computation that has the colour
     /// channel 0 (red), 1 (green) or 2 (blue). A device for points has all three channels in one computation; a device for
     /// lines has a computation for each.
@@ -416,8 +504,8 @@ fn raw_angle(right_angles: f64, format: Format) -> i64 {
     format.narrow(scaled, format.frac, Rounding::Truncate, Overflow::Wrap) as i64
 }
 
-/// Fails if the operand is a colour, or if `value` is outside its domain.
-fn fixed(operand: &Operand, value: f64) -> Result<OperandMeaning> {
+/// Returns the quantity that the user gives for an operand. Fails if the operand is a colour, or if a value is outside its domain.
+fn of_user(operand: &Operand, given: GivenOperand) -> Result<OperandMeaning> {
     let name = &operand.name;
     let [low, high] =
         [operand.domain.0, operand.domain.1].map(|raw| operand.format.to_f64(i128::from(raw)));
@@ -425,6 +513,10 @@ fn fixed(operand: &Operand, value: f64) -> Result<OperandMeaning> {
         !operand.colour,
         "--operand {name}: the operand is a colour, and the light determines its value"
     );
+    let value = match given {
+        GivenOperand::Value(value) => value,
+        GivenOperand::Cosine(cosine) => return Ok(OperandMeaning::Cosine(cosine)),
+    };
     ensure!(
         (low..=high).contains(&value),
         "--operand {name}={value}: the domain of the operand is {low} to {high}"

@@ -6,7 +6,7 @@ use std::f64::consts::{PI, TAU};
 use anyhow::Result;
 
 use super::camera::Camera;
-use super::operands::{self, Feed, Point};
+use super::operands::{self, Feed, Point, SceneCosines};
 use super::scene::{Light, Object, Scene, Shape};
 use super::vector::Vector;
 use super::visibility::Hit;
@@ -52,6 +52,8 @@ pub struct Shaded {
     /// For each sample and each of its lights, the indices of the results with its red, green and blue. `None` if every
     /// computation has one result with all three colours, and the results are in this order.
     pub places: Option<Vec<[usize; 3]>>,
+    /// For each point, the light that a device without colours reflects in part; empty for other devices.
+    pub lights: Vec<Vector>,
     /// For each sample and each of its lights, the light that the device should compute, with Blinn's cosⁿγ in f64 as
     /// reflectance, 0 … 255. Empty unless [`Shader::compare`] is set.
     pub exact: Vec<Vector>,
@@ -94,6 +96,7 @@ impl Shader<'_> {
             samples: Vec::with_capacity(hits.len()),
             points: Points::new(self.feed.operand_count()),
             places: self.feed.longest().map(|_| Vec::new()),
+            lights: Vec::new(),
             exact: Vec::new(),
             beyond: 0,
         };
@@ -145,7 +148,11 @@ impl Shader<'_> {
                 if !surface.is_lit(light) {
                     continue;
                 }
-                let specular = light.colour * material.specular;
+                let mut specular = light.colour * material.specular;
+                if self.feed.is_term() {
+                    // The term is a reflectance, and the light on the surface falls with its angle.
+                    specular = specular * facing;
+                }
                 let half = surface.half(light);
                 let mut point = point(surface.smooth, surface.perturbed, half, specular);
                 if self.feed.shades() {
@@ -157,6 +164,16 @@ impl Shader<'_> {
                         ambient: surface.colour.times(std::mem::take(&mut ambient)),
                         diffuse: surface.colour.times(scattered),
                     };
+                }
+                if self.feed.is_term() {
+                    let normal = surface.perturbed;
+                    point.cosines = SceneCosines {
+                        normal_half: point.cos_shaded,
+                        normal_light: normal.dot(light.direction),
+                        normal_viewer: normal.dot(surface.toward_eye),
+                        viewer_half: surface.toward_eye.dot(half),
+                    };
+                    shaded.lights.push(specular);
                 }
                 match &mut shaded.places {
                     None => {

@@ -177,6 +177,50 @@ fn a_highlight_is_where_it_should_be() {
     assert_eq!(at(28, 20), [0; 3]);
 }
 
+/// A formula reflects a share of the light. With light and viewer in front of the sphere, N·L, N·V and N·H are the same cosine, which is 1
+/// in the middle, and V·H is 1 everywhere.
+#[test]
+fn a_formula_reflects_its_share_of_the_light() {
+    let dir = Workspace::new();
+    dir.write(
+        "share.toml",
+        "device = \"expression\"\nname = \"share\"\noperands.c = { from = 0, to = 1, to_included = true, fraction = 12 }\n\
+         operands.f = { bits = 8, fraction = 8 }\nresults.r = { formula = \"f + (1 - f) * (1 - c)^5\", fraction = 12 }\n",
+    );
+    let eye = ["--camera", "0,0,100", "--fov", "1.25", "--light", "0,0,1", "--samples", "1"];
+    let plain = ["--diffuse", "0", "--ambient", "0", "--specular", "1", "--background", "0,0,1"];
+    let size = ["share.toml", "--size", "41x41", "--out", "out.png", "--force"];
+    let pixel = |operands: &[&str], column: usize| {
+        let given = operands.iter().flat_map(|operand| ["--operand", *operand]);
+        let fixed = size.iter().chain(&eye).chain(&plain).copied();
+        let mut through: Vec<[u8; 3]> = Vec::new();
+        for engine in ["golden", "rust-hdl"] {
+            let arguments = ["render"].into_iter().chain(fixed.clone());
+            let done = dir.done(arguments.chain(given.clone()).chain(["--through", engine]));
+            assert!(done.contains("41x41 pixels, ") && !done.contains("n ="), "{done}");
+            through.push(pixels(&picture(&dir)).2[20 * 41 + column]);
+        }
+        assert_eq!(through[0], through[1], "{operands:?}");
+        through[0]
+    };
+    // A quarter of the light, where the cosine is 1: 0.25 · 255 is 63.75.
+    for cosine in ["c=nh", "c=nl", "c=nv", "c=vh", "c=1"] {
+        assert_eq!(pixel(&["f=0.25", cosine], 20), [64; 3], "{cosine}");
+    }
+    // The picture is 2.18 radii wide. 16 of its 41 pixels are 0.851 radii, where cosines with N are 0.525. V·H is still 1, so that only the
+    // light falls, to 0.25 · 0.525 · 255 = 33.5. With N·V, the share is 0.25 + 0.75 · 0.475⁵ = 0.268, which gives 35.9.
+    let rim = pixel(&["f=0.25", "c=nv"], 36)[0];
+    let flat = pixel(&["f=0.25", "c=vh"], 36)[0];
+    assert!((33..=34).contains(&flat), "{flat}");
+    assert!((35..=37).contains(&rim), "{rim}");
+    let without = |operands: &[&str]| dir.glint(render(&[&["share.toml"], operands].concat()));
+    without(&[]).refused(1, &["Glint cannot compute `c`", "nh, nl, nv or vh"]);
+    without(&["--operand", "c=nh"]).refused(1, &["Glint cannot compute `f`"]);
+    without(&["--operand", "c=xy"]).refused(2, &["a cosine of the scene is nh, nl, nv or vh"]);
+    let beyond = ["--operand", "c=nh", "--operand", "f=2"];
+    without(&beyond).refused(1, &["the domain of the operand is 0 to 0.99609375"]);
+}
+
 /// Lines of points along the spans of triangles, set up by the host.
 #[test]
 fn lines_run_along_triangles() {
