@@ -21,8 +21,7 @@ mod tests;
 mod wide;
 mod writable;
 
-use std::collections::HashMap;
-use std::sync::{Arc, LazyLock, Mutex};
+use std::sync::Arc;
 
 use rayon::prelude::*;
 
@@ -69,7 +68,7 @@ glint_config::choices! {
     }
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Curve {
     /// A formula of the operand x.
     Formula(Expression),
@@ -78,7 +77,7 @@ pub enum Curve {
 }
 
 /// A function of one operand on a domain, with the largest allowed error.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct TargetFunction {
     pub curve: Curve,
     /// The smallest and the largest raw operand, both included: (65536, 262143) for 1 to below 4 with 16 fraction bits.
@@ -432,18 +431,8 @@ impl Piecewise {
     }
 }
 
-type SearchResult = Result<Arc<Piecewise>, Refusal>;
-
-/// Returns the cheapest approximation of `function` under the choices `wish` that the search finds and proves. A search that was
-/// made earlier in this process is not repeated. Fails if no approximation can be found and proved.
-pub fn find(function: &TargetFunction, wish: Wish) -> SearchResult {
-    static FOUND: LazyLock<Mutex<HashMap<String, SearchResult>>> = LazyLock::new(Mutex::default);
-    let key = format!("{function:?} {wish:?}");
-    let known = || FOUND.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-    if let Some(found) = known().get(&key) {
-        return found.clone();
-    }
-    let found = search::search(function, wish).map(Arc::new);
-    known().insert(key, found.clone());
-    found
+/// Returns the cheapest approximation of `function` under the choices `wish` that the search finds and proves. Fails if no
+/// approximation can be found and proved.
+pub fn find(function: &TargetFunction, wish: Wish) -> Result<Arc<Piecewise>, Refusal> {
+    search::search(function, wish).map(Arc::new)
 }

@@ -7,7 +7,7 @@ use glint_formula::Enclosure;
 
 /// The points in the order of rising operands: the raw operand, the value, and the slope of the curve per step of the raw
 /// operand.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Samples(Vec<(i64, Enclosure, f64)>);
 
 impl Samples {

@@ -6,6 +6,7 @@
 
 use std::collections::HashSet;
 use std::ops::Range;
+use std::rc::Rc;
 use std::sync::Arc;
 
 use glint_approximate::{
@@ -18,8 +19,8 @@ use super::boxes::ResultProof;
 use super::cost::cells_of_function;
 use super::exhaust::{largest_errors, sampled_errors};
 use super::lower::{
-    FoundPolynomials, Guards, PlanSearch, PlanStyle, TableRule, WidthTies, fewest_dividends,
-    has_functions_of_operands, lowered,
+    FoundPolynomials, Guards, PlanSearch, PlanStyle, PolynomialMemo, TableRule, WidthTies,
+    fewest_dividends, has_functions_of_operands, lowered,
 };
 use super::node::{NodeId, Operation};
 use super::plan::ExpressionPlan;
@@ -152,11 +153,15 @@ pub fn find(statement: &ExpressionStatement) -> Result<ProvedPlan, PlanRefusal> 
     find_with(&PlanSearch::new(statement, TableRule::Cheapest))
 }
 
-/// Returns the plan for a statement, in which operations at the same place of several numbers have the same widths. Fails as [`find`]
-/// does.
-pub(super) fn find_alike(statement: &ExpressionStatement) -> Result<ProvedPlan, PlanRefusal> {
+/// Returns the plan for a statement, in which operations at the same place of several numbers have the same widths. `polynomials` has the
+/// results of earlier searches. Fails as [`find`] does.
+pub(super) fn find_alike(
+    statement: &ExpressionStatement,
+    polynomials: &Rc<PolynomialMemo>,
+) -> Result<ProvedPlan, PlanRefusal> {
     let mut search = PlanSearch::new(statement, TableRule::Cheapest);
     search.ties = WidthTies::Alike;
+    search.polynomials = polynomials.clone();
     find_with(&search)
 }
 
@@ -439,7 +444,7 @@ fn with_polynomials(
             }
             is_complete = false;
             let function = &approximation.function;
-            found.insert(function, polynomials_by(&search.tables, function)?);
+            found.insert(function, polynomials_by(search, function)?);
         }
         if is_complete {
             return Ok(plan);
@@ -448,12 +453,12 @@ fn with_polynomials(
     }
 }
 
-/// Returns the polynomials of a function by a rule. Fails if the function has no polynomials.
+/// Returns the polynomials of a function by the rule of a search. Fails if the function has no polynomials.
 fn polynomials_by(
-    rule: &TableRule,
+    search: &PlanSearch<'_>,
     function: &TargetFunction,
 ) -> Result<Arc<Piecewise>, PlanRefusal> {
-    if let TableRule::Shared(widths) = rule {
+    if let TableRule::Shared(widths) = &search.tables {
         // A steep function may take several pages of the shared table.
         for prefix in widths.prefix..=widths.prefix + MOST_PAGE_BITS {
             let own = SharedWidths { prefix, ..widths.clone() };
@@ -462,7 +467,7 @@ fn polynomials_by(
             }
         }
     }
-    cheapest_polynomials(function)
+    search.polynomials.found(function, cheapest_polynomials)
 }
 
 /// Returns the polynomials of a function with the lowest estimated cost in a pipeline, among those of degree 1, 2 and 3 and

@@ -25,8 +25,9 @@ mod whole_root;
 pub(crate) use quotient::fewest_dividends;
 pub(crate) use table::has_functions_of_operands;
 
-use std::collections::HashMap;
+use std::cell::RefCell;
 use std::mem;
+use std::rc::Rc;
 use std::sync::Arc;
 
 use glint_approximate::{Piecewise, SharedWidths, TargetFunction};
@@ -117,22 +118,45 @@ impl Guards {
     }
 }
 
-/// The polynomials that were found so far. The key is the function that they approximate.
+/// Functions of a plan with their polynomials.
 #[derive(Clone, Debug, Default)]
-pub(super) struct FoundPolynomials(HashMap<String, Arc<Piecewise>>);
+pub(super) struct FoundPolynomials(Vec<(TargetFunction, Arc<Piecewise>)>);
 
 impl FoundPolynomials {
     /// Adds the polynomials of a function.
     pub(super) fn insert(&mut self, function: &TargetFunction, polynomials: Arc<Piecewise>) {
-        self.0.insert(format!("{function:?}"), polynomials);
+        self.0.push((function.clone(), polynomials));
     }
 
     /// Returns the polynomials for exactly this function, with its domain and its formats, or `None`.
     fn get(&self, function: &TargetFunction) -> Option<Arc<Piecewise>> {
-        if self.0.is_empty() {
-            return None;
+        let found = self.0.iter().find(|(own, _)| own == function);
+        found.map(|(_, polynomials)| polynomials.clone())
+    }
+}
+
+/// The polynomials of a function, or the reason why there are none.
+type SearchResult = Result<Arc<Piecewise>, PlanRefusal>;
+
+/// The results of searches for polynomials, so that each function is searched once. A search takes most of the time of a plan.
+#[derive(Default)]
+pub(super) struct PolynomialMemo {
+    known: RefCell<Vec<(TargetFunction, SearchResult)>>,
+}
+
+impl PolynomialMemo {
+    /// Returns what `search` returned for this function before, or returns now. Fails if `search` does.
+    pub(super) fn found(
+        &self,
+        function: &TargetFunction,
+        search: impl FnOnce(&TargetFunction) -> SearchResult,
+    ) -> SearchResult {
+        if let Some((_, found)) = self.known.borrow().iter().find(|(own, _)| own == function) {
+            return found.clone();
         }
-        self.0.get(&format!("{function:?}")).cloned()
+        let found = search(function);
+        self.known.borrow_mut().push((function.clone(), found.clone()));
+        found
     }
 }
 
@@ -185,6 +209,7 @@ pub(super) struct PlanSearch<'s> {
     pub(super) statement: &'s ExpressionStatement,
     pub(super) tables: TableRule,
     pub(super) ties: WidthTies,
+    pub(super) polynomials: Rc<PolynomialMemo>,
     ranges: RangeMemo,
     errors: ErrorMemo,
 }
@@ -219,7 +244,8 @@ impl<'s> PlanSearch<'s> {
             false => WidthTies::Named,
         };
         let (ranges, errors) = (RangeMemo::default(), ErrorMemo::default());
-        Self { statement, tables, ties, ranges, errors }
+        let polynomials = Rc::default();
+        Self { statement, tables, ties, polynomials, ranges, errors }
     }
 }
 

@@ -13,6 +13,7 @@ mod nodes;
 mod tests;
 
 use std::ops::Range;
+use std::rc::Rc;
 
 use super::find::{ProvedPlan, find, find_alike};
 use super::refusal::PlanRefusal;
@@ -90,8 +91,10 @@ pub fn find_ordered(
     }
     let mut tightened = statement.clone();
     let mut refusal: Option<PlanRefusal> = None;
+    let polynomials = Rc::default();
     for _ in 0..ATTEMPTS {
-        let found = find_alike(&tightened).map_err(|own| refusal.clone().unwrap_or(own))?;
+        let found =
+            find_alike(&tightened, &polynomials).map_err(|own| refusal.clone().unwrap_or(own))?;
         let fault = formulas.iter().find_map(|list| nodes::check_list(&found, list).err());
         let Some(fault) = fault else {
             let statement = statement.clone();
