@@ -32,6 +32,10 @@ impl Exact {
         Rational(value.into())
     }
 
+    pub(super) fn is_zero(&self) -> bool {
+        matches!(self, Rational(value) if value.is_zero())
+    }
+
     /// Returns `None` if the number has more than [`MOST_BITS`] bits.
     fn rational(value: RBig) -> Option<Self> {
         let bits = value.numerator().bit_len() + value.denominator().bit_len();

@@ -257,6 +257,10 @@ fn or_computed(
 
 /// Returns the exact result of a function of two numbers, if it is known.
 fn exact_operator(operator: Operator, a: &PreciseValue, b: &PreciseValue) -> Option<Exact> {
+    let is_zero = |value: &PreciseValue| value.exact.as_ref().is_some_and(Exact::is_zero);
+    if operator == Operator::Mul && (is_zero(a) || is_zero(b)) {
+        return Some(Exact::integer(0));
+    }
     Exact::operator(operator, a.exact.as_ref()?, b.exact.as_ref()?)
 }
 

@@ -360,6 +360,8 @@ fn steps_signs_and_sizes_are_decided_at_exact_operands() {
         ("sigmoid(x)", "-710", 0.0),
         ("erf(x)", "40", 1.0),
         ("cbrt(sin(x))", "0", 0.0),
+        ("floor(x * sqrt(2))", "0", 0.0),
+        ("ceil(exp(1) * x)", "0", 0.0),
         ("floor(erf(x) * 1000)", "0.5", 520.0),
         ("floor(erf(-x) * 1000)", "0.5", -521.0),
     ] {

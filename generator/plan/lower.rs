@@ -49,7 +49,8 @@ use rational::{
     QuotientParts, ceiling_of, floor_of_quotient, rational_quotient, with_single_division,
 };
 use shape::{
-    core_of, dyadic, floor_of, has_no_function, modulus_exponent, number, power_of_two, products_of,
+    core_of, dyadic, floor_of, has_no_function_of_operands, modulus_exponent, number, power_of_two,
+    products_of,
 };
 use table::is_short_operand;
 use whole_root::WholeRoot;
@@ -475,7 +476,8 @@ impl<'s> Lowering<'s> {
         if let Some(rewritten) = whole_line::with_remainder(part) {
             return self.part(&rewritten);
         }
-        if has_no_function(part) && part.count(&whole_line::is_irrational_division) > 0 {
+        if has_no_function_of_operands(part) && part.count(&whole_line::is_irrational_division) > 0
+        {
             return self.operation(part);
         }
         let core = core_of(part);

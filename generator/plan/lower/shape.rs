@@ -86,7 +86,17 @@ fn is_only_read_through(formula: &Expression, core: &Expression, part: &Expressi
 
 /// Returns whether a formula has sums, products, remainders, absolute values and choices alone, so that its value can be exact.
 pub(super) fn has_no_function(formula: &Expression) -> bool {
-    let is_function = |kind: &Kind| match kind {
+    !formula.has(&is_function)
+}
+
+/// Returns whether a formula has no function of operands. Unlike [`has_no_function`], a constant such as `sqrt(2)` is allowed.
+pub(super) fn has_no_function_of_operands(formula: &Expression) -> bool {
+    formula.count(&|part| part.varies() && is_function(&part.kind)) == 0
+}
+
+/// Returns whether an operation is none of sums, products, remainders, absolute values and choices.
+fn is_function(kind: &Kind) -> bool {
+    match kind {
         Kind::Unary(function, _) => !matches!(function, Function::Negate | Function::Abs),
         Kind::Binary(operator, _, exponent) => match operator {
             Operator::Power => exponent.varies(),
@@ -95,8 +105,7 @@ pub(super) fn has_no_function(formula: &Expression) -> bool {
             _ => false,
         },
         _ => false,
-    };
-    !formula.has(&is_function)
+    }
 }
 
 /// Returns whether a part is the absolute value of `core`.

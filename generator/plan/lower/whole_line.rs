@@ -9,9 +9,10 @@
 use std::sync::Arc;
 
 use glint_base::fixed::{Rounding, exp2};
-use glint_formula::{Enclosure, Expression, Function, Kind, Operator};
+use glint_formula::{Enclosure, Expression, Function, Kind, Operator, RBig};
 
 use super::Lowering;
+use super::rational::over_number;
 use super::root::holding;
 use super::shape::{has_no_function, number};
 use crate::node::{NodeId, Operation, PlanNode, ValueAccuracy};
@@ -80,10 +81,10 @@ impl Line {
     }
 }
 
-/// Returns whether a formula varies and has neither functions nor constants that are no rational numbers.
+/// Returns whether a formula varies and has only operations and constants that are exact in binary.
 fn is_exact_part(formula: &Expression) -> bool {
-    let is_irrational = |part: &Expression| !part.varies() && part.rational().is_none();
-    formula.varies() && has_no_function(formula) && formula.count(&is_irrational) == 0
+    let is_divided = over_number(formula).is_none_or(|it| it.divisor != RBig::ONE);
+    formula.varies() && has_no_function(formula) && !is_divided
 }
 
 /// Returns whether a formula is an integer part or a remainder with constants that are no rational numbers, such as `floor(a / pi)` and
@@ -362,8 +363,6 @@ fn scaled(formula: &Expression, places: i32) -> Expression {
 
 #[cfg(test)]
 mod tests {
-    use glint_formula::RBig;
-
     use super::*;
 
     #[test]

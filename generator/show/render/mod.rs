@@ -27,7 +27,7 @@ use rayon::prelude::*;
 pub use camera::View;
 pub use height::Relief;
 pub use mesh::{CREASE, Mesh};
-pub use operands::{Feed, GivenOperand, Point, SceneCosine, exponents, walks_lines};
+pub use operands::{Feed, GivenOperand, Point, SceneCosine, SceneCosines, exponents, walks_lines};
 pub use picture::{Picture, PictureDifference};
 pub use scene::{BACKGROUND, BuiltIn, COLOUR, Light, Object, Scene, Shape};
 pub use shade::{Material, point};
