@@ -673,7 +673,7 @@ impl<'s> Lowering<'s> {
                 {
                     return Ok(node);
                 }
-                if exponent == 0
+                if whole_line::is_irrational_division(part)
                     && let Some(node) = self.whole_of_line(a, part)?
                 {
                     return Ok(node);

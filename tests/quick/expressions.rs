@@ -28,7 +28,7 @@ const TINY: &str =
 operands.c = { bits = 3, fraction = 40 }\noperands.d = { bits = 3, fraction = 40 }";
 
 /// Operands, and results that other results read or that need no operation.
-const CASES: [(&str, &str); 54] = [
+const CASES: [(&str, &str); 55] = [
     (
         // A choice with a hole, divided by a constant; the root of a sum of integers; digits of a number of seconds.
         "operands.x = { bits = 6, fraction = 3, signed = true }\noperands.y = { bits = 5, fraction = 0 }",
@@ -90,6 +90,13 @@ results.rest = { formula = \"a % (2 * pi)\", fraction = 7 }
 results.wrapped = { formula = \"a - 2 * pi * floor((a + pi) / (2 * pi))\", fraction = 7 }
 results.nearest = { formula = \"a - round(a / (pi / 2)) * (pi / 2)\", fraction = 9 }
 results.sine = { formula = \"sin(mod(1 - 3 * a, 2 * pi))\", fraction = 8 }",
+    ),
+    (
+        // A mean of five pixels; the wrong integer part of a number with an irrational constant would be a whole unit off.
+        "operands.a = { bits = 5, fraction = 0 }\noperands.b = { bits = 5, fraction = 0 }",
+        "results.mean = { formula = \"round((a + 4 * b + 6 * a + 4 * b + a) / 16)\", fraction = 0, error = 0.5 }
+results.scaled = { formula = \"floor(3 - (a - b) * sqrt(2) / 7)\", fraction = 0, error = 0.5 }
+results.curve = { formula = \"((0.8 + 18 * (a / 32)^0.16) / (1 + 17.8 * (a / 32)^0.16))^78\", fraction = 6 }",
     ),
     (
         // A mixture of numbers that are not negative is not negative, and nor is a discriminant where `where` says so.

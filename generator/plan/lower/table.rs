@@ -16,7 +16,10 @@ use crate::statement::ExpressionStatement;
 /// The number of parts of a domain in which the values of a function are enclosed.
 const PIECES: i64 = 64;
 
-/// The most parts that are halved because interval arithmetic shows no limits of the values in them.
+/// A value above this number may be due to interval arithmetic alone.
+const LARGE_VALUE: f64 = 1e6;
+
+/// The most parts that are halved because interval arithmetic shows no limits of the values in them, or only large ones.
 const MOST_HALVINGS: usize = 1000;
 
 impl Lowering<'_> {
@@ -259,28 +262,29 @@ fn function_of_number(function: &Expression, number: f64) -> Option<Expression> 
     Some(function.substitute(&Expression::operand("x"), &value, &function.span))
 }
 
-/// Returns limits of the values of a function of x over the raw domain. A part of the domain in which interval arithmetic shows no limits
-/// is halved, down to single operands: `sqrt(2 * x - x^2)` has a value for 2, and none for an interval about 2. Returns `None` if the
-/// limits are not finite.
+/// Returns limits of the values of a function of x over the raw domain. Returns `None` if the limits are not finite.
+///
+/// A part of the domain in which interval arithmetic shows no limits, or only large ones, is halved, down to single operands:
+/// `sqrt(2 * x - x^2)` has a value for 2, and none for an interval about 2.
 fn function_range(function: &Expression, operand: Format, domain: (i64, i64)) -> Option<Enclosure> {
     let (first, last) = domain;
     let length = i128::from(last - first);
-    let mut total: Option<Enclosure> = None;
-    let mut halvings = 0;
     let end = |at: i64| first + (length * i128::from(at) / i128::from(PIECES)) as i64;
     let mut open: Vec<(i64, i64)> = (0..PIECES).map(|at| (end(at), end(at + 1))).collect();
+    let mut total: Option<Enclosure> = None;
+    let mut halvings = 0;
     while let Some((from, to)) = open.pop() {
         let x = Enclosure::between(operand.to_f64(from.into()), operand.to_f64(to.into()));
         let value = function.enclose(&[("x", x)]).ok().filter(|value| value.is_finite());
-        match value {
-            Some(value) => total = Some(total.map_or(value, |total| total.hull(value))),
-            None if from == to || halvings == MOST_HALVINGS => return None,
-            None => {
-                halvings += 1;
-                let middle = from + (to - from) / 2;
-                open.extend([(from, middle), (middle + 1, to)]);
-            }
+        let is_large = value.is_none_or(|value| value.high.max(-value.low) > LARGE_VALUE);
+        if is_large && from < to && halvings < MOST_HALVINGS {
+            halvings += 1;
+            let middle = from + (to - from) / 2;
+            open.extend([(from, middle), (middle + 1, to)]);
+            continue;
         }
+        let value = value?;
+        total = Some(total.map_or(value, |total| total.hull(value)));
     }
     total
 }
