@@ -502,10 +502,7 @@ impl<'s> Lowering<'s> {
             // The integer part of a quotient is exact; a table would read a rounded quotient.
             return self.operation(part);
         }
-        if has_whole_root {
-            return self.operation(part);
-        }
-        if self.can_be_one_table(part, &core)? {
+        if !has_whole_root && self.can_be_one_table(part, &core)? {
             return self.function_of(part, &core);
         }
         match &part.kind {

@@ -80,6 +80,7 @@ results.stretch = { formula = \"if(b > a, int(15 * (u - a) / (b - a)), 0)\", fra
         "results.down = { formula = \"floor(hypot(a, b))\", fraction = 0, error = 0.5 }
 results.up = { formula = \"ceil(2 * sqrt(abs(a * b)))\", fraction = 0, error = 0.5 }
 results.nearest = { formula = \"round(sqrt(a^2 + b))\", fraction = 0, error = 0.5 }
+results.outer = { formula = \"ln(1 + floor(hypot(a, b)))\", fraction = 5 }
 results.root = { formula = \"sqrt(a^2 / 3 + 0.1 * b)\", fraction = 2, error = 0.5 }",
     ),
     (

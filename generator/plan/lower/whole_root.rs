@@ -65,12 +65,11 @@ impl WholeRoot {
     }
 }
 
-/// Returns whether a formula is a root that is rounded to a multiple of a power of two.
+/// Returns whether a formula is a root that is rounded to a multiple of a power of two, of a number that can be exact.
 pub(super) fn is_whole_root(formula: &Expression) -> bool {
-    match &formula.kind {
-        Kind::Binary(Operator::Sub, a, b) => WholeRoot::of_difference(a, b).is_some(),
-        _ => false,
-    }
+    let Kind::Binary(Operator::Sub, a, b) = &formula.kind else { return false };
+    let root = WholeRoot::of_difference(a, b);
+    root.is_some_and(|root| has_no_function(&root.square) && over_number(&root.square).is_some())
 }
 
 /// Writes a constant times a square root as a root with a sign: `-2 * sqrt(x)` gives `4 * x`, and that it is negated. Returns `None` for
