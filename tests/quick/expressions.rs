@@ -88,6 +88,7 @@ results.root = { formula = \"sqrt(a^2 / 3 + 0.1 * b)\", fraction = 2, error = 0.
         "operands.a = { bits = 12, fraction = 7, signed = true }",
         "results.turns = { formula = \"floor(a / (2 * pi))\", fraction = 0, error = 0.5 }
 results.rest = { formula = \"a % (2 * pi)\", fraction = 7 }
+results.below = { formula = \"a % (-2 * pi)\", fraction = 7 }
 results.wrapped = { formula = \"a - 2 * pi * floor((a + pi) / (2 * pi))\", fraction = 7 }
 results.nearest = { formula = \"a - round(a / (pi / 2)) * (pi / 2)\", fraction = 9 }
 results.sine = { formula = \"sin(mod(1 - 3 * a, 2 * pi))\", fraction = 8 }",

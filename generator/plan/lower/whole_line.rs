@@ -348,7 +348,8 @@ impl Lowering<'_> {
         let frac = own.format.frac;
         let limited = PlanNode { limits: values, source: None, stated: None, ..own };
         let limited = self.plan.push_copy(&limited, Operation::Scale(rest));
-        let format = holding(Enclosure::between(-exp2(-frac), values.high), frac);
+        let least = values.low.min(-exp2(-frac));
+        let format = holding(Enclosure::between(least, values.high), frac);
         self.plan.narrow("remainder_within", limited, format, Rounding::Truncate).map(Some)
     }
 }
