@@ -279,6 +279,19 @@ fn integer_parts_and_powers_of_0_keep_their_bounds() {
     assert!(proved.len() >= 6, "only these are proved: {proved:?}");
 }
 
+/// The integer part of a number with an irrational factor is refused if it has so many bits that its constants are not known well enough.
+#[test]
+fn integer_parts_of_many_bits_are_refused() {
+    for factor in ["pi * 1000000", "pi * 1e12", "1e30 / pi"] {
+        let operands = vec![operand("x", Format::unsigned(26, 0))];
+        let results = vec![result("r", &format!("floor(x * ({factor}))"), 0)];
+        let refusal = find(&ExpressionStatement { operands, results }).expect_err("too many bits");
+        let reasons = ["integer part", "bits, more than 64"];
+        let is_known = reasons.iter().any(|reason| refusal.message.contains(reason));
+        assert!(is_known, "{factor}: {refusal:?}");
+    }
+}
+
 /// A root that is rounded down, up or to the nearest integer is exact, also beside squares of integers, where an estimate alone could
 /// take the wrong integer. The expected integers come from integer arithmetic.
 #[test]

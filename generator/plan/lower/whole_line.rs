@@ -24,7 +24,7 @@ const KNOWN_BITS: u32 = 88;
 /// The most fraction bits of the constants in hardware.
 const MOST_PLACES: u32 = 50;
 
-/// The most bits of a constant, without its fraction bits beyond [`KNOWN_BITS`], and of a raw value of p.
+/// The most bits of a raw value of p, and of an integer part. With the bits in [`KNOWN_BITS`], a sum then fits an `i128`.
 const MOST_BITS: u32 = 36;
 
 /// The most raw values next to an integer that are examined one by one.
@@ -127,21 +127,17 @@ pub(super) fn with_remainder(formula: &Expression) -> Option<Expression> {
     if divisor != modulus || *start != **a {
         return None;
     }
+    let of_turns = added.map(|added| binary(Operator::Mul, &added, modulus));
+    let offsets: Vec<Expression> = of_turns.into_iter().chain(moved).collect();
     let mut sum = (**a).clone();
-    let mut remainder = None;
-    for added in [added.map(|added| binary(Operator::Mul, &added, modulus)), moved] {
-        let Some(added) = added else { continue };
-        sum = binary(Operator::Add, &sum, &added);
-        remainder = Some(match remainder {
-            None => added,
-            Some(before) => binary(Operator::Add, &before, &added),
-        });
+    for offset in &offsets {
+        sum = binary(Operator::Add, &sum, offset);
     }
-    let rest = binary(Operator::Mod, &sum, modulus);
-    Some(match remainder {
-        None => rest,
-        Some(added) => binary(Operator::Sub, &rest, &added),
-    })
+    let mut rest = binary(Operator::Mod, &sum, modulus);
+    for offset in &offsets {
+        rest = binary(Operator::Sub, &rest, offset);
+    }
+    Some(rest)
 }
 
 /// Returns u if a formula is floor(u), which is u − u % 1.
@@ -269,8 +265,8 @@ fn first_multiple(factor: i128, modulus: i128, (from, to): (i128, i128)) -> Opti
 
 impl Lowering<'_> {
     /// Returns the node of floor(`formula`), an exact integer, if `formula` is a constant times an exact number plus a constant. `whole`
-    /// must be the floor as a formula. Returns `None` for another formula, or for a wide operand. Fails if a constant or a node needs
-    /// too many bits.
+    /// must be the floor as a formula. Returns `None` for another formula, or if the operand or the floor has more than [`MOST_BITS`]
+    /// bits. Fails if a constant or a node needs too many bits.
     pub(super) fn whole_of_line(
         &mut self,
         formula: &Expression,
@@ -282,12 +278,12 @@ impl Lowering<'_> {
         if !self.is_exact(node) || format.width() > MOST_BITS {
             return Ok(None);
         }
-        let most = 2.0_f64.powi(MOST_BITS as i32);
-        let is_large = |constant: &Expression| {
-            constant.enclose(&[]).map_or(true, |value| value.low < -most || value.high > most)
-        };
         let raw_slope = scaled(&slope, -format.frac);
-        if is_large(&raw_slope) || is_large(&start) {
+        let size_of = |constant: &Expression| {
+            constant.enclose(&[]).map_or(f64::INFINITY, |value| value.high.max(-value.low))
+        };
+        let most_raw = range.0.abs().max(range.1.abs()) as f64;
+        if size_of(&raw_slope) * most_raw + size_of(&start) >= exp2(MOST_BITS as i32) {
             return Ok(None);
         }
         let known = |constant: &Expression| constant.ceiling(KNOWN_BITS).ok().map(|(raw, _)| raw);
