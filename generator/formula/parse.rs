@@ -427,7 +427,11 @@ impl<'t> Parser<'t> {
             true => first,
             false => part(Kind::Binary(Operator::Sub, first, second)),
         };
-        let distance = part(Kind::Unary(Function::Abs, difference));
+        let distance = match &difference.kind {
+            // A root or an absolute value is not below 0.
+            Kind::Unary(Function::Sqrt | Function::Abs, _) => difference,
+            _ => part(Kind::Unary(Function::Abs, difference)),
+        };
         let zero = part(Kind::Number(Literal::zero()));
         match is_equal {
             true => Comparison { left: zero, right: distance, or_equal: true },

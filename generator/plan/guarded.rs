@@ -5,11 +5,12 @@ use std::collections::HashMap;
 use std::ptr;
 use std::sync::Arc;
 
-use glint_formula::{Comparison, Enclosure, Expression, Kind, Operator};
+use glint_formula::{Comparison, Enclosure, Expression, Function, Kind, Operator};
 
 use super::facts::{Fact, LimitedPart, facts_of, limited, with_signs};
 use super::order;
 use super::polynomial::ANYTHING;
+use super::projection;
 use super::statement::ExpressionStatement;
 use super::uses::PartUses;
 
@@ -69,7 +70,10 @@ impl GuardedFormula {
         let is_guarded = |kind: &Kind| {
             let is_extreme =
                 matches!(kind, Kind::Binary(Operator::Max | Operator::Min, a, _) if a.varies());
-            is_extreme || matches!(kind, Kind::If(..)) || order::is_mixture(kind)
+            is_extreme
+                || matches!(kind, Kind::If(..))
+                || order::is_mixture(kind)
+                || projection::is_projection(kind)
         };
         let is_plain = facts.is_empty() && !formula.has(&is_guarded);
         if is_plain {
@@ -176,6 +180,10 @@ impl GuardRewriting<'_> {
             }
         };
         let rewritten = Arc::new(Expression::new(kind, part.span.clone()));
+        if let Some(square) = projection::square_of_limit(&part.kind) {
+            let square = self.rewritten(&square, facts, is_case, &mut HashMap::new());
+            return within_root(&rewritten, square);
+        }
         order::clamped(part, &rewritten, &self.operands).unwrap_or(rewritten)
     }
 
@@ -197,4 +205,14 @@ impl GuardRewriting<'_> {
         let all = with_signs([facts, &own].concat(), self.statement);
         self.rewritten(case, &all, true, &mut HashMap::new())
     }
+}
+
+/// Returns an equal formula of `part`, whose absolute value does not exceed the root of `square`. The enclosure of the new formula has this
+/// limit.
+fn within_root(part: &Arc<Expression>, square: Arc<Expression>) -> Arc<Expression> {
+    let new = |kind: Kind| Arc::new(Expression::new(kind, part.span.clone()));
+    let most = new(Kind::Unary(Function::Sqrt, square));
+    let least = new(Kind::Unary(Function::Negate, most.clone()));
+    let not_above = new(Kind::Binary(Operator::Min, part.clone(), most));
+    new(Kind::Binary(Operator::Max, not_above, least))
 }

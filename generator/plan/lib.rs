@@ -58,6 +58,7 @@ mod ordered;
 mod placement;
 mod plan;
 mod polynomial;
+mod projection;
 mod range;
 mod refusal;
 mod schedule;

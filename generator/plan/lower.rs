@@ -40,10 +40,11 @@ use super::guarded::GuardedFormula;
 use super::node::{NodeId, Operation, PlanNode, StatedValue, ValueAccuracy};
 use super::order;
 use super::plan::ExpressionPlan;
+use super::projection;
 use super::range::RangeMemo;
 use super::refusal::PlanRefusal;
 use super::statement::ExpressionStatement;
-use super::uses::{PartUses, reads_always};
+use super::uses::{PartUses, reads_under};
 use errors::ErrorMemo;
 use rational::{
     QuotientParts, ceiling_of, floor_of_quotient, rational_quotient, with_single_division,
@@ -197,6 +198,8 @@ pub(super) struct Lowering<'s> {
     uses: PartUses,
     /// The tables that sines and cosines of the same angle share.
     octants: Vec<wave::OctantWaves>,
+    /// The divisors whose reciprocals several quotients share.
+    divisors: Vec<quotient::KnownDivisor>,
     /// The number of rounding operations so far.
     sources: usize,
     /// The guard bits of roundings within a computation whose result is corrected, so that the planner does not choose them.
@@ -275,6 +278,7 @@ pub(super) fn lowered(
         known: Vec::new(),
         uses: PartUses::default(),
         octants: Vec::new(),
+        divisors: Vec::new(),
         sources: 0,
         fixed_guard: None,
         finest: finest.unwrap_or(0),
@@ -316,16 +320,13 @@ impl<'s> Lowering<'s> {
         range.map_err(|error| error.refusal(self.statement, part))
     }
 
-    /// Returns the uses of `part` as a part of the one that is being rewritten. Without a condition, other results whose formulas
-    /// read `part` for all operands count too, so that they can share its node, unless the part then loses limits that the
+    /// Returns the uses of `part` as a part of the one that is being rewritten. Other results whose formulas
+    /// read `part` in the same cases of choices count too, so that they can share its node, unless the part then loses limits that the
     /// condition of the present result states.
     fn uses_of(&self, part: &Expression) -> PartUses {
         let mut uses = self.uses.clone();
-        if !uses.conditions.is_empty() {
-            return uses;
-        }
         for (reads, result) in uses.readers.iter_mut().zip(&self.statement.results) {
-            *reads |= reads_always(&result.formula, part);
+            *reads |= reads_under(&result.formula, part, &self.uses.conditions);
         }
         let has_fact = |uses: &PartUses| has_fact(self.statement, uses, part);
         if uses != self.uses && has_fact(&self.uses) && !has_fact(&uses) {
@@ -467,6 +468,9 @@ impl<'s> Lowering<'s> {
     fn new_part(&mut self, part: &Expression) -> Result<NodeId, PlanRefusal> {
         if !part.varies() {
             return self.number(part);
+        }
+        if let Some(quotient) = projection::multiplied_quotient(&part.kind) {
+            return self.part(&quotient);
         }
         if let Some(single) = with_single_division(part)
             && let Ok(node) = self.part(&single)

@@ -28,25 +28,42 @@ impl PartUses {
 /// Returns whether a formula reads `part` for all operands, and not only in a case of a choice. For example, `if(y > 0, x / y, 0)`
 /// reads y for all operands, and `x / y` only for some.
 pub(super) fn reads_always(formula: &Expression, part: &Expression) -> bool {
-    reads_unseen(&mut HashSet::new(), formula, part)
+    reads_under(formula, part, &[])
 }
 
-/// Returns what [`reads_always`] does. The result for a part in `seen`, which several operations may share, is false: the part was
-/// searched before.
-fn reads_unseen(
-    seen: &mut HashSet<*const Expression>,
+/// Returns whether a formula reads `part` in the cases of choices that `conditions` name, and in no case of a further choice. For example,
+/// `if(y > 0, x / y, 0)` reads `x / y` under the condition that y > 0 is true.
+pub(super) fn reads_under(
     formula: &Expression,
     part: &Expression,
+    conditions: &[(Comparison, bool)],
 ) -> bool {
-    if formula == part {
+    reads_unseen(&mut HashSet::new(), formula, part, conditions)
+}
+
+/// Returns what [`reads_under`] does. The result for a part in `seen`, which several operations may share, is false: the part was
+/// searched before for as many conditions.
+fn reads_unseen(
+    seen: &mut HashSet<(*const Expression, usize)>,
+    formula: &Expression,
+    part: &Expression,
+    conditions: &[(Comparison, bool)],
+) -> bool {
+    if conditions.is_empty() && formula == part {
         return true;
     }
-    if !seen.insert(ptr::from_ref(formula)) {
+    if !seen.insert((ptr::from_ref(formula), conditions.len())) {
         return false;
     }
-    let inner = match &formula.kind {
-        Kind::If(comparison, ..) => vec![&*comparison.left, &*comparison.right],
-        _ => formula.parts(),
+    let Kind::If(comparison, yes, no) = &formula.kind else {
+        let mut inner = formula.parts().into_iter();
+        return inner.any(|inner| reads_unseen(seen, inner, part, conditions));
     };
-    inner.into_iter().any(|inner| reads_unseen(seen, inner, part))
+    let mut compared = [&comparison.left, &comparison.right].into_iter();
+    if compared.any(|side| reads_unseen(seen, side, part, conditions)) {
+        return true;
+    }
+    let [(first, outcome), rest @ ..] = conditions else { return false };
+    let case = if *outcome { yes } else { no };
+    first == comparison && reads_unseen(seen, case, part, rest)
 }

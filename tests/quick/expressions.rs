@@ -28,7 +28,26 @@ const TINY: &str =
 operands.c = { bits = 3, fraction = 40 }\noperands.d = { bits = 3, fraction = 40 }";
 
 /// Operands, and results that other results read or that need no operation.
-const CASES: [(&str, &str); 55] = [
+const CASES: [(&str, &str); 58] = [
+    (
+        // A unit vector of any length but 0, and a projection to it.
+        "operands.n = { axes = \"xy\", bits = 6, fraction = 4, signed = true }\noperands.h = { bits = 4, fraction = 3, signed = true }",
+        "results.u = { formula = \"if(length(n) == 0, 0, n / length(n))\", fraction = 5 }
+results.c = { formula = \"(n.x * h + n.y / 2) / length(n)\", fraction = 5, where = \"dot(n, n) > 0\" }",
+    ),
+    (
+        // The cosine of the angle between two vectors of any length, and a root of a product.
+        "operands.a = { axes = \"xy\", bits = 4, fraction = 3, signed = true }\noperands.b = { axes = \"xy\", bits = 4, fraction = 1, signed = true }",
+        "results.c = { formula = \"dot(a, b) / (length(a) * length(b))\", fraction = 6, where = \"length(a) > 0 and length(b) > 0\" }
+results.d = { formula = \"(a.x * b.y - a.y * b.x) / sqrt(dot(a, a) * dot(b, b))\", fraction = 5, where = \"length(a) > 0 and length(b) > 0\" }",
+    ),
+    (
+        // A vector without its part along another one, and its mirror image, in three spellings.
+        "operands.a = { axes = \"xy\", bits = 4, fraction = 3, signed = true }\noperands.b = { axes = \"xy\", bits = 4, fraction = 3, signed = true }",
+        "results.rest = { formula = \"a - dot(a, b) / dot(b, b) * b\", fraction = 5, where = \"length(b) > 0\" }
+results.mirror = { formula = \"a - 2 * (dot(a, b) / dot(b, b)) * b\", fraction = 4, where = \"length(b) > 0\" }
+results.other = { formula = \"2 * b * dot(a, b) / dot(b, b) - a\", fraction = 4, where = \"length(b) > 0\" }",
+    ),
     (
         // A choice with a hole, divided by a constant; the root of a sum of integers; digits of a number of seconds.
         "operands.x = { bits = 6, fraction = 3, signed = true }\noperands.y = { bits = 5, fraction = 0 }",

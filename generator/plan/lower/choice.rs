@@ -1,11 +1,13 @@
 //! Rewrites choices, such as `if(a < b, x, y)`, and finds maxima and minima among them.
 
+use std::sync::Arc;
+
 use glint_base::fixed::exp2;
-use glint_formula::{Comparison, Expression, Kind, Operator};
+use glint_formula::{Comparison, Expression, Function, Kind, Operator, RBig};
 
 use super::Lowering;
 use super::rational::without_fractions;
-use super::shape::dyadic;
+use super::shape::{dyadic, number};
 use crate::node::NodeId;
 use crate::refusal::PlanRefusal;
 
@@ -30,6 +32,27 @@ fn raw_below(constant: &Expression, frac: i32) -> Option<i128> {
     let below = low.floor();
     let is_between = below < low && high < below + 1.0;
     (is_between && below.abs() < LARGEST_LIMIT).then_some(below as i128)
+}
+
+/// Returns the comparison of the squares of both sides, if one side is a root and the other one a root or a rational constant that is not
+/// negative. Returns `None` for any other comparison.
+fn without_roots(comparison: &Comparison) -> Option<Comparison> {
+    let Comparison { left, right, or_equal } = comparison;
+    let operand_of_root = |part: &Expression| match &part.kind {
+        Kind::Unary(Function::Sqrt, operand) if part.varies() => Some(operand.clone()),
+        _ => None,
+    };
+    let squared = |part: &Expression| {
+        let constant = part.rational().filter(|value| !part.varies() && *value >= RBig::ZERO)?;
+        Some(Arc::new(number(&(&constant * &constant).to_string())))
+    };
+    let (left, right) = match (operand_of_root(left), operand_of_root(right)) {
+        (Some(left), Some(right)) => (left, right),
+        (Some(left), None) => (left, squared(right)?),
+        (None, Some(right)) => (squared(left)?, right),
+        (None, None) => return None,
+    };
+    Some(Comparison { left, right, or_equal: *or_equal })
 }
 
 impl Lowering<'_> {
@@ -87,11 +110,17 @@ impl Lowering<'_> {
     /// Returns the nodes of both sides of a comparison. If one side is an exact node and the other one is a constant that is not exact in
     /// binary, the nearest multiple of the node's last place below the constant takes its place. For example, `x > 0.1` with 4 fraction
     /// bits of x becomes `x > 1/16`, and `0.1 > x` becomes `1/16 >= x`. If both sides can be multiplied by a number so that they are
-    /// exact, they are: `x / 3 > y` becomes `x > 3 * y`. Fails if a part has too many bits.
+    /// exact, they are: `x / 3 > y` becomes `x > 3 * y`. The same holds for squares: `sqrt(x) > 0.5` becomes `x > 0.25`. Fails if a part has too many bits.
     pub(super) fn compared(
         &mut self,
         comparison: &Comparison,
     ) -> Result<ComparedNodes, PlanRefusal> {
+        if let Some(squares) = without_roots(comparison)
+            && let Ok(exact) = self.compared(&squares)
+            && exact.is_exact
+        {
+            return Ok(exact);
+        }
         let Comparison { left, right, .. } = comparison;
         let (limit, other) = if left.varies() { (right, left) } else { (left, right) };
         if !limit.varies() && dyadic(limit).is_none() {

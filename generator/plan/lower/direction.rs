@@ -10,6 +10,7 @@ use glint_base::fixed::{Format, exp2};
 use glint_formula::{Enclosure, Expression, Function, Kind, Operator};
 
 use super::Lowering;
+use super::quotient::{Dividend, DividendRounding, DivisorKind};
 use super::root::holding;
 use super::shape::number;
 use crate::facts::has_fact;
@@ -87,7 +88,13 @@ impl Lowering<'_> {
         let octave = self.octave(larger, sizes, false)?;
         // The smaller coordinate is added after the normalising of the larger one, because this limits both in the proof.
         let smaller = self.plan.minimum("smaller", x_size, y_size)?;
-        let ratio = self.ratio_in_octave(smaller, &octave, 1.0, true)?;
+        let divisor = self.divisor_in_octave(octave, DivisorKind::Word)?;
+        let dividend = Dividend {
+            node: smaller,
+            largest_quotient: 1.0,
+            rounding: DividendRounding::NeverLarger,
+        };
+        let ratio = self.ratio(&dividend, &divisor)?;
         let finest = self.finest;
         // A tangent is at most 1. After it is shortened, it is at most half a unit larger.
         let tangent = self.rounding(finest + 2, |own, frac| {

@@ -4,6 +4,9 @@
 //! 1/b. Any other divisor is normalised: b = m · 2^−k with m from 1/2 to below 1. A table has the values of 1/m, and the
 //! dividend is shifted by the same k bits, so that a / b = (a · 2^k) · (1/m).
 //!
+//! A divisor that is a root, √s, is computed together with its reciprocal: s = m · 2^−2k with m from 1/4 to below 1. A table has the values of
+//! 1/√m, and a / √s = (a · 2^k) · (1/√m).
+//!
 //! If several dividends have the same divisor, and the reciprocal 1/b needs few bits, it is computed once, and each dividend has only a
 //! product: a softmax of eight numbers shifts one reciprocal in place of eight dividends. For a divisor that is a root, one dividend is
 //! enough: a / sqrt(x) is a · (1 / sqrt(x)), which reads one table in place of two.
@@ -15,11 +18,14 @@ use glint_formula::{Enclosure, Expression, Function, Kind, Operator};
 
 use super::root::{FEW_OCTAVES, Octave, holding};
 use super::shape::number;
-use super::{Lowering, WIDEST_FACTOR, WIDEST_OPERAND};
+use super::{Lowering, MANY_OCTAVES, WIDEST_FACTOR, WIDEST_OPERAND};
 use crate::facts::promises_less;
 use crate::node::NodeId;
 use crate::refusal::PlanRefusal;
 use crate::statement::ExpressionStatement;
+
+/// A factor that exceeds 1 by more than the roundings of a few operations in `f64`.
+const ROUNDED_UP: f64 = 1.0 + 1e-12;
 
 /// The widest reciprocal that is computed once for several dividends, in bits, with the guard bits that a product needs at least.
 const WIDEST_RECIPROCAL: f64 = 20.0;
@@ -63,6 +69,82 @@ pub(crate) fn fewest_dividends(statement: &ExpressionStatement) -> Option<usize>
     divisors.iter().any(|(_, count)| *count == 2).then_some(2)
 }
 
+/// How a divisor follows from a word that is not negative.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum DivisorKind {
+    /// The divisor is the word.
+    Word,
+    /// The divisor is the square root of the word.
+    Root,
+}
+
+/// A divisor d with the nodes that divide by it: 1/d is the value of a table, times 2 to a number of places, divided by a power of two.
+#[derive(Clone, Copy)]
+pub(super) struct Divisor {
+    /// The normalised word.
+    octave: Octave,
+    /// 1/d is the table's value times 2 to the number of places, divided by 2 to this power.
+    exponent: i32,
+    /// The node of the table's value.
+    inverse: NodeId,
+    /// The number that the divisor before its rounding, divided by the one after it, does not exceed: 1 if the divisor is not rounded.
+    /// `None` if no such number is known.
+    excess: Option<f64>,
+}
+
+/// The dividend of a quotient.
+pub(super) struct Dividend {
+    pub(super) node: NodeId,
+    /// The largest absolute value of the quotient.
+    pub(super) largest_quotient: f64,
+    pub(super) rounding: DividendRounding,
+}
+
+/// Whether a dividend is rounded.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum DividendRounding {
+    Exact,
+    /// The hardware's dividend can be larger than the exact one.
+    Rounded,
+    /// The hardware's dividend may be rounded, but is never larger than the hardware's divisor.
+    NeverLarger,
+}
+
+/// A dividend that was shifted by as many places as its divisor.
+struct ShiftedDividend {
+    node: NodeId,
+    /// The limits of its value before a rounding.
+    values: Enclosure,
+    /// Whether the dividend can reach the power of two that is above the shifted divisor.
+    can_be_equal: bool,
+}
+
+/// A divisor of several quotients. All of them read the same table.
+pub(super) struct KnownDivisor {
+    kind: DivisorKind,
+    /// The node of the word, and the interval of its values where the quotients matter.
+    word: (NodeId, Enclosure),
+    divisor: Divisor,
+}
+
+/// Returns the operands of two roots whose product is the divisor: `sqrt(x) * sqrt(y)` and `sqrt(x * y)` give x and y. Returns `None` for any
+/// other formula.
+fn operands_of_roots(divisor: &Expression) -> Option<[&Arc<Expression>; 2]> {
+    match &divisor.kind {
+        Kind::Unary(Function::Sqrt, operand) => match &operand.kind {
+            Kind::Binary(Operator::Mul, x, y) if x != y => Some([x, y]),
+            _ => None,
+        },
+        Kind::Binary(Operator::Mul, first, second) => match (&first.kind, &second.kind) {
+            (Kind::Unary(Function::Sqrt, x), Kind::Unary(Function::Sqrt, y)) if x != y => {
+                Some([x, y])
+            }
+            _ => None,
+        },
+        _ => None,
+    }
+}
+
 impl Lowering<'_> {
     /// Returns the node of the quotient a / b. `part` must be this quotient as a formula. Fails if a part has too many bits, no
     /// finite values, or no rule. For example, a divisor that may be 0 gives no finite values.
@@ -85,7 +167,141 @@ impl Lowering<'_> {
             return self.plan.multiply("ratio", dividend, reciprocal?);
         }
         let values = self.range(part)?;
+        if let Some(quotient) = self.quotient_by_root(a, b, values)? {
+            return Ok(quotient);
+        }
         self.quotient_within(a, b, values)
+    }
+
+    /// Returns the node of the quotient a / b, whose values lie within `values`, by a table of reciprocal roots. Returns `None` if b is no
+    /// root of an exact number with several octaves, and no product of two such roots. Fails if a part has too many bits, no finite
+    /// values, or no rule.
+    fn quotient_by_root(
+        &mut self,
+        a: &Expression,
+        b: &Expression,
+        values: Enclosure,
+    ) -> Result<Option<NodeId>, PlanRefusal> {
+        let dividend = self.part(a)?;
+        let dividend = self.dividend(dividend, sizes_of(values).high);
+        if let Some(operands) = operands_of_roots(b)
+            && let Some(node) = self.quotient_by_roots(a, &dividend, operands)?
+        {
+            return Ok(Some(node));
+        }
+        let Kind::Unary(Function::Sqrt, operand) = &b.kind else { return Ok(None) };
+        let Some(divisor) = self.root_divisor(operand)? else { return Ok(None) };
+        self.ratio(&dividend, &divisor).map(Some)
+    }
+
+    /// Returns the node of a dividend, which is the node of `a`, divided by the roots of both operands. Returns `None` unless both are exact
+    /// numbers with several octaves. Fails if a part has too many bits, no finite values, or no rule.
+    ///
+    /// The product of both operands would need a normaliser and a multiplier for twice the bits.
+    fn quotient_by_roots(
+        &mut self,
+        a: &Expression,
+        dividend: &Dividend,
+        operands: [&Arc<Expression>; 2],
+    ) -> Result<Option<NodeId>, PlanRefusal> {
+        let Some(first) = self.root_divisor(operands[0])? else { return Ok(None) };
+        let Some(second) = self.root_divisor(operands[1])? else { return Ok(None) };
+        let root = Kind::Unary(Function::Sqrt, operands[0].clone());
+        let root = Arc::new(Expression::new(root, a.span.clone()));
+        let kind = Kind::Binary(Operator::Div, Arc::new(a.clone()), root);
+        let by_first = self.range(&Expression::new(kind, a.span.clone()))?;
+        let of_first = Dividend { largest_quotient: sizes_of(by_first).high, ..*dividend };
+        let shifted = self.shifted(&of_first, &first)?;
+        let excess = first.excess.unwrap_or(2.0) * exp2(first.exponent);
+        let of_second = Dividend {
+            node: shifted.node,
+            largest_quotient: dividend.largest_quotient * excess,
+            rounding: dividend.rounding,
+        };
+        let ratio = self.ratio(&of_second, &second)?;
+        let factor = self.rounding(self.finest - first.exponent, |own, frac| {
+            own.plan.shorten("ratio_shortened", ratio, frac, Rounding::Nearest)
+        })?;
+        let product = self.plan.multiply("ratio", factor, first.inverse)?;
+        self.scaled_ratio(product, dividend, &first).map(Some)
+    }
+
+    /// Returns the divisor √operand. Returns `None` if the operand is not exact, or does not have several octaves. Fails if a part has too many
+    /// bits, no finite values, or no rule.
+    fn root_divisor(&mut self, operand: &Expression) -> Result<Option<Divisor>, PlanRefusal> {
+        let operands = self.range(operand)?;
+        if operands.low < 0.0 || operands.high < operands.low * MANY_OCTAVES {
+            return Ok(None);
+        }
+        let node = self.part(operand)?;
+        if !self.is_exact(node) {
+            return Ok(None);
+        }
+        self.divisor((node, operands), DivisorKind::Root).map(Some)
+    }
+
+    /// Returns a node as the dividend of a quotient whose absolute value is at most `largest_quotient`.
+    fn dividend(&self, node: NodeId, largest_quotient: f64) -> Dividend {
+        let rounding = match self.is_exact(node) {
+            true => DividendRounding::Exact,
+            false => DividendRounding::Rounded,
+        };
+        Dividend { node, largest_quotient, rounding }
+    }
+
+    /// Returns the divisor of a word, which is a node with the interval of its values. Quotients by the same divisor share its nodes.
+    /// Fails if a node has too many bits, or if the reciprocal is not finite.
+    fn divisor(
+        &mut self,
+        word: (NodeId, Enclosure),
+        kind: DivisorKind,
+    ) -> Result<Divisor, PlanRefusal> {
+        // An estimate has roundings of its own.
+        let is_shared = self.fixed_guard.is_none();
+        let is_same = |known: &&KnownDivisor| known.kind == kind && known.word == word;
+        if let Some(known) = self.divisors.iter().find(is_same).filter(|_| is_shared) {
+            return Ok(known.divisor);
+        }
+        let octave = self.octave(word.0, word.1, kind == DivisorKind::Root)?;
+        let divisor = self.divisor_in_octave(octave, kind)?;
+        let excess = self.excess(word, octave.word);
+        let divisor = Divisor { excess, ..divisor };
+        if is_shared {
+            self.divisors.push(KnownDivisor { kind, word, divisor });
+        }
+        Ok(divisor)
+    }
+
+    /// Returns the number that an exact word, divided by the word after a rounding to the nearest value, does not exceed. Returns `None` if
+    /// the word is not exact, or if the rounded word can be 0.
+    fn excess(&self, (exact, values): (NodeId, Enclosure), rounded: NodeId) -> Option<f64> {
+        if self.is_exact(rounded) {
+            return Some(1.0);
+        }
+        let half = exp2(-self.plan.node(rounded).format.frac) / 2.0;
+        let is_known = self.is_exact(exact) && values.low > 2.0 * half;
+        is_known.then(|| 1.0 + half / (values.low - half) * ROUNDED_UP)
+    }
+
+    /// Returns the divisor of a normalised word. The word of a root must be shifted by pairs of bits. Fails if a node has too many bits, or
+    /// if the reciprocal is not finite.
+    pub(super) fn divisor_in_octave(
+        &mut self,
+        octave: Octave,
+        kind: DivisorKind,
+    ) -> Result<Divisor, PlanRefusal> {
+        let (reciprocal, exponent) = match kind {
+            DivisorKind::Word => ("1 / x", octave.exponent),
+            DivisorKind::Root => ("1 / sqrt(x)", octave.exponent / 2),
+        };
+        let reciprocal = number(reciprocal);
+        let inverse = self.rounding(self.finest + 2, |own, frac| match octave.is_odd {
+            Some(is_odd) => own.power_by_parity(&reciprocal, &octave, is_odd, frac),
+            None => own.approximation("inverse", octave.mantissa, &reciprocal, octave.domain, frac),
+        })?;
+        self.give_source_to_tables(inverse);
+        let excess = self.is_exact(octave.word).then_some(1.0);
+        Ok(Divisor { octave, exponent, inverse, excess })
     }
 
     /// Returns all quotients with the divisor `b`, if the reciprocal of `b` is to be computed once: there are several, and the reciprocal
@@ -133,8 +349,9 @@ impl Lowering<'_> {
             let dividend = self.factor(a)?;
             self.plan.multiply("ratio", dividend, inverse)?
         } else {
-            let octave = self.octave(size, sizes, false)?;
-            self.ratio_in_octave(dividend, &octave, largest, false)?
+            let divisor = self.divisor((size, sizes), DivisorKind::Word)?;
+            let dividend = self.dividend(dividend, largest);
+            self.ratio(&dividend, &divisor)?
         };
         if divisors.low >= 0.0 {
             return Ok(quotient);
@@ -154,34 +371,67 @@ impl Lowering<'_> {
         is_not_negative && results.all(|result| promises_less(self.statement, result, a, b))
     }
 
-    /// Returns the node of a dividend divided by a divisor, which is given as a normalised word in `octave`. `largest` must be
-    /// the largest absolute value of the quotient. `is_never_larger` must say whether the hardware's dividend is never larger
-    /// than its divisor. Fails if a node has too many bits, or if the reciprocal is not finite on the domain of the word.
-    pub(super) fn ratio_in_octave(
+    /// Returns the node of a dividend divided by a divisor. Fails if a node has too many bits.
+    pub(super) fn ratio(
         &mut self,
-        dividend: NodeId,
-        octave: &Octave,
-        largest: f64,
-        is_never_larger: bool,
+        dividend: &Dividend,
+        divisor: &Divisor,
     ) -> Result<NodeId, PlanRefusal> {
-        let reciprocal = number("1 / x");
-        let finest = self.finest;
-        let inverse = self.rounding(finest + 2, |own, frac| {
-            own.approximation("inverse", octave.mantissa, &reciprocal, octave.domain, frac)
+        let ShiftedDividend { node, values, can_be_equal } = self.shifted(dividend, divisor)?;
+        // The dividend is as large as the quotient, up to the weight of the divisor's octave.
+        let value_bits = self.fixed_guard.map_or(0, |fixed| fixed.value_bits);
+        let first_frac = self.finest - divisor.exponent - value_bits;
+        let shortened = self.rounding(first_frac, |own, frac| {
+            let format = own.plan.node(node).format;
+            let name = "dividend_shortened";
+            match format.width() <= WIDEST_FACTOR {
+                true => Ok(node),
+                false if can_be_equal && frac < format.frac => {
+                    own.plan.narrow(name, node, holding(values, frac), Rounding::Nearest)
+                }
+                false => own.plan.shorten(name, node, frac, Rounding::Nearest),
+            }
         })?;
+        let product = self.plan.multiply("ratio", shortened, divisor.inverse)?;
+        self.scaled_ratio(product, dividend, divisor)
+    }
+
+    /// Returns the node of a quotient, from the product of its shifted dividend and the table's value for its divisor. Fails if a node has
+    /// too many bits.
+    fn scaled_ratio(
+        &mut self,
+        product: NodeId,
+        dividend: &Dividend,
+        divisor: &Divisor,
+    ) -> Result<NodeId, PlanRefusal> {
+        let ratio = self.plan.scale("ratio_scaled", product, -divisor.exponent)?;
+        let is_signed = self.plan.node(dividend.node).range.0 < 0;
+        let least = if is_signed { -dividend.largest_quotient } else { 0.0 };
+        self.plan.nodes[ratio.0].limits = Enclosure::between(least, dividend.largest_quotient);
+        Ok(ratio)
+    }
+
+    /// Returns a dividend, shifted by as many places as the divisor's word. Fails if a node has too many bits.
+    fn shifted(
+        &mut self,
+        &Dividend { node: dividend, largest_quotient, rounding }: &Dividend,
+        &Divisor { octave, exponent, excess, .. }: &Divisor,
+    ) -> Result<ShiftedDividend, PlanRefusal> {
         let frac = self.plan.node(dividend).format.frac;
         let is_signed = self.plan.node(dividend).range.0 < 0;
-        let is_exact = self.is_exact(dividend) && self.is_exact(octave.word);
-        let fits_below = is_never_larger || is_exact && largest <= 1.0;
+        let excess = excess.filter(|_| rounding == DividendRounding::Exact);
+        let is_never_larger = rounding == DividendRounding::NeverLarger;
+        let fits_below = is_never_larger || excess == Some(1.0) && largest_quotient <= 1.0;
+        // The dividend is at most the largest quotient times the divisor. If the limit is not known because a value was rounded, the proof
+        // shows that one more bit is enough.
+        let most = largest_quotient * exp2(exponent) * excess.unwrap_or(2.0);
+        let values = Enclosure::between(if is_signed { -most } else { 0.0 }, most);
         let format = if fits_below {
             // The shifted divisor is below 2^exponent, and the shifted dividend is not larger than it.
-            let above = exp2(octave.exponent + frac) as i128;
+            let above = exp2(exponent + frac) as i128;
             Format::holding(if is_signed { 1 - above } else { 0 }, above - 1, frac)
         } else {
-            // The dividend is at most the largest quotient times the divisor. If a value was rounded, the divisor may have been
-            // larger; the proof then shows that one more bit is enough.
-            let most = largest * exp2(octave.exponent) * if is_exact { 1.0 } else { 2.0 };
-            holding(Enclosure::between(if is_signed { -most } else { 0.0 }, most), frac)
+            holding(values, frac)
         };
         let limits = Enclosure::between(
             format.to_f64(if is_signed { format.min_raw() } else { 0 }),
@@ -190,26 +440,15 @@ impl Lowering<'_> {
         // The limits of a format of many bits are rounded up to numbers that need one bit more.
         let is_rounded = format.width() > f64::MANTISSA_DIGITS;
         let format = Format { int: format.int + i32::from(is_rounded), ..format };
-        let shifted = self.plan.shift_left("dividend_shifted", dividend, octave.places, format)?;
-        if is_exact {
-            self.plan.nodes[shifted.0].limits = limits;
+        let node = self.plan.shift_left("dividend_shifted", dividend, octave.places, format)?;
+        if excess.is_some() {
+            self.plan.nodes[node.0].limits =
+                Enclosure::between(limits.low.max(values.low), limits.high.min(values.high));
         }
         if is_never_larger {
-            self.plan.nodes[shifted.0].actual_limits = limits;
+            self.plan.nodes[node.0].actual_limits = limits;
         }
-        // The dividend is as large as the quotient, up to the weight of the divisor's octave.
-        let value_bits = self.fixed_guard.map_or(0, |fixed| fixed.value_bits);
-        let shifted = self.rounding(finest - octave.exponent - value_bits, |own, frac| {
-            if own.plan.node(shifted).format.width() <= WIDEST_FACTOR {
-                return Ok(shifted);
-            }
-            own.plan.shorten("dividend_shortened", shifted, frac, Rounding::Nearest)
-        })?;
-        let product = self.plan.multiply("ratio", shifted, inverse)?;
-        let ratio = self.plan.scale("ratio_scaled", product, -octave.exponent)?;
-        self.plan.nodes[ratio.0].limits =
-            Enclosure::between(if is_signed { -largest } else { 0.0 }, largest);
-        Ok(ratio)
+        Ok(ShiftedDividend { node, values, can_be_equal: !fits_below })
     }
 }
 

@@ -12,7 +12,7 @@ use glint_formula::{Enclosure, Expression, Function, Kind, Operator, RBig};
 
 use super::shape::number;
 use super::{Lowering, PlanStyle, WIDEST_OPERAND};
-use crate::node::{NodeId, Operation, ValueAccuracy};
+use crate::node::{NodeId, Operation, PlanNode, ValueAccuracy};
 use crate::refusal::PlanRefusal;
 
 /// If the largest value of a domain is less than this times the smallest, one table covers the domain.
@@ -65,6 +65,7 @@ fn doubled_exponent(formula: &Expression) -> Option<RBig> {
 }
 
 /// A normalised word: a fraction within one octave, and the number of bits by which the word was shifted.
+#[derive(Clone, Copy)]
 pub(super) struct Octave {
     /// The word before the shift, without a sign.
     pub(super) word: NodeId,
@@ -124,13 +125,7 @@ impl Lowering<'_> {
             }
         })?;
         let source = self.plan.node(of_mantissa).source;
-        if let Operation::Choose { cases, .. } = self.plan.node(of_mantissa).operation {
-            // The choice is exact, and the tables have the error.
-            self.plan.nodes[of_mantissa.0].source = None;
-            for case in cases {
-                self.plan.nodes[case.0].source = source;
-            }
-        }
+        self.give_source_to_tables(of_mantissa);
         let scaled = self.plan.scale("power_scaled", of_mantissa, scale)?;
         let places = self.multiple(octave.places, doubled.abs() / if by_pairs { 1 } else { 2 })?;
         if doubled < 0 {
@@ -153,8 +148,22 @@ impl Lowering<'_> {
         Ok(Some(chosen))
     }
 
+    /// Gives the number of a rounding operation to both tables, if the node is a choice between two: the choice is exact, and the tables
+    /// have the error.
+    pub(super) fn give_source_to_tables(&mut self, node: NodeId) {
+        let PlanNode { operation: Operation::Choose { cases, .. }, source, .. } =
+            *self.plan.node(node)
+        else {
+            return;
+        };
+        self.plan.nodes[node.0].source = None;
+        for case in cases {
+            self.plan.nodes[case.0].source = source;
+        }
+    }
+
     /// Returns the node of the power of a fraction m from 1/2 to below 1, or of m / 2 where `is_odd` is 1. Each of the two has a table.
-    fn power_by_parity(
+    pub(super) fn power_by_parity(
         &mut self,
         function: &Expression,
         octave: &Octave,

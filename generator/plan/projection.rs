@@ -1,0 +1,286 @@
+//! Limits of a quotient by the length of a vector. Interval arithmetic does not show them, because the same numbers are in the dividend
+//! and in the divisor.
+//!
+//! The dividend c₁·v₁ + c₂·v₂ + … has products with the numbers of the vector, and the divisor is the vector's length, √(v₁² + v₂² + …).
+//! By the inequality of Cauchy and Schwarz, the absolute value of the quotient is at most √(c₁² + c₂² + …). For example,
+//! `x / sqrt(x^2 + y^2)` is from −1 to 1, and `(nx * hx + ny * hy) / sqrt(nx^2 + ny^2)` is at most the length of the vector h.
+
+use std::sync::Arc;
+
+use glint_formula::{Expression, Function, Kind, Operator, RBig, parse};
+
+/// The most terms of a sum that is examined.
+const MOST_TERMS: usize = 32;
+
+/// A term of a dividend, apart from its sign.
+struct Projected {
+    /// The number of the vector.
+    number: Arc<Expression>,
+    coefficient: Arc<Expression>,
+}
+
+/// Returns whether a formula is a quotient that [`square_of_limit`] limits.
+pub(super) fn is_projection(kind: &Kind) -> bool {
+    square_of_limit(kind).is_some()
+}
+
+/// Returns the square of a number that the absolute value of a quotient does not exceed. Returns `None` for a formula of another kind. For
+/// example, `(x * p + y * q) / sqrt(x^2 + y^2)` gives `p * p + q * q`, and 1 if the divisor is
+/// `sqrt(x^2 + y^2) * sqrt(p^2 + q^2)`.
+pub(super) fn square_of_limit(kind: &Kind) -> Option<Arc<Expression>> {
+    if let Some(quotient) = multiplied_quotient(kind) {
+        return square_of_limit(&quotient.kind);
+    }
+    let Kind::Binary(Operator::Div, dividend, divisor) = kind else { return None };
+    if let Some(square) = limit_by_square(dividend, divisor) {
+        return Some(square);
+    }
+    let squares = squares_of_lengths(divisor)?;
+    let [vector, others @ ..] = squares.as_slice() else { return None };
+    let numbers = numbers_of(vector)?;
+    match others {
+        [] => square_by_numbers(&numbers, dividend),
+        [other] => {
+            let products = products_with(&numbers, dividend)?;
+            let mut numbers = numbers_of(other)?;
+            for Projected { coefficient, .. } in &products {
+                let same = numbers.iter().position(|number| number == coefficient)?;
+                numbers.swap_remove(same);
+            }
+            Some(one())
+        }
+        _ => None,
+    }
+}
+
+/// Returns a product of a quotient and a number as a single quotient, if the divisor is the square of a length that limits the single
+/// quotient and not the other one. Returns `None` for any other formula. For example, `(x * p + y * q) / (x^2 + y^2) * x` gives
+/// `(x * p + y * q) * x / (x^2 + y^2)`.
+pub(super) fn multiplied_quotient(kind: &Kind) -> Option<Expression> {
+    let Kind::Binary(Operator::Mul, a, b) = kind else { return None };
+    for (quotient, factor) in [(a, b), (b, a)] {
+        let Some((dividend, divisor)) = parts_of_quotient(quotient) else { continue };
+        let product = binary(Operator::Mul, &dividend, factor);
+        if limit_by_square(&product, &divisor).is_some() {
+            let kind = Kind::Binary(Operator::Div, product, divisor.clone());
+            return Some(Expression::new(kind, quotient.span.clone()));
+        }
+    }
+    None
+}
+
+/// Returns the dividend and the divisor of a quotient, or of a constant times a quotient. Returns `None` for any other formula. For example,
+/// `2 * (x / y)` gives `2 * x` and y.
+fn parts_of_quotient(part: &Expression) -> Option<(Arc<Expression>, Arc<Expression>)> {
+    match &part.kind {
+        Kind::Binary(Operator::Div, dividend, divisor) => Some((dividend.clone(), divisor.clone())),
+        Kind::Binary(Operator::Mul, a, b) if !a.varies() || !b.varies() => {
+            let (constant, quotient) = if a.varies() { (b, a) } else { (a, b) };
+            let (dividend, divisor) = parts_of_quotient(quotient)?;
+            Some((binary(Operator::Mul, constant, &dividend), divisor))
+        }
+        _ => None,
+    }
+}
+
+/// Returns the square of a number that the absolute value of a quotient does not exceed, if the divisor is the square of a length, and the
+/// dividend is a product of two sums that are limited by this length. Returns `None` for any other quotient. For example,
+/// `x * (x * p + y * q) / (x^2 + y^2)` gives `1 * (p * p + q * q)`.
+fn limit_by_square(dividend: &Expression, divisor: &Arc<Expression>) -> Option<Arc<Expression>> {
+    let numbers = numbers_of(divisor).filter(|numbers| !numbers.is_empty())?;
+    let Kind::Binary(Operator::Mul, first, second) = &dividend.kind else { return None };
+    let first = square_by_numbers(&numbers, first)?;
+    let second = square_by_numbers(&numbers, second)?;
+    Some(binary(Operator::Mul, &first, &second))
+}
+
+/// Returns the square of a number that the absolute value of `part`, divided by the length of a vector with these numbers, does not exceed.
+/// Returns `None` unless the part is a sum of products with these numbers, or such a sum times a constant.
+fn square_by_numbers(
+    numbers: &[Arc<Expression>],
+    part: &Arc<Expression>,
+) -> Option<Arc<Expression>> {
+    match &part.kind {
+        Kind::Unary(Function::Negate, sum) => square_by_numbers(numbers, sum),
+        Kind::Binary(Operator::Mul, a, b) if !a.varies() || !b.varies() => {
+            let (constant, sum) = if a.varies() { (b, a) } else { (a, b) };
+            let square = binary(Operator::Mul, constant, constant);
+            Some(binary(Operator::Mul, &square, &square_by_numbers(numbers, sum)?))
+        }
+        _ => sum_of_squares(&products_with(numbers, part)?),
+    }
+}
+
+/// Returns the sum of the squares of the coefficients. Returns `None` without products.
+fn sum_of_squares(products: &[Projected]) -> Option<Arc<Expression>> {
+    let mut sum: Option<Arc<Expression>> = None;
+    for Projected { coefficient, .. } in products {
+        let own = binary(Operator::Mul, coefficient, coefficient);
+        sum = Some(match &sum {
+            None => own,
+            Some(sum) => binary(Operator::Add, sum, &own),
+        });
+    }
+    sum
+}
+
+/// Returns the squares of the lengths whose product is the divisor: each is the operand of a root. Returns `None` for a divisor of
+/// another kind.
+fn squares_of_lengths(divisor: &Expression) -> Option<Vec<Arc<Expression>>> {
+    match &divisor.kind {
+        Kind::Unary(Function::Sqrt, square) => match &square.kind {
+            Kind::Binary(Operator::Mul, a, b) if a != b => Some(vec![a.clone(), b.clone()]),
+            _ => Some(vec![square.clone()]),
+        },
+        Kind::Binary(Operator::Mul, a, b) => {
+            let mut squares = squares_of_lengths(a)?;
+            squares.extend(squares_of_lengths(b)?);
+            Some(squares)
+        }
+        _ => None,
+    }
+}
+
+/// Returns the different numbers whose squares a sum adds. A constant that is not negative may be added too: it makes a divisor larger.
+/// Returns `None` for any other formula.
+fn numbers_of(sum: &Arc<Expression>) -> Option<Vec<Arc<Expression>>> {
+    let mut numbers = Vec::new();
+    for term in terms_of(sum, &[Operator::Add])? {
+        let number = match &term.kind {
+            Kind::Binary(Operator::Power, base, exponent) if **exponent == *two() => base,
+            Kind::Binary(Operator::Mul, a, b) if a == b => a,
+            _ if term.rational().is_some_and(|value| value >= RBig::ZERO) => continue,
+            _ => return None,
+        };
+        if numbers.contains(number) {
+            return None;
+        }
+        numbers.push(number.clone());
+    }
+    Some(numbers)
+}
+
+/// Returns the products that a dividend adds or subtracts. Each has one of the numbers as a factor, and no two have the same. Returns
+/// `None` for any other formula.
+fn products_with(
+    numbers: &[Arc<Expression>],
+    dividend: &Arc<Expression>,
+) -> Option<Vec<Projected>> {
+    let mut products: Vec<Projected> = Vec::new();
+    for term in terms_of(dividend, &[Operator::Add, Operator::Sub])? {
+        let is_number = |part: &Arc<Expression>| numbers.contains(part);
+        let (number, coefficient) = match &term.kind {
+            _ if is_number(&term) => (term.clone(), one()),
+            Kind::Unary(Function::Negate, a) if is_number(a) => (a.clone(), one()),
+            Kind::Binary(Operator::Mul, a, b) if is_number(a) => (a.clone(), b.clone()),
+            Kind::Binary(Operator::Mul, a, b) if is_number(b) => (b.clone(), a.clone()),
+            Kind::Binary(Operator::Power, base, exponent)
+                if **exponent == *two() && is_number(base) =>
+            {
+                (base.clone(), base.clone())
+            }
+            _ => return None,
+        };
+        if products.iter().any(|known| known.number == number) {
+            return None;
+        }
+        products.push(Projected { number, coefficient });
+    }
+    Some(products)
+}
+
+/// Returns the formulas that a chain of the operators joins: for sums and differences, `a - (b + c)` gives a, b and c. Returns `None` for
+/// a chain of more than [`MOST_TERMS`] formulas.
+fn terms_of(part: &Arc<Expression>, operators: &[Operator]) -> Option<Vec<Arc<Expression>>> {
+    let mut terms = Vec::new();
+    let mut open = vec![part.clone()];
+    while let Some(part) = open.pop() {
+        if terms.len() + open.len() >= MOST_TERMS {
+            return None;
+        }
+        match &part.kind {
+            Kind::Binary(operator, a, b) if operators.contains(operator) => {
+                open.extend([a.clone(), b.clone()]);
+            }
+            _ => terms.push(part),
+        }
+    }
+    Some(terms)
+}
+
+fn binary(operator: Operator, a: &Arc<Expression>, b: &Arc<Expression>) -> Arc<Expression> {
+    let kind = Kind::Binary(operator, a.clone(), b.clone());
+    Arc::new(Expression::new(kind, a.span.clone()))
+}
+
+fn one() -> Arc<Expression> {
+    Arc::new(parse("1").expect("a number"))
+}
+
+fn two() -> Arc<Expression> {
+    Arc::new(parse("2").expect("a number"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Returns the square of the limit as text.
+    fn limit_of(formula: &str) -> Option<String> {
+        let formula = parse(formula).expect("a formula");
+        square_of_limit(&formula.kind).map(|square| square.python())
+    }
+
+    /// Returns the value of a formula for x, y, p and q.
+    fn value(formula: &str, [x, y, p, q]: [f64; 4]) -> f64 {
+        let operands = [("x", x), ("y", y), ("p", p), ("q", q)]
+            .map(|(name, value)| (name, glint_formula::Enclosure::exactly(value)));
+        parse(formula).expect("a formula").enclose(&operands).expect("a value").middle()
+    }
+
+    #[test]
+    fn a_quotient_by_a_length_is_at_most_the_length_of_the_coefficients() {
+        for formula in [
+            "x / sqrt(x^2 + y^2)",
+            "-x / sqrt(y * y + x * x + 3)",
+            "(x * p + q * y) / sqrt(x^2 + y^2)",
+            "(x * p - 3 * y) / sqrt(x^2 + y^2 + 0.5)",
+            "(x * p + q * y) / (sqrt(x^2 + y^2) * sqrt(p^2 + q^2))",
+            "(x * p + q * y) / sqrt((x^2 + y^2) * (p^2 + q^2))",
+            "(x^2 + p * y) / sqrt(x^2 + y^2)",
+            "x^2 * y / sqrt(x^2 + y^2)",
+            "x * (x * p + y * q) / (x^2 + y^2)",
+            "(y * q - p * x) * (x * p + y * 7) / (x^2 + y^2)",
+            "x * ((x * p + y * q) / (x^2 + y^2))",
+            "-3 * (x * p + y * q) / (x^2 + y^2) * x",
+            "3 * ((x * p + y * q) / (x^2 + y^2)) * y",
+            "(y * q + x * p) * 0.5 / sqrt(x^2 + y^2)",
+        ] {
+            let limit = limit_of(formula).unwrap_or_else(|| panic!("{formula} has a limit"));
+            for point in [[1.0, 2.0, 3.0, -4.0], [-0.5, 0.25, 2.0, 8.0], [3.0, 4.0, 3.0, 4.0]] {
+                let limit = value(&limit, point).sqrt();
+                let value = value(formula, point).abs();
+                assert!(value <= limit * (1.0 + 1e-12), "{formula} is {value}, above {limit}");
+            }
+        }
+    }
+
+    #[test]
+    fn other_quotients_have_no_limit() {
+        for formula in [
+            "z / sqrt(x^2 + y^2)",
+            "x / sqrt(x^2 - y^2)",
+            "x / sqrt(x^2 + y)",
+            "x / sqrt(x^2 - 1)",
+            "(x * p + x * q) / sqrt(x^2 + y^2)",
+            "x * y * p / sqrt(x^2 + y^2)",
+            "(x * p + y * q) / (sqrt(x^2 + y^2) * sqrt(p^2))",
+            "(x * p + y * p) / (sqrt(x^2 + y^2) * sqrt(p^2 + q^2))",
+            "x / (x^2 + y^2)",
+            "x * p / (x^2 + y^2)",
+            "x * (x * p + y * q) / (x^2 - y^2)",
+        ] {
+            assert_eq!(limit_of(formula), None, "{formula}");
+        }
+    }
+}
