@@ -114,9 +114,38 @@ fn grown(
             guards.add_bit(sibling);
         }
         plan = with_guards(search, &mut guards, FIRST_GUARD)
+            .or_else(|_| with_idle_operations(search, &plan, &mut guards))
             .map_err(|_| excess.refusal(statement, &plan))?;
     }
     Ok((guards, plan))
+}
+
+/// Returns the plan with the fewest guard bits for operations that round nothing in the plan `before`, and adds these bits to `guards`.
+/// A value that became wider can need such an operation: the operand of a table is shortened if it has too many bits. Fails if no number of
+/// bits gives a plan.
+fn with_idle_operations(
+    search: &PlanSearch<'_>,
+    before: &ExpressionPlan,
+    guards: &mut Guards,
+) -> Result<ExpressionPlan, PlanRefusal> {
+    let rounds = |source: usize| before.nodes.iter().any(|node| node.source == Some(source));
+    let idle: Vec<usize> = (0..guards.bits.len()).filter(|source| !rounds(*source)).collect();
+    let mut more = FIRST_GUARD;
+    loop {
+        more += 1;
+        let mut attempt = guards.clone();
+        for source in &idle {
+            attempt.bits[*source] = attempt.bits[*source].max(more);
+        }
+        match with_guards(search, &mut attempt, FIRST_GUARD) {
+            Ok(plan) => {
+                *guards = attempt;
+                return Ok(plan);
+            }
+            Err(refusal) if more == MOST_GUARD || idle.is_empty() => return Err(refusal),
+            Err(_) => {}
+        }
+    }
 }
 
 /// Returns the rounding operations that get and lose guard bits together with `source`, in ascending order, by the ties of the search.
