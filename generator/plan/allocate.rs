@@ -33,6 +33,8 @@ pub(super) struct Allocation {
     pub(super) divisions: usize,
     /// The boxes of operands with which the errors were computed.
     pub(super) searches: ErrorSearches,
+    /// Whether low bits of products can be dropped in front of sums and comparisons.
+    pub(super) has_terms: bool,
 }
 
 /// Returns guard bits with which every result keeps its allowed error, and the plan with them. The errors of polynomials are
@@ -58,32 +60,84 @@ fn allocated_with(
 ) -> Result<Allocation, PlanRefusal> {
     let mut searches = undivided(search.statement);
     let by_known = grown(search, none, divisions, &mut searches, BitOrder::KnownShares);
-    let (mut guards, mut plan) = match by_known {
+    let (guards, plan) = match by_known {
         Ok(enough) => enough,
         Err(refusal) => grown(search, none, divisions, &mut searches, BitOrder::UnknownShares)
             .ok()
             .or_else(|| equally_many(search, none, divisions, &mut searches))
             .ok_or(refusal)?,
     };
-    for source in 0..guards.bits.len() {
-        let siblings = siblings_of(search, &plan, source);
-        if siblings.first().is_some_and(|first| *first < source) {
-            continue;
-        }
-        while guards.bits[source] > FIRST_GUARD {
-            let mut fewer = guards.clone();
-            for sibling in &siblings {
-                fewer.bits[*sibling] = (fewer.bits[*sibling] - 1).max(FIRST_GUARD);
-            }
-            let Ok(candidate) = with_guards(search, &mut fewer, FIRST_GUARD) else { break };
-            if largest_excess(search.statement, &candidate, divisions, &mut searches).is_some() {
-                break;
-            }
-            guards = fewer;
-            plan = candidate;
+    let terms = lowered(search, &guards, FIRST_GUARD, &FoundPolynomials::default())?.terms;
+    let mut is_kept = |guards: &mut Guards| -> Option<ExpressionPlan> {
+        let candidate = with_guards(search, guards, FIRST_GUARD).ok()?;
+        let excess = largest_excess(search.statement, &candidate, divisions, &mut searches);
+        excess.is_none().then_some(candidate)
+    };
+    let has_terms = !terms.is_empty();
+    let mut best = (guards, plan);
+    for source in 0..best.0.bits.len() {
+        let siblings = siblings_of(search, &best.1, source);
+        let is_first = siblings.first().is_none_or(|first| *first >= source);
+        if is_first && !terms.contains(&source) {
+            shrink(&mut best, &siblings, &mut is_kept);
         }
     }
-    Ok(Allocation { guards, plan, divisions, searches })
+    if has_terms && !none.style.cuts_terms_early {
+        cut_alike(&mut best, &terms, &mut is_kept);
+    }
+    if search.ties == WidthTies::Alike {
+        shrink(&mut best, &terms, &mut is_kept);
+    } else {
+        for term in terms {
+            shrink(&mut best, &[term], &mut is_kept);
+        }
+    }
+    let (guards, plan) = best;
+    Ok(Allocation { guards, plan, divisions, searches, has_terms })
+}
+
+/// Guard bits with which every result keeps its allowed error, and the plan with them.
+type KeptBits = (Guards, ExpressionPlan);
+
+/// Takes guard bits from some operations, one at a time from all, as long as every result keeps its allowed error. `is_kept` returns the
+/// plan with the given guard bits, or `None` if a result does not keep its error.
+fn shrink(
+    best: &mut KeptBits,
+    sources: &[usize],
+    is_kept: &mut dyn FnMut(&mut Guards) -> Option<ExpressionPlan>,
+) {
+    let can_shrink = |guards: &Guards| sources.iter().any(|it| guards.bits[*it] > FIRST_GUARD);
+    while can_shrink(&best.0) {
+        let mut fewer = best.0.clone();
+        for source in sources {
+            fewer.bits[*source] = (fewer.bits[*source] - 1).max(FIRST_GUARD);
+        }
+        let Some(plan) = is_kept(&mut fewer) else { return };
+        *best = (fewer, plan);
+    }
+}
+
+/// Gives all terms the same number of guard bits: the smallest with which every result keeps its allowed error.
+fn cut_alike(
+    best: &mut KeptBits,
+    terms: &[usize],
+    is_kept: &mut dyn FnMut(&mut Guards) -> Option<ExpressionPlan>,
+) {
+    let (mut least, mut most) = (FIRST_GUARD, MOST_GUARD);
+    while least < most {
+        let middle = (least + most).div_euclid(2);
+        let mut fewer = best.0.clone();
+        for term in terms {
+            fewer.bits[*term] = middle;
+        }
+        match is_kept(&mut fewer) {
+            Some(plan) => {
+                *best = (fewer, plan);
+                most = middle;
+            }
+            None => least = middle + 1,
+        }
+    }
 }
 
 /// Which rounding operation gets the next bit if the shares of some operations in the error are not known.
@@ -216,11 +270,18 @@ fn with_guards(
     first: i32,
 ) -> Result<ExpressionPlan, PlanRefusal> {
     loop {
-        let (plan, sources) = lowered(search, guards, first, &FoundPolynomials::default())?;
-        if sources <= guards.bits.len() {
-            return Ok(plan);
+        let lowered = lowered(search, guards, first, &FoundPolynomials::default())?;
+        let known = guards.bits.len();
+        if lowered.sources <= known {
+            return Ok(lowered.plan);
         }
-        guards.bits.resize(sources, first);
+        guards.bits.resize(lowered.sources, first);
+        for term in lowered.terms {
+            if term >= known && !guards.style.cuts_terms_early {
+                // Terms lose bits when all other operations have theirs.
+                guards.bits[term] = MOST_GUARD;
+            }
+        }
     }
 }
 

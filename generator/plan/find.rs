@@ -53,6 +53,7 @@ const FIRST_STYLE: PlanStyle = PlanStyle {
     centres_fractions: false,
     keeps_functions: false,
     fewest_dividends: 3,
+    cuts_terms_early: false,
     shares_table: false,
 };
 
@@ -142,6 +143,8 @@ struct PlanCandidate {
     plan: ExpressionPlan,
     /// The number of divisions of the domain with which the errors were computed.
     divisions: usize,
+    /// Whether low bits of products can be dropped in front of sums and comparisons.
+    has_terms: bool,
 }
 
 /// Returns the plan for a statement, with proven error bounds.
@@ -217,7 +220,7 @@ fn shared_widths(functions: &[TargetFunction]) -> Option<SharedWidths> {
 /// Returns the plan of a search. Fails as [`find`] does.
 fn find_with(search: &PlanSearch<'_>) -> Result<ProvedPlan, PlanRefusal> {
     let statement = search.statement;
-    let PlanCandidate { plan: whole, divisions } = smallest_candidate(search)?;
+    let PlanCandidate { plan: whole, divisions, .. } = smallest_candidate(search)?;
     let (plan, renumbered) = whole.with_reductions()?;
     check_multiplier(&plan)?;
     let enclosed = enclosed_errors(statement, &whole, divisions.max(DIVISIONS))?;
@@ -363,13 +366,18 @@ fn smallest_candidate(search: &PlanSearch<'_>) -> Result<PlanCandidate, PlanRefu
             break;
         }
     }
-    let best = smallest.as_ref().map(|(cells, style, _)| (*cells, *style));
-    let best_style = best.map_or(FIRST_STYLE, |(_, style)| style);
-    if let Some(fewest_dividends) = fewest_dividends(statement)
-        && let Ok(candidate) = candidate_with(search, PlanStyle { fewest_dividends, ..best_style })
-        && best.is_none_or(|(least, _)| candidate.plan.total_cells() < CLEARLY_FEWER * least)
-    {
-        return Ok(candidate);
+    let best_style = smallest.as_ref().map_or(FIRST_STYLE, |(_, style, _)| *style);
+    let fewest_dividends = fewest_dividends(statement);
+    let has_terms = smallest.as_ref().is_some_and(|(.., best)| best.has_terms);
+    let by_dividends = fewest_dividends
+        .map(|fewest_dividends| (CLEARLY_FEWER, PlanStyle { fewest_dividends, ..best_style }));
+    let by_terms = has_terms.then_some((1.0, PlanStyle { cuts_terms_early: true, ..best_style }));
+    for (share, style) in by_dividends.into_iter().chain(by_terms) {
+        let Ok(candidate) = candidate_with(search, style) else { continue };
+        let cells = candidate.plan.total_cells();
+        if smallest.as_ref().is_none_or(|(least, ..)| cells < share * least) {
+            smallest = Some((cells, style, candidate));
+        }
     }
     match (smallest, first_refusal) {
         (Some((_, _, candidate)), _) => Ok(candidate),
@@ -400,7 +408,7 @@ fn candidate_below(
     style: PlanStyle,
     most_cells: Option<f64>,
 ) -> Result<Option<PlanCandidate>, PlanRefusal> {
-    let Allocation { mut guards, plan: estimate, divisions, mut searches } =
+    let Allocation { mut guards, plan: estimate, divisions, mut searches, has_terms } =
         allocated(search, style)?;
     if most_cells.is_some_and(|most| estimate.total_cells() > most || has_long_table(&estimate)) {
         return Ok(None);
@@ -410,17 +418,19 @@ fn candidate_below(
     // The polynomials can have other formats than estimated, and then other errors.
     for _ in 0..MOST_CORRECTIONS {
         let excess = largest_excess(statement, &plan, divisions, &mut searches);
-        let Some(excess) = excess else { return Ok(Some(PlanCandidate { plan, divisions })) };
+        let Some(excess) = excess else {
+            return Ok(Some(PlanCandidate { plan, divisions, has_terms }));
+        };
         let source = excess.source(statement, &plan, &guards, BitOrder::UnknownShares)?;
         for sibling in siblings_of(search, &plan, source) {
             guards.add_bit(sibling);
         }
-        let estimate = lowered(search, &guards, 0, &FoundPolynomials::default())?.0;
+        let estimate = lowered(search, &guards, 0, &FoundPolynomials::default())?.plan;
         plan = with_polynomials(search, &guards, estimate)?;
     }
     match largest_excess(statement, &plan, divisions, &mut searches) {
         Some(excess) => Err(excess.refusal(statement, &plan)),
-        None => Ok(Some(PlanCandidate { plan, divisions })),
+        None => Ok(Some(PlanCandidate { plan, divisions, has_terms })),
     }
 }
 
@@ -449,7 +459,7 @@ fn with_polynomials(
         if is_complete {
             return Ok(plan);
         }
-        plan = lowered(search, guards, 0, &found)?.0;
+        plan = lowered(search, guards, 0, &found)?.plan;
     }
 }
 

@@ -99,6 +99,9 @@ pub(super) struct PlanStyle {
     pub(super) keeps_functions: bool,
     /// The least number of quotients by the same divisor for which the reciprocal of the divisor is computed once.
     pub(super) fewest_dividends: usize,
+    /// Whether the low bits of products in front of sums are dropped as early as other bits. Otherwise they are dropped when all other
+    /// operations have their widths.
+    pub(super) cuts_terms_early: bool,
     /// Whether the tables of the plan are pages of a table that several functions share. All normalised words then have the same bits, so
     /// that they need no choice in front of the table.
     pub(super) shares_table: bool,
@@ -202,6 +205,8 @@ pub(super) struct Lowering<'s> {
     divisors: Vec<quotient::KnownDivisor>,
     /// The number of rounding operations so far.
     sources: usize,
+    /// The numbers of the rounding operations that drop low bits of products.
+    terms: Vec<usize>,
     /// The guard bits of roundings within a computation whose result is corrected, so that the planner does not choose them.
     fixed_guard: Option<FixedGuard>,
     /// The largest number of fraction bits among the results.
@@ -253,7 +258,17 @@ impl<'s> PlanSearch<'s> {
     }
 }
 
-/// Returns the plan of a statement, and the number of its rounding operations. Operation number i gets the guard bits
+/// A statement, rewritten as a plan.
+pub(super) struct LoweredStatement {
+    pub(super) plan: ExpressionPlan,
+    /// The number of rounding operations.
+    pub(super) sources: usize,
+    /// The numbers of the rounding operations that drop low bits of products in front of a sum or a comparison. They cost nothing, and the
+    /// sums become narrower.
+    pub(super) terms: Vec<usize>,
+}
+
+/// Returns the plan of a statement. Rounding operation number i gets the guard bits
 /// `guards.bits[i]`, or `first_guard` if the list is shorter.
 ///
 /// # Errors
@@ -263,7 +278,7 @@ pub(super) fn lowered(
     guards: &Guards,
     first_guard: i32,
     found: &FoundPolynomials,
-) -> Result<(ExpressionPlan, usize), PlanRefusal> {
+) -> Result<LoweredStatement, PlanRefusal> {
     let statement = search.statement;
     let finest = statement.results.iter().map(|result| result.fraction as i32).max();
     let mut lowering = Lowering {
@@ -280,6 +295,7 @@ pub(super) fn lowered(
         octants: Vec::new(),
         divisors: Vec::new(),
         sources: 0,
+        terms: Vec::new(),
         fixed_guard: None,
         finest: finest.unwrap_or(0),
     };
@@ -301,7 +317,7 @@ pub(super) fn lowered(
         lowering.plan.proved.push(proved);
         lowering.plan.results.push(node);
     }
-    Ok((lowering.plan, lowering.sources))
+    Ok(LoweredStatement { plan: lowering.plan, sources: lowering.sources, terms: lowering.terms })
 }
 
 impl<'s> Lowering<'s> {
@@ -659,7 +675,7 @@ impl<'s> Lowering<'s> {
                 self.plan.negate("ceiling", whole)
             }
             Operator::Add => {
-                let (a, b) = (self.part(a)?, self.part(b)?);
+                let (a, b) = (self.term(a)?, self.term(b)?);
                 self.plan.add("sum", a, b)
             }
             Operator::Sub
@@ -683,18 +699,41 @@ impl<'s> Lowering<'s> {
                 Ok(whole)
             }
             Operator::Sub => {
-                let (a, b) = (self.part(a)?, self.part(b)?);
+                let (a, b) = (self.term(a)?, self.term(b)?);
                 self.plan.subtract("difference", a, b)
             }
+            Operator::Max | Operator::Min
+                if let Some(limited) = self.with_limited_dividend(operator, a, b) =>
+            {
+                self.part(&limited)
+            }
             Operator::Min => {
-                let (a, b) = (self.part(a)?, self.part(b)?);
+                let (a, b) = (self.term(a)?, self.term(b)?);
                 self.plan.minimum("smaller", a, b)
             }
             Operator::Max => {
-                let (a, b) = (self.part(a)?, self.part(b)?);
+                let (a, b) = (self.term(a)?, self.term(b)?);
                 self.plan.maximum("larger", a, b)
             }
         }
+    }
+
+    /// Returns the node of a term of a sum, or of a number that is compared. If the term is a product of rounded numbers, its low bits are
+    /// dropped: they would make the sum and all that follows wider. Fails if a part has too many bits, no finite values, or no rule.
+    fn term(&mut self, part: &Expression) -> Result<NodeId, PlanRefusal> {
+        let node = self.part(part)?;
+        let product = match self.plan.node(node).operation {
+            Operation::Scale(product) => product,
+            _ => node,
+        };
+        let is_product = matches!(self.plan.node(product).operation, Operation::Multiply(..));
+        if !is_product || self.is_exact(node) || self.fixed_guard.is_some() {
+            return Ok(node);
+        }
+        self.terms.push(self.sources);
+        self.rounding(self.finest, |own, frac| {
+            own.plan.shorten("term", node, frac, Rounding::Truncate)
+        })
     }
 
     /// Returns the node of a factor of a product, shortened if it has more bits than a multiplier takes. Fails if a part has

@@ -101,7 +101,11 @@ fn square_by_numbers(
     part: &Arc<Expression>,
 ) -> Option<Arc<Expression>> {
     match &part.kind {
-        Kind::Unary(Function::Negate, sum) => square_by_numbers(numbers, sum),
+        Kind::Unary(Function::Negate | Function::Abs, sum) => square_by_numbers(numbers, sum),
+        // The larger of 0 and a sum is not farther from 0 than the sum.
+        Kind::Binary(Operator::Min | Operator::Max, a, b) if is_zero(a) || is_zero(b) => {
+            square_by_numbers(numbers, if is_zero(a) { b } else { a })
+        }
         Kind::Binary(Operator::Mul, a, b) if !a.varies() || !b.varies() => {
             let (constant, sum) = if a.varies() { (b, a) } else { (a, b) };
             let square = binary(Operator::Mul, constant, constant);
@@ -213,6 +217,10 @@ fn binary(operator: Operator, a: &Arc<Expression>, b: &Arc<Expression>) -> Arc<E
     Arc::new(Expression::new(kind, a.span.clone()))
 }
 
+fn is_zero(part: &Expression) -> bool {
+    !part.varies() && part.rational().is_some_and(|value| value.is_zero())
+}
+
 fn one() -> Arc<Expression> {
     Arc::new(parse("1").expect("a number"))
 }
@@ -255,6 +263,8 @@ mod tests {
             "-3 * (x * p + y * q) / (x^2 + y^2) * x",
             "3 * ((x * p + y * q) / (x^2 + y^2)) * y",
             "(y * q + x * p) * 0.5 / sqrt(x^2 + y^2)",
+            "max(0, y * q + x * p) / sqrt(x^2 + y^2)",
+            "abs(y * q + x * p) / sqrt(x^2 + y^2)",
         ] {
             let limit = limit_of(formula).unwrap_or_else(|| panic!("{formula} has a limit"));
             for point in [[1.0, 2.0, 3.0, -4.0], [-0.5, 0.25, 2.0, 8.0], [3.0, 4.0, 3.0, 4.0]] {
@@ -278,6 +288,7 @@ mod tests {
             "(x * p + y * p) / (sqrt(x^2 + y^2) * sqrt(p^2 + q^2))",
             "x / (x^2 + y^2)",
             "x * p / (x^2 + y^2)",
+            "max(1, x) / sqrt(x^2 + y^2)",
             "x * (x * p + y * q) / (x^2 - y^2)",
         ] {
             assert_eq!(limit_of(formula), None, "{formula}");

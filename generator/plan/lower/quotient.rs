@@ -363,6 +363,33 @@ impl Lowering<'_> {
         self.plan.choose("quotient", is_negative, [quotient, negated])
     }
 
+    /// Returns the larger (or the smaller) of 0 and a quotient by a positive number as a quotient whose dividend is limited: `max(0, x / y)`
+    /// becomes `max(0, x) / y`. The dividend then has no sign, so that its factor has one bit less. Returns `None` for any other numbers.
+    pub(super) fn with_limited_dividend(
+        &self,
+        operator: Operator,
+        a: &Expression,
+        b: &Expression,
+    ) -> Option<Expression> {
+        let is_zero = |part: &Expression| *part == number("0");
+        let (quotient, is_first) = match (is_zero(a), is_zero(b)) {
+            (true, false) => (b, false),
+            (false, true) => (a, true),
+            _ => return None,
+        };
+        let Kind::Binary(Operator::Div, dividend, divisor) = &quotient.kind else { return None };
+        if !divisor.varies() || !self.range_here(divisor).is_ok_and(|values| values.low > 0.0) {
+            return None;
+        }
+        let zero = Arc::new(number("0"));
+        let numbers = if is_first { [dividend, &zero] } else { [&zero, dividend] };
+        let [first, second] = numbers.map(Arc::clone);
+        let kind = Kind::Binary(operator, first, second);
+        let limited = Arc::new(Expression::new(kind, dividend.span.clone()));
+        let kind = Kind::Binary(Operator::Div, limited, divisor.clone());
+        Some(Expression::new(kind, quotient.span.clone()))
+    }
+
     /// Returns whether every result of the statement is promised only for a < b, and a is never below 0. The quotient a / b is
     /// then at most 1.
     fn is_proper(&self, a: &Expression, b: &Expression) -> bool {
