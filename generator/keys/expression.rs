@@ -17,7 +17,7 @@ use glint_formula::{
 };
 use glint_plan::{
     ExpressionStatement, Operation, PartToLimit, PlanRefusal, ProvedPlan, StatedOperand,
-    StatedOverflow, StatedResult, StatedWidth, find_ordered, least_size,
+    StatedOverflow, StatedResult, StatedWidth, TableMemory, find_ordered, least_size,
 };
 
 use lists::{MOST_NUMBERS, OperandPorts, operand_entry, result_names};
@@ -38,6 +38,17 @@ const LARGEST_ERROR: f64 = 1024.0;
 const RELATIVE_ERROR: &str =
     "give a number between 0 and 1, or a formula of numbers, for example \"2^-12\"";
 
+/// The key that says where the tables of polynomials are stored.
+pub(super) const TABLES: &str = "tables";
+
+glint_config::choices! {
+    /// Where the tables of polynomials are stored.
+    pub enum TableChoice {
+        Logic = "logic",
+        BlockMemory = "block-memory",
+    }
+}
+
 glint_config::keys! {
     pub struct Keys {
         operands: TableEntries = Key::records("operands", &example_operands(), operand_fields(), None, 1..=16,
@@ -47,6 +58,10 @@ glint_config::keys! {
             "Named parts of the formulas. The formula of a part may use operands and earlier parts."),
         results: TableEntries = Key::records("results", &example_results(), result_fields(), None, 1..=16,
             "The results, in the order of the ports. The formula of a result may use operands and named parts."),
+        tables: TableChoice = Key::choice(TABLES, "logic", TableChoice::WORDS,
+            "Where the tables of polynomials are stored. \"block-memory\" puts a table into a block memory wherever that \
+             saves look-up tables or multipliers; on ECP5, a pipeline then reaches 144 MHz. \"logic\" takes a block memory \
+             only if it saves at least 300 look-up tables."),
     }
 }
 
@@ -207,8 +222,12 @@ pub fn plan(config: &Config) -> Result<ProvedPlan, ConfigError> {
     let keys = Keys::of(config);
     let statement = statement(&keys)?;
     let lists = ordered_lists(&keys, &statement)?;
-    let plan =
-        find_ordered(&statement, &lists).map_err(|refusal| refused(&keys, &statement, refusal))?;
+    let memory = match keys.tables {
+        TableChoice::Logic => TableMemory::Logic,
+        TableChoice::BlockMemory => TableMemory::Block,
+    };
+    let plan = find_ordered(&statement, &lists, memory)
+        .map_err(|refusal| refused(&keys, &statement, refusal))?;
     check_operands_have_readers(&keys, &plan)?;
     Ok(plan)
 }

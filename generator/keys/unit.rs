@@ -42,6 +42,8 @@ glint_config::keys! {
 
 fn function_fields() -> Vec<Key> {
     let mut fields = expression::Keys::keys();
+    // The functions of a unit share one table.
+    fields.retain(|field| field.name != expression::TABLES);
     let formula =
         Key::text("formula", "x^2", TextPattern::Formula, "A formula of the function's operand.");
     fields.push(Key::records(
@@ -112,6 +114,7 @@ fn keys_of(function: &TableEntry) -> Result<expression::Keys, ConfigError> {
         operands: entries(OPERANDS),
         parts: entries(PARTS),
         results: entries(RESULTS),
+        tables: expression::TableChoice::Logic,
     })
 }
 

@@ -20,6 +20,9 @@ const MOST_FIRST_GUARD: i32 = 9;
 /// The largest number of guard bits of an operation.
 const MOST_GUARD: i32 = 24;
 
+/// The most bits that an operation gets in exchange for a bit of another one.
+const MOST_EXCHANGED: usize = 2;
+
 /// The numbers of divisions of the domain for an estimate of the error, in the order in which they are tried. Few divisions are
 /// faster. With more divisions, the operands for which rounding can make a decision wrong are confined to smaller boxes.
 const DIVISIONS: [usize; 2] = [400, 1500];
@@ -82,6 +85,9 @@ fn allocated_with(
             shrink(&mut best, &siblings, &mut is_kept);
         }
     }
+    if none.style.narrows_factors {
+        narrow_factors(search, &mut best, &mut is_kept);
+    }
     if has_terms && !none.style.cuts_terms_early {
         cut_alike(&mut best, &terms, &mut is_kept);
     }
@@ -115,6 +121,68 @@ fn shrink(
         let Some(plan) = is_kept(&mut fewer) else { return };
         *best = (fewer, plan);
     }
+}
+
+/// Takes bits from factors that have more bits than a multiplier's input, and gives a few bits to another operation in exchange, where the
+/// plan then takes fewer look-up tables by the estimate.
+fn narrow_factors(
+    search: &PlanSearch<'_>,
+    best: &mut KeptBits,
+    is_kept: &mut dyn FnMut(&mut Guards) -> Option<ExpressionPlan>,
+) {
+    let mut sources: Vec<usize> = Vec::new();
+    for factor in best.1.wide_factors() {
+        if let Some(source) = best.1.rounding_before(factor)
+            && !sources.contains(&source)
+        {
+            sources.push(source);
+        }
+    }
+    for source in sources {
+        while let Some(smaller) = exchanged(search, best, source, is_kept) {
+            *best = smaller;
+        }
+    }
+}
+
+/// Returns guard bits with one bit less for an operation, and up to [`MOST_EXCHANGED`] bits more for another one, if the plan then takes
+/// fewer look-up tables by the estimate. Returns `None` if no such exchange keeps the errors.
+fn exchanged(
+    search: &PlanSearch<'_>,
+    best: &KeptBits,
+    source: usize,
+    is_kept: &mut dyn FnMut(&mut Guards) -> Option<ExpressionPlan>,
+) -> Option<KeptBits> {
+    let (guards, plan) = best;
+    let siblings = siblings_of(search, plan, source);
+    if siblings.iter().any(|sibling| guards.bits[*sibling] <= FIRST_GUARD) {
+        return None;
+    }
+    let cells = plan.cells_without_polynomials();
+    let mut fewer = guards.clone();
+    for sibling in &siblings {
+        fewer.bits[*sibling] -= 1;
+    }
+    for other in 0..guards.bits.len() {
+        let others = siblings_of(search, plan, other);
+        let is_first = others.first().is_none_or(|first| *first >= other);
+        if siblings.contains(&other) || !is_first {
+            continue;
+        }
+        let mut attempt = fewer.clone();
+        for _ in 0..MOST_EXCHANGED {
+            for sibling in &others {
+                attempt.bits[*sibling] = (attempt.bits[*sibling] + 1).min(MOST_GUARD);
+            }
+            if let Some(plan) = is_kept(&mut attempt) {
+                if plan.cells_without_polynomials() < cells {
+                    return Some((attempt, plan));
+                }
+                break;
+            }
+        }
+    }
+    None
 }
 
 /// Gives all terms the same number of guard bits: the smallest with which every result keeps its allowed error.

@@ -4,6 +4,7 @@
 //! polynomials takes one for each 16 words of a bit, and more for the sums of Horner's rule. Products take multipliers, and
 //! look-up tables only for the bits that exceed a multiplier of 18 by 18 bits.
 
+use super::memory::TableMemory;
 use super::node::{NodeId, Operation, PlanNode, normalising_shifts};
 use super::plan::ExpressionPlan;
 use std::collections::HashMap;
@@ -30,6 +31,15 @@ const MOST_BITS_OF_FAST_TABLE: u64 = 2048;
 
 /// The cost of a block memory in look-up tables. The planner prefers a plan with fewer look-up tables more than this.
 const CELLS_IN_PLACE_OF_BLOCK: f64 = 300.0;
+
+/// The look-up tables for each bit of a table's value, before the polynomials are known.
+const CELLS_OF_A_TABLE_BIT: f64 = 12.0;
+
+/// The bits of a block memory, if block memories are to be used.
+const BITS_OF_A_BLOCK: u64 = 1 << 14;
+
+/// The cost of a block memory in look-up tables, if block memories are to be used.
+const CELLS_OF_A_BLOCK: f64 = 30.0;
 
 /// The look-up tables for each pair of bits that exceeds the multiplier.
 const CELLS_OF_BIT_PAIR: f64 = 1.5;
@@ -106,7 +116,8 @@ impl ExpressionPlan {
             Operation::Lookup { words, .. } => width * words.len().div_ceil(WORDS_OF_CELL) as f64,
             Operation::Polynomial(_, approximation) => {
                 let found = approximation.polynomials.as_ref();
-                found.map_or(0.0, |found| cells_of_function(&approximation.function, found))
+                let cells = |found| cells_of_function(&approximation.function, found, self.memory);
+                found.map_or(0.0, cells)
             }
         }
     }
@@ -133,24 +144,72 @@ impl ExpressionPlan {
     }
 }
 
+impl ExpressionPlan {
+    /// Returns an estimate of the number of look-up tables that the plan takes, before its polynomials are known.
+    pub(super) fn cells_without_polynomials(&self) -> f64 {
+        let mut cells = self.total_cells();
+        for node in &self.nodes {
+            if matches!(node.operation, Operation::Polynomial(..)) {
+                cells += CELLS_OF_A_TABLE_BIT * f64::from(node.format.width());
+            }
+        }
+        cells
+    }
+
+    /// Returns the factors of products that have more bits than a multiplier's input.
+    pub(super) fn wide_factors(&self) -> Vec<NodeId> {
+        let mut wide = Vec::new();
+        for node in &self.nodes {
+            if let Operation::Multiply(a, b) = node.operation {
+                let widths = factor_widths(self.node(a), self.node(b));
+                for (factor, width) in [a, b].into_iter().zip(widths) {
+                    if width > FACTOR_BITS {
+                        wide.push(factor);
+                    }
+                }
+            }
+        }
+        wide
+    }
+}
+
+/// Returns the bits of both factors of a product. If one factor has a sign, the multiplier takes signed numbers, and the other factor gets
+/// a bit for its sign.
+fn factor_widths(a: &PlanNode, b: &PlanNode) -> [u32; 2] {
+    let has_sign = a.format.signed || b.format.signed;
+    [a, b].map(|node| node.format.width() + u32::from(has_sign && !node.format.signed))
+}
+
 /// Returns the number of look-up tables for the bits of two factors that exceed a multiplier.
 fn cells_of_product(a: &PlanNode, b: &PlanNode) -> f64 {
-    let signed_width = |node: &PlanNode| node.format.width() + u32::from(!node.format.signed);
-    let [a, b] = [a, b].map(signed_width);
+    let [a, b] = factor_widths(a, b);
     let excess = |own: u32, other: u32| f64::from(own.saturating_sub(FACTOR_BITS) * other);
     CELLS_OF_BIT_PAIR * (excess(a, b) + excess(b, a))
 }
 
 /// Returns an estimate of the number of look-up tables that a function takes in a pipeline, including the operations of its
 /// range reduction. The estimate is infinite if one of these operations has too many bits.
-pub(super) fn cells_of_function(function: &TargetFunction, found: &Arc<Piecewise>) -> f64 {
+pub(super) fn cells_of_function(
+    function: &TargetFunction,
+    found: &Arc<Piecewise>,
+    memory: TableMemory,
+) -> f64 {
     if found.reduction.is_some() {
         let plan = ExpressionPlan::of_function(function, found);
-        return plan.map_or(f64::INFINITY, |plan| plan.total_cells());
+        return match plan {
+            Ok(plan) => ExpressionPlan { memory, ..plan }.total_cells(),
+            Err(_) => f64::INFINITY,
+        };
     }
-    let is_slow = found.rom_bits() > MOST_BITS_OF_FAST_TABLE;
-    let of_block = if is_slow { CELLS_IN_PLACE_OF_BLOCK } else { 0.0 };
+    let is_in_block = found.rom_bits() > MOST_BITS_OF_FAST_TABLE;
+    let of_table = match memory {
+        TableMemory::Logic if is_in_block => found.rom_cells() + CELLS_IN_PLACE_OF_BLOCK,
+        TableMemory::Block if is_in_block => {
+            CELLS_OF_A_BLOCK * found.rom_bits().div_ceil(BITS_OF_A_BLOCK) as f64
+        }
+        _ => found.rom_cells(),
+    };
     let of_degree = CELLS_OF_A_DEGREE * found.degree() as f64;
     let of_octaves = CELLS_OF_AN_OCTAVE * f64::from(found.segments.octaves);
-    found.rom_cells() + of_degree + of_octaves + of_block
+    of_table + of_degree + of_octaves
 }

@@ -65,7 +65,7 @@ impl ExpressionPlan {
     /// # Errors
     /// Fails if a node has too many bits.
     pub(super) fn with_reductions(&self) -> Result<(Self, Vec<NodeId>), PlanRefusal> {
-        let mut plan = Self::default();
+        let mut plan = Self { memory: self.memory, ..Self::default() };
         let mut renumbered: Vec<NodeId> = Vec::with_capacity(self.nodes.len());
         for node in &self.nodes {
             let operation = node.operation.with_inputs(&|id: NodeId| renumbered[id.0]);

@@ -10,7 +10,7 @@ use std::rc::Rc;
 use std::sync::Arc;
 
 use glint_approximate::{
-    FULL_CELL, Identity, Piecewise, RefusalKind, SharedWidths, TargetFunction, Wish,
+    FULL_CELL, Identity, Layout, Piecewise, RefusalKind, SharedWidths, TargetFunction, Wish,
 };
 use glint_base::fixed::MAX_WIDTH;
 
@@ -22,6 +22,7 @@ use super::lower::{
     FoundPolynomials, Guards, PlanSearch, PlanStyle, PolynomialMemo, TableRule, WidthTies,
     fewest_dividends, has_functions_of_operands, lowered,
 };
+use super::memory::TableMemory;
 use super::node::{NodeId, Operation};
 use super::plan::ExpressionPlan;
 use super::refusal::PlanRefusal;
@@ -54,6 +55,7 @@ const FIRST_STYLE: PlanStyle = PlanStyle {
     keeps_functions: false,
     fewest_dividends: 3,
     cuts_terms_early: false,
+    narrows_factors: false,
     shares_table: false,
 };
 
@@ -153,7 +155,17 @@ struct PlanCandidate {
 /// Fails if a formula has no plan, or if no plan keeps the allowed errors. The refusal says why, and how to change the
 /// statement.
 pub fn find(statement: &ExpressionStatement) -> Result<ProvedPlan, PlanRefusal> {
-    find_with(&PlanSearch::new(statement, TableRule::Cheapest))
+    find_stored(statement, TableMemory::Logic)
+}
+
+/// Returns the plan for a statement, with its tables in the given memory. Fails as [`find`] does.
+pub(super) fn find_stored(
+    statement: &ExpressionStatement,
+    memory: TableMemory,
+) -> Result<ProvedPlan, PlanRefusal> {
+    let mut search = PlanSearch::new(statement, TableRule::Cheapest);
+    search.memory = memory;
+    find_with(&search)
 }
 
 /// Returns the plan for a statement, in which operations at the same place of several numbers have the same widths. `polynomials` has the
@@ -161,10 +173,12 @@ pub fn find(statement: &ExpressionStatement) -> Result<ProvedPlan, PlanRefusal> 
 pub(super) fn find_alike(
     statement: &ExpressionStatement,
     polynomials: &Rc<PolynomialMemo>,
+    memory: TableMemory,
 ) -> Result<ProvedPlan, PlanRefusal> {
     let mut search = PlanSearch::new(statement, TableRule::Cheapest);
     search.ties = WidthTies::Alike;
     search.polynomials = polynomials.clone();
+    search.memory = memory;
     find_with(&search)
 }
 
@@ -373,16 +387,32 @@ fn smallest_candidate(search: &PlanSearch<'_>) -> Result<PlanCandidate, PlanRefu
         .map(|fewest_dividends| (CLEARLY_FEWER, PlanStyle { fewest_dividends, ..best_style }));
     let by_terms = has_terms.then_some((1.0, PlanStyle { cuts_terms_early: true, ..best_style }));
     for (share, style) in by_dividends.into_iter().chain(by_terms) {
-        let Ok(candidate) = candidate_with(search, style) else { continue };
-        let cells = candidate.plan.total_cells();
-        if smallest.as_ref().is_none_or(|(least, ..)| cells < share * least) {
-            smallest = Some((cells, style, candidate));
-        }
+        keep_smaller(search, &mut smallest, style, share);
+    }
+    if let Some((_, style, best)) = &smallest
+        && !best.plan.wide_factors().is_empty()
+    {
+        let style = PlanStyle { narrows_factors: true, ..*style };
+        keep_smaller(search, &mut smallest, style, 1.0);
     }
     match (smallest, first_refusal) {
         (Some((_, _, candidate)), _) => Ok(candidate),
         (None, Some(refusal)) => Err(refusal),
         (None, None) => unreachable!("there are styles to try"),
+    }
+}
+
+/// Replaces the smallest plan by one of the given style, if it takes fewer look-up tables than `share` times the present ones.
+fn keep_smaller(
+    search: &PlanSearch<'_>,
+    smallest: &mut Option<(f64, PlanStyle, PlanCandidate)>,
+    style: PlanStyle,
+    share: f64,
+) {
+    let Ok(candidate) = candidate_with(search, style) else { return };
+    let cells = candidate.plan.total_cells();
+    if smallest.as_ref().is_none_or(|(least, ..)| cells < share * least) {
+        *smallest = Some((cells, style, candidate));
     }
 }
 
@@ -477,28 +507,41 @@ fn polynomials_by(
             }
         }
     }
-    search.polynomials.found(function, cheapest_polynomials)
+    search.polynomials.found(function, |function| cheapest_polynomials(function, search.memory))
 }
 
 /// Returns the polynomials of a function with the lowest estimated cost in a pipeline, among those of degree 1, 2 and 3 and
 /// those with a range reduction. If none of these exists, returns the polynomials that [`glint_approximate::find`] chooses.
 /// Each degree needs a product, a sum, and registers for all values that wait for them. Fails if the function has no
 /// polynomials.
-fn cheapest_polynomials(function: &TargetFunction) -> Result<Arc<Piecewise>, PlanRefusal> {
+fn cheapest_polynomials(
+    function: &TargetFunction,
+    memory: TableMemory,
+) -> Result<Arc<Piecewise>, PlanRefusal> {
     let mut wishes = Vec::new();
     // Degree 2 is often the cheapest, and its cost ends the search of the others early.
     for degree in [2, 3, 1] {
         wishes.push(Wish { degree: Some(degree), ..Wish::default() });
+    }
+    if memory == TableMemory::Block {
+        // Octaves would save bits of the memory, and cost look-up tables.
+        for degree in [1, 2] {
+            let layout = Some(Layout::Uniform);
+            wishes.push(Wish { degree: Some(degree), layout, ..Wish::default() });
+        }
     }
     for identity in IDENTITIES {
         wishes.push(Wish { identity, ..Wish::default() });
     }
     let mut cheapest: Option<(f64, Arc<Piecewise>)> = None;
     for wish in wishes {
-        let most_cells = cheapest.as_ref().map(|(least, _)| least.ceil() as u32);
+        // A block memory costs less than the look-up tables with the same bits.
+        let is_limited = memory == TableMemory::Logic;
+        let cheapest_so_far = cheapest.as_ref().filter(|_| is_limited);
+        let most_cells = cheapest_so_far.map(|(least, _)| least.ceil() as u32);
         let wish = Wish { least_words: FULL_CELL, most_cells, ..wish };
         let Ok(found) = glint_approximate::find(function, wish) else { continue };
-        let cost = cells_of_function(function, &found);
+        let cost = cells_of_function(function, &found, memory);
         if cheapest.as_ref().is_none_or(|(least, _)| cost < *least) {
             cheapest = Some((cost, found));
         }

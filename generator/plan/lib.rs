@@ -51,6 +51,7 @@ mod frontier;
 mod guarded;
 mod hold;
 mod lower;
+mod memory;
 mod mirror;
 mod node;
 mod order;
@@ -68,6 +69,7 @@ mod uses;
 mod written;
 
 pub use find::{ProofKind, ProvedPlan, find};
+pub use memory::TableMemory;
 pub use mirror::{Mirror, MirrorChain};
 pub use node::{Approximation, NodeId, Operation, PlanNode};
 pub use ordered::find_ordered;

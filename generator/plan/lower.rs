@@ -37,6 +37,7 @@ use glint_formula::{Comparison, Enclosure, Expression, Function, Kind, Operator}
 use super::boxes::has_few_operands;
 use super::facts::has_fact;
 use super::guarded::GuardedFormula;
+use super::memory::TableMemory;
 use super::node::{NodeId, Operation, PlanNode, StatedValue, ValueAccuracy};
 use super::order;
 use super::plan::ExpressionPlan;
@@ -102,6 +103,8 @@ pub(super) struct PlanStyle {
     /// Whether the low bits of products in front of sums are dropped as early as other bits. Otherwise they are dropped when all other
     /// operations have their widths.
     pub(super) cuts_terms_early: bool,
+    /// Whether factors that are wider than a multiplier's input give bits to other operations.
+    pub(super) narrows_factors: bool,
     /// Whether the tables of the plan are pages of a table that several functions share. All normalised words then have the same bits, so
     /// that they need no choice in front of the table.
     pub(super) shares_table: bool,
@@ -219,6 +222,7 @@ pub(super) struct PlanSearch<'s> {
     pub(super) tables: TableRule,
     pub(super) ties: WidthTies,
     pub(super) polynomials: Rc<PolynomialMemo>,
+    pub(super) memory: TableMemory,
     ranges: RangeMemo,
     errors: ErrorMemo,
 }
@@ -254,7 +258,8 @@ impl<'s> PlanSearch<'s> {
         };
         let (ranges, errors) = (RangeMemo::default(), ErrorMemo::default());
         let polynomials = Rc::default();
-        Self { statement, tables, ties, polynomials, ranges, errors }
+        let memory = TableMemory::Logic;
+        Self { statement, tables, ties, polynomials, memory, ranges, errors }
     }
 }
 
@@ -289,7 +294,7 @@ pub(super) fn lowered(
         guards,
         first_guard,
         found,
-        plan: ExpressionPlan::default(),
+        plan: ExpressionPlan { memory: search.memory, ..ExpressionPlan::default() },
         known: Vec::new(),
         uses: PartUses::default(),
         octants: Vec::new(),
@@ -602,14 +607,14 @@ impl<'s> Lowering<'s> {
     fn binary(
         &mut self,
         operator: Operator,
-        a: &Expression,
-        b: &Expression,
+        a: &Arc<Expression>,
+        b: &Arc<Expression>,
         part: &Expression,
     ) -> Result<NodeId, PlanRefusal> {
         match operator {
             Operator::Div if b.varies() => self.quotient(a, b, part),
             Operator::Atan2 => self.direction(a, b, &direction::Scaling::none()),
-            Operator::Power if *b == number("2") => {
+            Operator::Power if **b == number("2") => {
                 let node = self.part(a)?;
                 let is_wide = self.plan.node(node).format.width() > WIDEST_EXACT_SQUARE;
                 let root = if is_wide { self.factor(a)? } else { node };
@@ -663,7 +668,7 @@ impl<'s> Lowering<'s> {
                 }
                 let b = match operator {
                     Operator::Div => reciprocal_of(b),
-                    _ => b.clone(),
+                    _ => (**b).clone(),
                 };
                 let a = self.factor(a)?;
                 let b = self.factor(&b)?;
@@ -703,9 +708,9 @@ impl<'s> Lowering<'s> {
                 self.plan.subtract("difference", a, b)
             }
             Operator::Max | Operator::Min
-                if let Some(limited) = self.with_limited_dividend(operator, a, b) =>
+                if let Some(node) = self.limited_quotient(operator, a, b)? =>
             {
-                self.part(&limited)
+                Ok(node)
             }
             Operator::Min => {
                 let (a, b) = (self.term(a)?, self.term(b)?);
@@ -722,6 +727,11 @@ impl<'s> Lowering<'s> {
     /// dropped: they would make the sum and all that follows wider. Fails if a part has too many bits, no finite values, or no rule.
     fn term(&mut self, part: &Expression) -> Result<NodeId, PlanRefusal> {
         let node = self.part(part)?;
+        self.short_term(node)
+    }
+
+    /// Returns the node of a term without the low bits that [`Self::term`] drops. Fails if a node has too many bits.
+    fn short_term(&mut self, node: NodeId) -> Result<NodeId, PlanRefusal> {
         let product = match self.plan.node(node).operation {
             Operation::Scale(product) => product,
             _ => node,

@@ -15,7 +15,8 @@ mod tests;
 use std::ops::Range;
 use std::rc::Rc;
 
-use super::find::{ProvedPlan, find, find_alike};
+use super::find::{ProvedPlan, find_alike, find_stored};
+use super::memory::TableMemory;
 use super::refusal::PlanRefusal;
 use super::statement::{ExpressionStatement, HALF_A_UNIT, StatedOverflow};
 
@@ -72,7 +73,8 @@ const ATTEMPTS: u32 = 5;
 const TIGHTER: f64 = 0.8;
 
 /// Returns the plan for a statement, in which the results of each list have the order of their values: if the value of one number is
-/// larger than the value of another, its result is not smaller. `lists` has the indices of the results of each list.
+/// larger than the value of another, its result is not smaller. `lists` has the indices of the results of each list. `memory` says where
+/// the tables may be stored.
 ///
 /// # Errors
 /// Fails as [`super::find()`] does. Fails if the formulas of a list are not alike or do not rise or fall with their own operands, or if no
@@ -80,9 +82,10 @@ const TIGHTER: f64 = 0.8;
 pub fn find_ordered(
     statement: &ExpressionStatement,
     lists: &[Range<usize>],
+    memory: TableMemory,
 ) -> Result<ProvedPlan, PlanRefusal> {
     if lists.is_empty() {
-        return find(statement);
+        return find_stored(statement, memory);
     }
     let mut formulas = Vec::new();
     for list in lists {
@@ -93,8 +96,8 @@ pub fn find_ordered(
     let mut refusal: Option<PlanRefusal> = None;
     let polynomials = Rc::default();
     for _ in 0..ATTEMPTS {
-        let found =
-            find_alike(&tightened, &polynomials).map_err(|own| refusal.clone().unwrap_or(own))?;
+        let found = find_alike(&tightened, &polynomials, memory)
+            .map_err(|own| refusal.clone().unwrap_or(own))?;
         let fault = formulas.iter().find_map(|list| nodes::check_list(&found, list).err());
         let Some(fault) = fault else {
             let statement = statement.clone();

@@ -4,6 +4,7 @@ use glint_base::fixed::{Format, MAX_WIDTH, Rounding, exp2, shifted_left};
 use glint_base::interval::{self, Interval};
 use glint_formula::Enclosure;
 
+use super::memory::TableMemory;
 use super::node::{Approximation, NodeId, Operation, PlanNode, middle};
 use super::refusal::PlanRefusal;
 
@@ -22,6 +23,8 @@ pub struct ExpressionPlan {
     pub proved: Vec<NodeId>,
     /// Whether several functions share the operations, so that an opcode selects their inputs.
     pub is_shared: bool,
+    /// Where the tables of polynomials may be stored. The estimates of look-up tables depend on it.
+    pub memory: TableMemory,
 }
 
 impl ExpressionPlan {
@@ -133,6 +136,29 @@ impl ExpressionPlan {
         let are_unsigned = !own.signed && !other.signed;
         let is_as_wide = own.frac == other.frac && other.width() <= own.width();
         are_unsigned && is_as_wide && raw == own.max_raw()
+    }
+
+    /// Returns the number of the rounding operation that gives a value its fraction bits: the one of the node itself, or of the only earlier
+    /// node with the same bits. Returns `None` if the value is exact or has several inputs.
+    pub(super) fn rounding_before(&self, id: NodeId) -> Option<usize> {
+        let node = self.node(id);
+        if node.source.is_some() {
+            return node.source;
+        }
+        let before = match node.operation {
+            Operation::Scale(a) | Operation::Narrow(a, _) | Operation::Absolute(a) => a,
+            Operation::Maximum(a, b) | Operation::Minimum(a, b) => {
+                let is_constant =
+                    |id: NodeId| matches!(self.node(id).operation, Operation::Constant { .. });
+                match (is_constant(a), is_constant(b)) {
+                    (false, true) => a,
+                    (true, false) => b,
+                    _ => return None,
+                }
+            }
+            _ => return None,
+        };
+        self.rounding_before(before)
     }
 
     /// Returns for each node how often operations read it. A square counts its input twice.

@@ -93,6 +93,7 @@ impl Lowering<'_> {
             node: smaller,
             largest_quotient: 1.0,
             rounding: DividendRounding::NeverLarger,
+            limits: None,
         };
         let ratio = self.ratio(&dividend, &divisor)?;
         let finest = self.finest;

@@ -14,7 +14,7 @@
 use std::sync::Arc;
 
 use glint_base::fixed::{Format, Rounding, exp2};
-use glint_formula::{Enclosure, Expression, Function, Kind, Operator};
+use glint_formula::{Enclosure, Expression, Function, Kind, Operator, RBig};
 
 use super::root::{FEW_OCTAVES, Octave, holding};
 use super::shape::number;
@@ -98,6 +98,56 @@ pub(super) struct Dividend {
     /// The largest absolute value of the quotient.
     pub(super) largest_quotient: f64,
     pub(super) rounding: DividendRounding,
+    /// How the quotient is limited; `None` without limits.
+    pub(super) limits: Option<QuotientLimits>,
+}
+
+/// Limits of a quotient by a positive number, within which its dividend can be limited first: its factor then has fewer bits.
+#[derive(Clone, Copy)]
+pub(super) struct QuotientLimits {
+    /// The largest value of the limited quotient; `None` if only 0 limits it. The smallest value is 0.
+    most: Option<f64>,
+}
+
+/// A quotient between limits, as in `min(max(x / y, 0), 1)`.
+struct LimitedQuotient<'e> {
+    dividend: &'e Arc<Expression>,
+    divisor: &'e Arc<Expression>,
+    /// The quotient itself.
+    quotient: &'e Arc<Expression>,
+    /// The constant that limits the quotient above, if there is one. The quotient is never below 0.
+    most: Option<&'e Arc<Expression>>,
+}
+
+impl<'e> LimitedQuotient<'e> {
+    /// Returns the parts of the larger (or the smaller) of two numbers, if it is a quotient that is limited by 0, or by 0 and a constant
+    /// above 0. Returns `None` for any other formula.
+    fn of(operator: Operator, a: &'e Arc<Expression>, b: &'e Arc<Expression>) -> Option<Self> {
+        let (limit, limited) = if a.varies() { (b, a) } else { (a, b) };
+        let limit_value = limit.rational().filter(|_| !limit.varies())?;
+        if let Kind::Binary(Operator::Div, dividend, divisor) = &limited.kind {
+            let is_above_zero = operator == Operator::Max && limit_value.is_zero();
+            let quotient = limited;
+            return is_above_zero.then_some(Self { dividend, divisor, quotient, most: None });
+        }
+        let Kind::Binary(inner, first, second) = &limited.kind else { return None };
+        match (operator, inner) {
+            (Operator::Min, Operator::Max) if limit_value > RBig::ZERO => {
+                let within = Self::of(*inner, first, second)?;
+                within.most.is_none().then_some(Self { most: Some(limit), ..within })
+            }
+            (Operator::Max, Operator::Min) if limit_value.is_zero() => {
+                let (most, quotient) =
+                    if first.varies() { (second, first) } else { (first, second) };
+                let is_positive = most.rational().is_some_and(|value| value > RBig::ZERO);
+                let Kind::Binary(Operator::Div, dividend, divisor) = &quotient.kind else {
+                    return None;
+                };
+                is_positive.then_some(Self { dividend, divisor, quotient, most: Some(most) })
+            }
+            _ => None,
+        }
+    }
 }
 
 /// Whether a dividend is rounded.
@@ -217,6 +267,7 @@ impl Lowering<'_> {
             node: shifted.node,
             largest_quotient: dividend.largest_quotient * excess,
             rounding: dividend.rounding,
+            limits: None,
         };
         let ratio = self.ratio(&of_second, &second)?;
         let factor = self.rounding(self.finest - first.exponent, |own, frac| {
@@ -246,7 +297,7 @@ impl Lowering<'_> {
             true => DividendRounding::Exact,
             false => DividendRounding::Rounded,
         };
-        Dividend { node, largest_quotient, rounding }
+        Dividend { node, largest_quotient, rounding, limits: None }
     }
 
     /// Returns the divisor of a word, which is a node with the interval of its values. Quotients by the same divisor share its nodes.
@@ -363,31 +414,31 @@ impl Lowering<'_> {
         self.plan.choose("quotient", is_negative, [quotient, negated])
     }
 
-    /// Returns the larger (or the smaller) of 0 and a quotient by a positive number as a quotient whose dividend is limited: `max(0, x / y)`
-    /// becomes `max(0, x) / y`. The dividend then has no sign, so that its factor has one bit less. Returns `None` for any other numbers.
-    pub(super) fn with_limited_dividend(
-        &self,
+    /// Returns the node of the larger (or the smaller) of two numbers, if it is a quotient by a root that is limited by 0, or by 0 and a
+    /// constant. The hardware limits the dividend. Returns `None` for any other numbers. Fails if a part has too many bits, no finite
+    /// values, or no rule.
+    pub(super) fn limited_quotient(
+        &mut self,
         operator: Operator,
-        a: &Expression,
-        b: &Expression,
-    ) -> Option<Expression> {
-        let is_zero = |part: &Expression| *part == number("0");
-        let (quotient, is_first) = match (is_zero(a), is_zero(b)) {
-            (true, false) => (b, false),
-            (false, true) => (a, true),
-            _ => return None,
-        };
-        let Kind::Binary(Operator::Div, dividend, divisor) = &quotient.kind else { return None };
-        if !divisor.varies() || !self.range_here(divisor).is_ok_and(|values| values.low > 0.0) {
-            return None;
+        a: &Arc<Expression>,
+        b: &Arc<Expression>,
+    ) -> Result<Option<NodeId>, PlanRefusal> {
+        let Some(limited) = LimitedQuotient::of(operator, a, b) else { return Ok(None) };
+        let LimitedQuotient { dividend, divisor, quotient, most } = limited;
+        let Kind::Unary(Function::Sqrt, operand) = &divisor.kind else { return Ok(None) };
+        if self.quotients_by(dividend, divisor)?.is_some() {
+            return Ok(None);
         }
-        let zero = Arc::new(number("0"));
-        let numbers = if is_first { [dividend, &zero] } else { [&zero, dividend] };
-        let [first, second] = numbers.map(Arc::clone);
-        let kind = Kind::Binary(operator, first, second);
-        let limited = Arc::new(Expression::new(kind, dividend.span.clone()));
-        let kind = Kind::Binary(Operator::Div, limited, divisor.clone());
-        Some(Expression::new(kind, quotient.span.clone()))
+        let values = self.range(quotient)?;
+        let Some(divisor) = self.root_divisor(operand)? else { return Ok(None) };
+        let node = self.part(dividend)?;
+        let number = most.and_then(|most| most.enclose(&[]).ok());
+        let limits = Some(QuotientLimits { most: number.map(|number| number.high) });
+        let dividend = Dividend { limits, ..self.dividend(node, sizes_of(values).high) };
+        let ratio = self.ratio(&dividend, &divisor)?;
+        let Some(most) = most else { return Ok(Some(ratio)) };
+        let (ratio, most) = (self.short_term(ratio)?, self.part(most)?);
+        self.plan.minimum("smaller", ratio, most).map(Some)
     }
 
     /// Returns whether every result of the statement is promised only for a < b, and a is never below 0. The quotient a / b is
@@ -419,8 +470,35 @@ impl Lowering<'_> {
                 false => own.plan.shorten(name, node, frac, Rounding::Nearest),
             }
         })?;
-        let product = self.plan.multiply("ratio", shortened, divisor.inverse)?;
+        let factor = match dividend.limits {
+            Some(limits) => self.limited_dividend(shortened, limits, divisor.exponent)?,
+            None => shortened,
+        };
+        let product = self.plan.multiply("ratio", factor, divisor.inverse)?;
         self.scaled_ratio(product, dividend, divisor)
+    }
+
+    /// Returns the node of a shifted dividend, limited so that the quotient keeps its limits: a negative dividend becomes 0, and one above
+    /// the divisor's power of two times the largest quotient becomes nearly this product. The divisor is below the power of two, so that
+    /// the quotient stays above its limit or close to it. Fails if a node has too many bits.
+    fn limited_dividend(
+        &mut self,
+        shifted: NodeId,
+        QuotientLimits { most }: QuotientLimits,
+        exponent: i32,
+    ) -> Result<NodeId, PlanRefusal> {
+        let frac = self.plan.node(shifted).format.frac;
+        let zero = self.plan.constant("zero", 0, frac)?;
+        let positive = self.plan.maximum("dividend_positive", shifted, zero)?;
+        let Some(most) = most else { return Ok(positive) };
+        let most = most * exp2(exponent);
+        let raw = (most * exp2(frac)).ceil() as i128 - 1;
+        if self.plan.node(positive).range.1 <= raw {
+            return Ok(positive);
+        }
+        let value = Enclosure::exactly(most);
+        let largest = self.plan.rounded_constant("largest_dividend", raw, frac, value)?;
+        self.plan.minimum("dividend_limited", positive, largest)
     }
 
     /// Returns the node of a quotient, from the product of its shifted dividend and the table's value for its divisor. Fails if a node has
@@ -432,7 +510,7 @@ impl Lowering<'_> {
         divisor: &Divisor,
     ) -> Result<NodeId, PlanRefusal> {
         let ratio = self.plan.scale("ratio_scaled", product, -divisor.exponent)?;
-        let is_signed = self.plan.node(dividend.node).range.0 < 0;
+        let is_signed = self.plan.node(dividend.node).range.0 < 0 && dividend.limits.is_none();
         let least = if is_signed { -dividend.largest_quotient } else { 0.0 };
         self.plan.nodes[ratio.0].limits = Enclosure::between(least, dividend.largest_quotient);
         Ok(ratio)
@@ -441,7 +519,7 @@ impl Lowering<'_> {
     /// Returns a dividend, shifted by as many places as the divisor's word. Fails if a node has too many bits.
     fn shifted(
         &mut self,
-        &Dividend { node: dividend, largest_quotient, rounding }: &Dividend,
+        &Dividend { node: dividend, largest_quotient, rounding, .. }: &Dividend,
         &Divisor { octave, exponent, excess, .. }: &Divisor,
     ) -> Result<ShiftedDividend, PlanRefusal> {
         let frac = self.plan.node(dividend).format.frac;

@@ -9,6 +9,7 @@ use glint_formula::parse;
 use super::find_ordered;
 use super::formulas::ordered_list;
 use super::nodes::check_list;
+use crate::memory::TableMemory;
 use crate::node::Operation;
 use crate::statement::{ExpressionStatement, StatedOperand, StatedResult};
 
@@ -61,7 +62,7 @@ fn ordered_results_have_the_order_of_the_operands_at_every_combination() {
         ("tanh(#) - a * b", signed, 5, 1.0, false),
     ] {
         let statement = list(formula, format, fraction, error);
-        let found = match find_ordered(&statement, &[ALL]) {
+        let found = match find_ordered(&statement, &[ALL], TableMemory::Logic) {
             Ok(found) => found,
             Err(refusal) if formula.contains("* c") => {
                 // The own operand of the third number is a common part of the others.
@@ -98,7 +99,7 @@ fn ordered_results_have_the_order_of_the_operands_at_every_combination() {
 #[test]
 fn a_table_that_falls_once_breaks_the_order() {
     let statement = list(SOFTMAX, Format::signed(1, 3), 8, 2.0);
-    let mut found = find_ordered(&statement, &[ALL]).expect("a plan");
+    let mut found = find_ordered(&statement, &[ALL], TableMemory::Logic).expect("a plan");
     let ordered = ordered_list(&statement, &(0..3)).expect("alike formulas");
     assert!(check_list(&found, &ordered).is_ok());
     // Every second segment of the exponential functions has a constant that is too small.
@@ -123,7 +124,7 @@ fn a_table_that_falls_once_breaks_the_order() {
 #[test]
 fn numbers_that_are_not_computed_alike_break_the_order() {
     let statement = list("# / (a + b + c + 1/8)", Format::unsigned(0, 6), 7, 1.0);
-    let mut found = find_ordered(&statement, &[ALL]).expect("a plan");
+    let mut found = find_ordered(&statement, &[ALL], TableMemory::Logic).expect("a plan");
     let ordered = ordered_list(&statement, &(0..3)).expect("alike formulas");
     // The second number is the first.
     found.plan.results[1] = found.plan.results[0];
@@ -141,7 +142,7 @@ fn formulas_without_an_order_are_refused_at_the_part_that_has_none() {
         ("abs(#) + c", "abs(a)"),
     ] {
         let statement = list(formula, format, 4, 1.0);
-        let refusal = find_ordered(&statement, &[ALL]).expect_err(formula);
+        let refusal = find_ordered(&statement, &[ALL], TableMemory::Logic).expect_err(formula);
         assert!(refusal.message.starts_with("`ordered` needs"), "{refusal:?}");
         let place = refusal.place.expect("a place").bytes;
         let text = formula.replace('#', "a");
