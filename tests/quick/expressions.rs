@@ -33,7 +33,9 @@ const CASES: [(&str, &str); 58] = [
         // A unit vector of any length but 0, and a projection to it.
         "operands.n = { axes = \"xy\", bits = 6, fraction = 4, signed = true }\noperands.h = { bits = 4, fraction = 3, signed = true }",
         "results.u = { formula = \"if(length(n) == 0, 0, n / length(n))\", fraction = 5 }
-results.c = { formula = \"(n.x * h + n.y / 2) / length(n)\", fraction = 5, where = \"dot(n, n) > 0\" }",
+results.c = { formula = \"(n.x * h + n.y / 2) / length(n)\", fraction = 5, where = \"dot(n, n) > 0\" }
+results.lit = { formula = \"clamp((n.x * h + n.y) / length(n), 0, 1)\", fraction = 6, where = \"dot(n, n) > 0\" }
+results.low = { formula = \"max(0, min(0.3, (n.y - n.x) / length(n))) + max(0, n.y / length(n))\", fraction = 4, where = \"dot(n, n) > 0\" }",
     ),
     (
         // The cosine of the angle between two vectors of any length, and a root of a product.
@@ -371,6 +373,25 @@ fn results_are_simulated_as_stated_for_every_operand() {
             assert_results_as_stated(&core, &text);
         }
     }
+}
+
+/// A table that may be in a block memory has many segments of a small degree, and the error that the configuration allows.
+#[test]
+fn tables_in_block_memories_take_fewer_products() {
+    let core_with = |tables: &str| {
+        let text = format!(
+            "device = \"expression\"\nname = \"core\"\narchitecture = \"pipelined\"\ntables = \"{tables}\"\n\
+             operands.x = {{ bits = 14, fraction = 14 }}\nresults.r = {{ formula = \"1 / sqrt(1 + x)\", fraction = 15 }}\n"
+        );
+        let core = parsed("core.toml", &text);
+        assert_agrees(&core, 2000, 1, &text);
+        assert_results_as_stated(&core, &text);
+        core
+    };
+    let words = |core: &Core| core.design.roms.iter().map(|rom| rom.words.len()).max();
+    let [logic, block] = ["logic", "block-memory"].map(core_with);
+    assert!(words(&block) >= Some(128), "{:?} words", words(&block));
+    assert!(words(&logic) <= Some(64), "{:?} words", words(&logic));
 }
 
 /// The table of names in `docs/expressions.md` is right: the names are refused as operands, and as results they are not, unless
