@@ -28,7 +28,14 @@ const TINY: &str =
 operands.c = { bits = 3, fraction = 40 }\noperands.d = { bits = 3, fraction = 40 }";
 
 /// Operands, and results that other results read or that need no operation.
-const CASES: [(&str, &str); 58] = [
+const CASES: [(&str, &str); 59] = [
+    (
+        // Highlights of a cosine that is never below 0 need no choice.
+        "operands.n = { axes = \"xy\", bits = 4, fraction = 3, signed = true }\noperands.e = { from = 2, to = 7, fraction = 0 }",
+        "results.shine = { formula = \"cosine_power(clamp(n.x / length(n), 0, 1), e, 2)\", fraction = 5, where = \"dot(n, n) > 0\" }
+results.other = { formula = \"schlick(max(0, n.y / length(n)), e)\", fraction = 5, where = \"dot(n, n) > 0\" }
+results.below = { formula = \"if(n.x < 1/2, 3 * max(1/2, n.x), 1.5)\", fraction = 5 }",
+    ),
     (
         // A unit vector of any length but 0, and a projection to it.
         "operands.n = { axes = \"xy\", bits = 6, fraction = 4, signed = true }\noperands.h = { bits = 4, fraction = 3, signed = true }",

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glint_base::fixed::exp2;
-use glint_formula::{Comparison, Expression, Function, Kind, Operator, RBig};
+use glint_formula::{Comparison, Enclosure, Expression, Function, Kind, Operator, RBig};
 
 use super::Lowering;
 use super::rational::without_fractions;
@@ -13,6 +13,9 @@ use crate::refusal::PlanRefusal;
 
 /// The largest raw value that takes the place of a compared constant.
 const LARGEST_LIMIT: f64 = (1u64 << 50) as f64;
+
+/// The name of an operand that takes the place of the compared part. A user's operand has no blank in its name.
+const BEYOND: &str = "the compared part";
 
 /// The nodes of both sides of a comparison.
 pub(super) struct ComparedNodes {
@@ -71,6 +74,44 @@ impl Lowering<'_> {
         if holds || fails { Some(holds) } else { None }
     }
 
+    /// Returns the case of a choice that has the value of the other case wherever the choice takes that one, so that no choice is needed.
+    /// For example, `if(u > 0, u / (1 + u), 0)` is `u / (1 + u)` if u is never below 0. Returns `None` if there is no such case.
+    fn case_with_all_values<'e>(
+        &self,
+        comparison: &Comparison,
+        yes: &'e Expression,
+        no: &'e Expression,
+    ) -> Option<&'e Expression> {
+        let Comparison { left, right, .. } = comparison;
+        let (compared, limit) = if left.varies() { (left, right) } else { (right, left) };
+        let limit = limit.enclose(&[]).ok().filter(|_| !limit.varies())?;
+        let values = self.range_here(compared).ok()?;
+        let is_above = std::ptr::eq(compared, left);
+        for (case, other, is_case_above) in [(yes, no, is_above), (no, yes, !is_above)] {
+            if other.varies() || case.count(&|part| part == &**compared) == 0 {
+                continue;
+            }
+            let beyond = match is_case_above {
+                true => Enclosure::between(values.low, values.high.min(limit.high)),
+                false => Enclosure::between(values.low.max(limit.low), values.high),
+            };
+            let operand = Expression::operand(BEYOND);
+            let beyond_case = case.substitute(compared, &operand, &case.span);
+            let mut operands = self.statement.enclosed_operands(&self.statement.domain());
+            operands.push((BEYOND, beyond));
+            let is_same = beyond.low <= beyond.high
+                && beyond_case
+                    .enclose(&operands)
+                    .ok()
+                    .zip(other.enclose(&[]).ok())
+                    .is_some_and(|(case, other)| case == other && case.low == case.high);
+            if is_same && self.range_here(case).is_ok() {
+                return Some(case);
+            }
+        }
+        None
+    }
+
     /// Returns the node of a choice: `yes` if the comparison holds, and `no` otherwise. Fails if a part has too many bits, or no finite
     /// values under its condition.
     pub(super) fn choice(
@@ -81,6 +122,9 @@ impl Lowering<'_> {
     ) -> Result<NodeId, PlanRefusal> {
         if let Some(outcome) = self.decided(comparison) {
             return self.part(if outcome { yes } else { no });
+        }
+        if let Some(case) = self.case_with_all_values(comparison, yes, no) {
+            return self.part(case);
         }
         if let Some(comparison) = self.without_quotients(comparison) {
             return self.choice(&comparison, yes, no);
