@@ -401,6 +401,24 @@ fn tables_in_block_memories_take_fewer_products() {
     assert!(words(&logic) <= Some(64), "{:?} words", words(&logic));
 }
 
+/// The configurations in `docs/expressions.md` are proved, and the page states the bound of the lit point.
+#[test]
+fn configurations_of_the_page_are_proved() {
+    let page = read("docs/expressions.md");
+    let blocks = page.split("```toml\n").skip(1);
+    let blocks = blocks.map(|block| block.split("```").next().unwrap_or_default());
+    let mut names = Vec::new();
+    for block in blocks.filter(|block| block.starts_with("device = ")) {
+        let core = parsed("page.toml", block);
+        if core.design.name == "lighting" {
+            let units = core.contract.bounds().governing_units();
+            assert!(page.contains(&format!("below {units:.3} units")), "{units}");
+        }
+        names.push(core.design.name.clone());
+    }
+    assert_eq!(names, ["polar", "unit_vector", "lighting"]);
+}
+
 /// The table of names in `docs/expressions.md` is right: the names are refused as operands, and as results they are not, unless
 /// they are keywords.
 #[test]
