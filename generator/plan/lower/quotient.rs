@@ -471,7 +471,7 @@ impl Lowering<'_> {
             }
         })?;
         let factor = match dividend.limits {
-            Some(limits) => self.limited_dividend(shortened, limits, divisor.exponent)?,
+            Some(limits) => self.limited_dividend(shortened, limits, divisor)?,
             None => shortened,
         };
         let product = self.plan.multiply("ratio", factor, divisor.inverse)?;
@@ -480,18 +480,19 @@ impl Lowering<'_> {
 
     /// Returns the node of a shifted dividend, limited so that the quotient keeps its limits: a negative dividend becomes 0, and one above
     /// the divisor's power of two times the largest quotient becomes nearly this product. The divisor is below the power of two, so that
-    /// the quotient stays above its limit or close to it. Fails if a node has too many bits.
+    /// the quotient stays above its limit or close to it. A divisor before its rounding can be larger by its excess, so that the product
+    /// grows by this factor; a dividend has no upper limit if the excess is not known. Fails if a node has too many bits.
     fn limited_dividend(
         &mut self,
         shifted: NodeId,
         QuotientLimits { most }: QuotientLimits,
-        exponent: i32,
+        divisor: &Divisor,
     ) -> Result<NodeId, PlanRefusal> {
         let frac = self.plan.node(shifted).format.frac;
         let zero = self.plan.constant("zero", 0, frac)?;
         let positive = self.plan.maximum("dividend_positive", shifted, zero)?;
-        let Some(most) = most else { return Ok(positive) };
-        let most = most * exp2(exponent);
+        let (Some(most), Some(excess)) = (most, divisor.excess) else { return Ok(positive) };
+        let most = most * exp2(divisor.exponent) * excess;
         let raw = (most * exp2(frac)).ceil() as i128 - 1;
         if self.plan.node(positive).range.1 <= raw {
             return Ok(positive);
