@@ -42,7 +42,7 @@ const RELATIVE_ERROR: &str =
 pub(super) const TABLES: &str = "tables";
 
 glint_config::choices! {
-    /// Where the tables of polynomials are stored.
+    /// The memory for the tables of polynomials.
     pub enum TableChoice {
         Logic = "logic",
         BlockMemory = "block-memory",

@@ -1,6 +1,6 @@
-//! Defines where the tables of a plan are stored.
+//! Defines the kinds of memory for the tables of a plan.
 
-/// Where the planner stores tables of polynomials.
+/// The memory in which the planner stores tables of polynomials.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum TableMemory {
     /// In look-up tables of the logic. A block memory is taken only if it saves many of them.

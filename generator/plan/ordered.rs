@@ -73,8 +73,8 @@ const ATTEMPTS: u32 = 5;
 const TIGHTER: f64 = 0.8;
 
 /// Returns the plan for a statement, in which the results of each list have the order of their values: if the value of one number is
-/// larger than the value of another, its result is not smaller. `lists` has the indices of the results of each list. `memory` says where
-/// the tables may be stored.
+/// larger than the value of another, its result is not smaller. `lists` has the indices of the results of each list. `memory` is the memory
+/// for the tables.
 ///
 /// # Errors
 /// Fails as [`super::find()`] does. Fails if the formulas of a list are not alike or do not rise or fall with their own operands, or if no

@@ -23,7 +23,7 @@ pub struct ExpressionPlan {
     pub proved: Vec<NodeId>,
     /// Whether several functions share the operations, so that an opcode selects their inputs.
     pub is_shared: bool,
-    /// Where the tables of polynomials may be stored. The estimates of look-up tables depend on it.
+    /// The memory for the tables of polynomials. The estimates of look-up tables depend on it.
     pub memory: TableMemory,
 }
 
