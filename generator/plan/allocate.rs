@@ -243,8 +243,8 @@ fn grown(
 }
 
 /// Returns the plan with the fewest guard bits for operations that round nothing in the plan `before`, and adds these bits to `guards`.
-/// A value that became wider can need such an operation. For example, the operand of a table is shortened if it has too many bits. Fails if no number of
-/// bits gives a plan.
+/// A value that became wider can need such an operation. For example, the operand of a table is shortened if it has too many bits. Fails if
+/// no number of bits gives a plan.
 fn with_idle_operations(
     search: &PlanSearch<'_>,
     before: &ExpressionPlan,
