@@ -1,4 +1,5 @@
-//! The program `glint`: the command line with the devices of Glint's own registry.
+//! The program `glint`: the command line with the devices that Glint ships. A program with devices of its own calls
+//! [`glint::cli::run`] with another registry.
 
 use std::process::ExitCode;
 

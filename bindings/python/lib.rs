@@ -509,7 +509,7 @@ fn port<'py>(
     Ok(it)
 }
 
-/// Names and sentences of the devices.
+/// Returns the name and the one-line summary of each shipped device.
 #[pyfunction]
 fn devices() -> Vec<(&'static str, &'static str)> {
     Registry::shipped().devices().iter().map(|it| (it.name, it.summary)).collect()

@@ -100,8 +100,9 @@ impl Piecewise {
         bounds.try_reduce(|| 0.0, |a, b| Ok(a.max(b)))
     }
 
-    /// Proves the bound over the operands that read a word; 0 if there are none. `left` is the number of intervals that the
-    /// proof may still examine. Fails as [`Piecewise::prove`] does, or if `left` reaches 0.
+    /// Returns a proved bound on the error over all operands that read the table word `word`, in units of the result's last bit;
+    /// 0 if no operand reads it. `left` is the number of intervals that the proof of all words may still examine. Fails as
+    /// [`Piecewise::prove`] does, for example if an error is not below `function.error`. Fails also if `left` reaches 0.
     fn prove_segment(
         &self,
         function: &TargetFunction,

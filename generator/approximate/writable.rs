@@ -75,7 +75,9 @@ fn images_of_degree(functions: &[TargetFunction], degree: u32) -> Result<Vec<Pie
     Err(refusal)
 }
 
-/// Returns the narrowest widths for one function, with 2^`prefix` segments or with as few as possible.
+/// Returns the narrowest bit widths of a table with polynomials of this degree that keeps the error of `function`. The table has
+/// 2^`prefix` segments of equal length, or as few as possible if `prefix` is `None`. Fails if no widths keep the error, or if the
+/// domain has more than 2^26 operands.
 fn narrowest(
     function: &TargetFunction,
     degree: u32,

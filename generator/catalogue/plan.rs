@@ -37,7 +37,7 @@ pub(super) fn describe_plan(
     let mut datapath = PlanDatapath::new(d, operands, plan, &schedule, is_pipelined);
     datapath.build();
     let steps = datapath.microprogram();
-    for (PlanOutput { name, doc }, node) in outputs.iter().zip(&plan.results) {
+    for (PlanOutput { name, doc }, node) in outputs.iter().zip(plan.results()) {
         let output = d.output(name, datapath.signal(*node));
         if !doc.is_empty() {
             let _ = output.doc(doc);
@@ -83,9 +83,9 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
         schedule: &'p PlanSchedule,
         is_pipelined: bool,
     ) -> Self {
-        let count = plan.nodes.len();
+        let count = plan.nodes().len();
         let mut registers = Vec::with_capacity(count);
-        for (node, is_held) in plan.nodes.iter().zip(&schedule.held) {
+        for (node, is_held) in plan.nodes().iter().zip(&schedule.held) {
             let has_own = matches!(node.operation, Operation::Polynomial(..));
             let owner = schedule.register_owners[registers.len()];
             registers.push(match *is_held && !has_own {
@@ -119,7 +119,7 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
     /// and the nodes between a product and the next register, with the multiplier.
     fn build(&mut self) {
         let plan = self.plan;
-        for (at, node) in plan.nodes.iter().enumerate() {
+        for (at, node) in plan.nodes().iter().enumerate() {
             if self.is_inner[at] || !self.is_read[at] {
                 continue;
             }
@@ -381,7 +381,7 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
         let polynomials: Vec<&PolynomialDatapath> =
             self.polynomials.iter().flatten().chain(of_shared).collect();
         let mut others = Vec::new();
-        for (node, factors) in self.plan.nodes.iter().zip(&self.factors) {
+        for (node, factors) in self.plan.nodes().iter().zip(&self.factors) {
             others.extend(factors.map(|factors| (node.name.clone(), factors)));
         }
         let names = match others.is_empty() {
@@ -408,7 +408,7 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
         for (at, plan_step) in self.schedule.steps.iter().enumerate() {
             steps.push(self.microinstruction(at + 1, plan_step, &work));
         }
-        steps.push(step(&noun(self.plan.results.len(), "result"), [valid(), end()]));
+        steps.push(step(&noun(self.plan.results().len(), "result"), [valid(), end()]));
         self.with_dispatches(steps)
     }
 
@@ -420,7 +420,7 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
                 let targets: Vec<&str> = targets.iter().map(|&to| names[to].as_str()).collect();
                 let opcode = self
                     .plan
-                    .nodes
+                    .nodes()
                     .iter()
                     .position(|node| matches!(node.operation, Operation::Operand(0)));
                 let opcode = self.signal(NodeId(opcode.expect("the opcode of a unit")));
@@ -529,7 +529,7 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
                     _ => &self.plan.sum_names(owner)[*coefficient],
                 };
                 let sum = match coefficient {
-                    0 if self.plan.results.contains(polynomial) => "the polynomial".to_owned(),
+                    0 if self.plan.results().contains(polynomial) => "the polynomial".to_owned(),
                     0 => "all coefficients".to_owned(),
                     _ => {
                         let of_sharer = self.of_sharer(*polynomial);
@@ -583,7 +583,7 @@ fn mirror_chains(
     plan: &ExpressionPlan,
     schedule: &PlanSchedule,
 ) -> (Vec<Option<MirrorChain>>, Vec<bool>) {
-    let count = plan.nodes.len();
+    let count = plan.nodes().len();
     let mut chains = vec![None; count];
     let mut is_inner = vec![false; count];
     // If two chains overlap, the chain that ends later is longer.
@@ -635,8 +635,9 @@ fn left_by<'d>(
     row.read_as(format)
 }
 
-/// Returns whether the bits of two numbers, one after the other, are their sum in the format `sum`, which then needs no adder.
-/// All bits of the first number must have larger weights than the second number, which must have no sign.
+/// Returns whether the sum of two numbers, in the format `sum`, is the concatenation of their bits, `first` above `second`, and
+/// so needs no adder: `second` is unsigned, and its highest bit is directly below the lowest bit of `first`. For example, u4.0
+/// and u0.4 in u4.4.
 fn are_joined(first: Signal<'_>, second: Signal<'_>, sum: Format) -> bool {
     let [upper, lower] = [first, second].map(|number| number.format());
     let is_above = !lower.signed && lower.int == -upper.frac;

@@ -44,7 +44,7 @@ fn core_function(function: &UnitFunction, unit: &UnitPlan, outputs: &[PlanOutput
         results.push(FunctionPort {
             port: outputs[number].name.clone(),
             name: result.name.clone(),
-            format: planned.plan.node(planned.plan.results[number]).format,
+            format: planned.plan.node(planned.plan.results()[number]).format,
             doc: format!("{formula}, with an error of at most {bound} units of the last place"),
         });
         formulas.push(formula);
@@ -72,7 +72,7 @@ fn about(planned: &UnitPlan) -> About {
             let StatedResult { name, formula, .. } = result;
             let formula = formula.python();
             formulas.push(format!("{port} = {formula} for opcode {opcode}"));
-            let format = plan.node(plan.results[number]).format;
+            let format = plan.node(plan.results()[number]).format;
             let bound = text::rounded_up(function.planned.bounds[number], 4);
             let proof = function.planned.proof.words();
             notes.push(

@@ -76,10 +76,10 @@ impl Core {
         Self::of_design(opened, design)
     }
 
-    /// Builds the core of a configuration without a clock frequency; [`OpenedConfig::design_with_free_clock`] chooses one.
+    /// Builds the core of a configuration that states no clock frequency. If its pipeline cannot reach the default frequency,
+    /// the core gets the fastest clock that the pipeline can reach.
     ///
-    /// # Errors
-    /// Fails if [`Core::new`] fails with that clock, too.
+    /// Fails as [`Core::new`] does with the chosen clock.
     pub fn build_with_free_clock(mut opened: OpenedConfig) -> Result<Self> {
         let design = opened.design_with_free_clock();
         Self::of_design(opened, design)

@@ -1,5 +1,5 @@
-//! Defines the facts about a core that come from simulation or from its contract, and not from its netlist. Manifests and
-//! pages print them.
+//! Defines the facts that manifests and pages state about a core besides its netlist: the clocks of a computation, a worked example
+//! and the vectors of the bench, which simulation gives, and the domain, formulas and bounds of the contract.
 
 use glint_formula::Comparison;
 use glint_golden::Contract;

@@ -1,8 +1,8 @@
-//! Interval arithmetic of any precision, which also stores a value exactly if the value is known exactly.
+//! Interval arithmetic of any precision. A value that is known exactly is also stored exactly.
 //!
-//! The arithmetic is slow. Glint uses it for constants, such as the ends of a domain, and for questions that `f64` intervals
-//! leave open. One is the side of a jump on which a value lies, for example of `floor` at 1. Others are values beyond the range
-//! of `f64`, such as `exp(1000)` in `1 / (1 + exp(1000))`.
+//! The arithmetic is slow. Glint uses it for constants, such as the ends of a domain, and where intervals of `f64` decide
+//! nothing. For example, an `f64` interval around 1 leaves open whether the `floor` of its value is 0 or 1, and `exp(1000)` in
+//! `1 / (1 + exp(1000))` is beyond the range of `f64`.
 
 use std::cmp::Ordering;
 

@@ -114,7 +114,7 @@ impl Formula for ProvedFormulas {
             computed.push(raw);
         }
         let values = self.planned.plan.values(&computed);
-        for result in &self.planned.plan.results {
+        for result in self.planned.plan.results() {
             raw.push(values[result.0] as i64);
         }
         true
@@ -138,7 +138,7 @@ impl Formula for ProvedFormulas {
     fn parts(&self) -> Vec<ComputedPart> {
         let plan = &self.planned.plan;
         let mut parts = Vec::new();
-        for (at, node) in plan.nodes.iter().enumerate() {
+        for (at, node) in plan.nodes().iter().enumerate() {
             let is_given = match node.operation {
                 Operation::Operand(_) => true,
                 Operation::Constant { .. } => node.source.is_none(),

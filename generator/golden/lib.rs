@@ -244,7 +244,8 @@ pub trait Contract: Send + Sync {
         self.largest_error(place)
     }
 
-    /// Returns the error of each output in the first result, in units.
+    /// Returns the error of each output for raw `operands`, in units of the output's last bit. For a computation with several
+    /// results, such as the points of a line, these are the errors of the first.
     fn errors(&self, operands: &[i64]) -> Vec<f64> {
         let (mut raw, mut exact) = (Vec::new(), Vec::new());
         self.results(operands, 0, &mut raw);

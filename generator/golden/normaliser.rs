@@ -1,7 +1,8 @@
 //! The golden model and the accuracy contract of the device `normaliser`, which computes the unit vector v/|v| of a vector v.
 //!
-//! v has any length and the components `x`, `y`, `z`. The device shifts v, interpolates 1/√(v·v) in a table, and multiplies
-//! each component by it. For example, v = (0, 0, 0.5) gives (0, 0, 1). The zero vector gives the zero vector.
+//! v has any length and the components `x`, `y`, `z`. The table of 1/√s covers two octaves of s, so the device first shifts v to
+//! the left until s = v·v lies in them. It interpolates 1/√s, and multiplies each shifted component by it. For example,
+//! v = (0, 0, 0.5) gives (0, 0, 1). The zero vector gives the zero vector.
 
 use std::sync::Arc;
 

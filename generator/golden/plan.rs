@@ -30,7 +30,7 @@ struct ClockCone {
 impl ClockCone {
     /// The cone ends at nodes with a register, unless these are in `ends` themselves.
     fn new(model: &PlanModel, ends: &[NodeId]) -> Self {
-        let count = model.plan.nodes.len();
+        let count = model.plan.nodes().len();
         let mut needed = vec![false; count];
         for end in ends {
             needed[end.0] = true;
@@ -39,7 +39,7 @@ impl ClockCone {
             if !needed[at] {
                 continue;
             }
-            for input in model.plan.nodes[at].operation.inputs() {
+            for input in model.plan.nodes()[at].operation.inputs() {
                 needed[input.0] |= model.registers[input.0].is_none();
             }
         }
@@ -91,9 +91,9 @@ pub(super) fn plan_device(
             Outside::Wrap | Outside::Anything => frame.operand(name, *format),
         });
     }
-    let mut registers: Vec<Option<Slot>> = Vec::with_capacity(plan.nodes.len());
-    let mut polynomials: Vec<Option<Polynomial>> = Vec::with_capacity(plan.nodes.len());
-    for (at, (node, is_held)) in plan.nodes.iter().zip(&schedule.held).enumerate() {
+    let mut registers: Vec<Option<Slot>> = Vec::with_capacity(plan.nodes().len());
+    let mut polynomials: Vec<Option<Polynomial>> = Vec::with_capacity(plan.nodes().len());
+    for (at, (node, is_held)) in plan.nodes().iter().zip(&schedule.held).enumerate() {
         let mut polynomial = None;
         registers.push(match &node.operation {
             Operation::Polynomial(..) if *is_held && schedule.table_owners[at] != NodeId(at) => {
@@ -126,7 +126,7 @@ pub(super) fn plan_device(
         });
         polynomials.push(polynomial);
     }
-    for (name, node) in outputs.iter().zip(&plan.results) {
+    for (name, node) in outputs.iter().zip(plan.results()) {
         let register = registers[node.0].expect("a result is held");
         frame.shows(name, register);
     }

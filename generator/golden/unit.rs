@@ -132,7 +132,7 @@ impl Formula for FunctionFormulas {
     fn parts(&self) -> Vec<ComputedPart> {
         let plan = &self.planned.plan;
         let mut parts = Vec::new();
-        for (at, node) in plan.nodes.iter().enumerate() {
+        for (at, node) in plan.nodes().iter().enumerate() {
             if matches!(node.operation, Operation::Operand(_) | Operation::Constant { .. }) {
                 continue;
             }

@@ -264,7 +264,7 @@ fn check_operands_have_readers(keys: &Keys, found: &ProvedPlan) -> Result<(), Co
         let mut results = 0..found.statement.results.len();
         results.any(|result| plan.needed_for(result)[node])
     };
-    for (at, node) in plan.nodes.iter().enumerate() {
+    for (at, node) in plan.nodes().iter().enumerate() {
         if let Operation::Operand(number) = node.operation
             && !is_read(at)
         {

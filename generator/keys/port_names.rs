@@ -1,8 +1,8 @@
 //! Checks the names of the operands, parts and results of the device `expression`.
 //!
 //! An operand is a port of the core, and has a register and a write strobe with names of their own. A result `r` is a port
-//! `r_out`. The emitted files contain further names, for example of the bus registers and of constants in the test bench. A
-//! colliding name is refused, with a similar name that is free.
+//! `r_out`. The emitted files contain further names, for example of the bus registers and of constants in the test bench. If a
+//! name collides with another, the check refuses it and proposes a similar name that is free.
 
 use glint_base::identifier;
 use glint_formula::{EULER, Kind, parse};

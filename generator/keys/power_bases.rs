@@ -1,4 +1,5 @@
-//! Refuses powers of a constant that is not above 0, such as `0^x`, because they have no value for most exponents.
+//! Refuses powers with a constant base of 0 or less and an exponent that varies. Such a power has no value for many exponents:
+//! `0^x` for x below 0, and `(-2)^x` for an x that is no integer.
 
 use glint_base::config_error::ConfigError;
 use glint_formula::{Expression, Kind, Operator};

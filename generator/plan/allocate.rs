@@ -250,7 +250,7 @@ fn with_idle_operations(
     before: &ExpressionPlan,
     guards: &mut Guards,
 ) -> Result<ExpressionPlan, PlanRefusal> {
-    let rounds = |source: usize| before.nodes.iter().any(|node| node.source == Some(source));
+    let rounds = |source: usize| before.nodes().iter().any(|node| node.source == Some(source));
     let idle: Vec<usize> = (0..guards.bits.len()).filter(|source| !rounds(*source)).collect();
     let mut more = FIRST_GUARD;
     loop {
@@ -277,14 +277,14 @@ pub(super) fn siblings_of(
     source: usize,
 ) -> Vec<usize> {
     let name_of = |source: usize| {
-        let node = plan.nodes.iter().find(|node| node.source == Some(source))?;
+        let node = plan.nodes().iter().find(|node| node.source == Some(source))?;
         Some(node.name.trim_end_matches(|c: char| c.is_ascii_digit()))
     };
     let own = name_of(source);
     if search.ties == WidthTies::None || own.is_none() {
         return vec![source];
     }
-    let most = plan.nodes.iter().filter_map(|node| node.source).max().unwrap_or(source);
+    let most = plan.nodes().iter().filter_map(|node| node.source).max().unwrap_or(source);
     (0..=most).filter(|other| name_of(*other) == own).collect()
 }
 
@@ -396,7 +396,7 @@ impl ExcessiveResult {
         let mut largest = (0.0, None);
         let mut fewest_unknown: Option<(i32, usize)> = None;
         let mut known = 0.0;
-        for (node, needed) in plan.nodes.iter().zip(&proof.needed) {
+        for (node, needed) in plan.nodes().iter().zip(&proof.needed) {
             let Some(source) = node.source.filter(|_| *needed) else { continue };
             let guard = guards.bits.get(source).copied().unwrap_or(0);
             if guard >= MOST_GUARD {

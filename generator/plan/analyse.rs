@@ -132,7 +132,9 @@ pub(super) struct ErrorAnalysis<'p> {
 /// `needed` must have the nodes on which `result` depends.
 pub(super) fn joins(plan: &ExpressionPlan, needed: &[bool], result: NodeId) -> Vec<Option<NodeId>> {
     let count = |is: fn(&Operation) -> bool| -> Vec<usize> {
-        (0..plan.nodes.len()).filter(|at| needed[*at] && is(&plan.nodes[*at].operation)).collect()
+        (0..plan.nodes().len())
+            .filter(|at| needed[*at] && is(&plan.nodes()[*at].operation))
+            .collect()
     };
     let integers = count(|operation| matches!(operation, Operation::IntegerPart(_)));
     let words = count(|operation| matches!(operation, Operation::Normalise { .. }));
@@ -142,19 +144,19 @@ pub(super) fn joins(plan: &ExpressionPlan, needed: &[bool], result: NodeId) -> V
             branching.extend(nodes);
         }
     }
-    let mut joins = vec![None; plan.nodes.len()];
+    let mut joins = vec![None; plan.nodes().len()];
     if branching.is_empty() {
         return joins;
     }
     // For each node, the first later node that is on all ways from it to the result.
-    let mut next: Vec<Option<usize>> = vec![None; plan.nodes.len()];
-    let mut is_on_a_way = vec![false; plan.nodes.len()];
+    let mut next: Vec<Option<usize>> = vec![None; plan.nodes().len()];
+    let mut is_on_a_way = vec![false; plan.nodes().len()];
     is_on_a_way[result.0] = true;
     for at in (0..=result.0).rev() {
         if !is_on_a_way[at] || !needed[at] {
             continue;
         }
-        let operation = &plan.nodes[at].operation;
+        let operation = &plan.nodes()[at].operation;
         // A branch of a word decides whether the word is 0.
         let branching = match operation {
             Operation::NonZero(word) => normalised_words(plan, *word),
@@ -170,7 +172,7 @@ pub(super) fn joins(plan: &ExpressionPlan, needed: &[bool], result: NodeId) -> V
     }
     // The branches of these nodes have values that later nodes must know, so that none of them joins others.
     let branches = |node: usize| {
-        let operation = &plan.nodes[node].operation;
+        let operation = &plan.nodes()[node].operation;
         matches!(
             operation,
             Operation::Normalise { .. } | Operation::Places(_) | Operation::IntegerPart(_)
@@ -189,7 +191,7 @@ pub(super) fn joins(plan: &ExpressionPlan, needed: &[bool], result: NodeId) -> V
 /// Returns the nodes that normalise the word.
 fn normalised_words(plan: &ExpressionPlan, word: NodeId) -> Vec<NodeId> {
     let normalises = |node: &PlanNode| matches!(node.operation, Operation::Normalise { word: own, .. } if own == word);
-    (0..plan.nodes.len()).filter(|at| normalises(&plan.nodes[*at])).map(NodeId).collect()
+    (0..plan.nodes().len()).filter(|at| normalises(&plan.nodes()[*at])).map(NodeId).collect()
 }
 
 /// Returns limits that contain the values of all branches of an analysis, which `run` visits. The branches have the nodes in `known` and
@@ -234,9 +236,9 @@ impl ErrorAnalysis<'_> {
     /// Calls `visit` with the values of all nodes, once for each combination of shifts and integer parts that can occur.
     /// `operands` has the limits of the operands' values.
     pub(super) fn run(&self, operands: &[(&str, Enclosure)], visit: &mut Visit<'_>) {
-        let values = Vec::with_capacity(self.plan.nodes.len());
+        let values = Vec::with_capacity(self.plan.nodes().len());
         let known = Known { values, undecided: None };
-        self.run_from(known, self.plan.nodes.len(), operands, visit);
+        self.run_from(known, self.plan.nodes().len(), operands, visit);
     }
 
     /// Analyses the nodes that `known` lacks and whose numbers are below `end`.
@@ -579,7 +581,7 @@ impl ErrorAnalysis<'_> {
         // The format of a result can represent all values within the allowed error, so its error shows whether the value fits.
         let drops_bits = match node.operation {
             Operation::ShiftLeft(..) => true,
-            Operation::Narrow(..) | Operation::Middle(_) => !self.plan.proved.contains(&id),
+            Operation::Narrow(..) | Operation::Middle(_) => !self.plan.proved().contains(&id),
             _ => false,
         };
         if drops_bits {
@@ -794,7 +796,8 @@ fn absolute(a: NodeError) -> NodeError {
     NodeError::new(Enclosure::between(0.0, largest), a.error.hull(other.error))
 }
 
-/// Returns the limits of the smaller of two values. Its error lies within the errors of both values.
+/// Returns the limits of the smaller of two values. Its error lies between the errors of the two values, so the limits of the
+/// error are the ends of the smallest interval that contains both errors' intervals.
 fn minimum(a: NodeError, b: NodeError) -> NodeError {
     let ideal = Enclosure::between(a.ideal.low.min(b.ideal.low), a.ideal.high.min(b.ideal.high));
     NodeError::new(ideal, a.error.hull(b.error))

@@ -1,12 +1,12 @@
 //! Proves a bound of the error of a result, over all operands for which the result is promised.
 //!
-//! A box is a range of raw values for each operand: for example, x from 0 to 255 and y from 16 to 31. An analysis with
-//! intervals bounds the error in a box. The search begins with the box of the whole domain, and always divides the box with the
-//! largest error in two. The search ends when this error is small enough, when this box is a single combination, or after a
-//! given number of divisions.
+//! A box is a range of raw values for each operand: for example, x from 0 to 255 and y from 16 to 31. Interval arithmetic
+//! bounds the error in a box. The search begins with the box of the whole domain, and always divides the box with the largest
+//! error in two. The search ends when this error is small enough for the caller, when this box is a single combination, or
+//! after a given number of divisions.
 //!
-//! A box whose error has no limit counts as the largest. The reason is a part of the formula that may exceed its format in the
-//! box, or a function that may have no value in the box.
+//! The error in a box has no limit if a part of the formula may exceed its format there, or if a function may have no value
+//! there. Such a box counts as the box with the largest error.
 
 use std::cmp::Ordering;
 use std::collections::{BTreeSet, BinaryHeap};
@@ -179,7 +179,7 @@ impl<'p> ResultProof<'p> {
         result: usize,
     ) -> Self {
         let needed = plan.needed_for(result);
-        let joins = joins(plan, &needed, plan.proved[result]);
+        let joins = joins(plan, &needed, plan.proved()[result]);
         Self { statement, plan, result, needed, joins, named: statement.operands_of(result) }
     }
 
@@ -191,7 +191,7 @@ impl<'p> ResultProof<'p> {
     /// Returns whether the branches of several integer parts end where they meet.
     fn joins_integers(&self) -> bool {
         let is_integer =
-            |at: usize| matches!(self.plan.nodes[at].operation, Operation::IntegerPart(_));
+            |at: usize| matches!(self.plan.nodes()[at].operation, Operation::IntegerPart(_));
         self.joins.iter().enumerate().any(|(at, join)| join.is_some() && is_integer(at))
     }
 
@@ -254,7 +254,7 @@ impl<'p> ResultProof<'p> {
         let StatedResult { promise, error, fraction, .. } = &self.statement.results[self.result];
         // Writing to a digest does not fail.
         let _ = write!(digest, "{promise:?}{error:?}{fraction}");
-        for (at, node) in self.plan.nodes.iter().enumerate() {
+        for (at, node) in self.plan.nodes().iter().enumerate() {
             if self.needed[at] {
                 let PlanNode { operation, format, range, limits, actual_limits, .. } = node;
                 let _ = write!(
@@ -352,7 +352,7 @@ impl<'p> ResultProof<'p> {
     ) {
         let (plan, needed, joins) = (self.plan, &self.needed, &self.joins);
         let analysis = ErrorAnalysis { plan, needed, joins, only };
-        let node = self.plan.proved[self.result];
+        let node = self.plan.proved()[self.result];
         let operands = self.statement.enclosed_operands(limits);
         analysis.run(&operands, &mut |values, undecided| visit(&values[node.0], undecided));
     }

@@ -49,16 +49,16 @@ impl ExpressionPlan {
     /// because the hardware computes such a value once.
     pub(super) fn total_cells(&self) -> f64 {
         let first = self.first_of_equal_nodes();
-        let different = (0..self.nodes.len()).map(NodeId).filter(|node| first[node.0] == *node);
+        let different = (0..self.nodes().len()).map(NodeId).filter(|node| first[node.0] == *node);
         different.map(|node| self.cells(node)).sum()
     }
 
     /// Returns for each node the first node that certainly has the same value: the node itself, or an earlier one that computes the same
     /// function of the same inputs.
     pub(super) fn first_of_equal_nodes(&self) -> Vec<NodeId> {
-        let mut first: Vec<NodeId> = Vec::with_capacity(self.nodes.len());
+        let mut first: Vec<NodeId> = Vec::with_capacity(self.nodes().len());
         let mut by_inputs: HashMap<(Format, Vec<NodeId>), Vec<NodeId>> = HashMap::new();
-        for (at, node) in self.nodes.iter().enumerate() {
+        for (at, node) in self.nodes().iter().enumerate() {
             let inputs: Vec<NodeId> =
                 node.operation.inputs().iter().map(|input| first[input.0]).collect();
             let earlier = by_inputs.entry((node.format, inputs)).or_default();
@@ -116,7 +116,8 @@ impl ExpressionPlan {
             Operation::Lookup { words, .. } => width * words.len().div_ceil(WORDS_OF_CELL) as f64,
             Operation::Polynomial(_, approximation) => {
                 let found = approximation.polynomials.as_ref();
-                let cells = |found| cells_of_function(&approximation.function, found, self.memory);
+                let cells =
+                    |found| cells_of_function(&approximation.function, found, self.memory());
                 found.map_or(0.0, cells)
             }
         }
@@ -129,7 +130,7 @@ impl ExpressionPlan {
 
     /// Returns the number of products of all nodes.
     pub(super) fn count_products(&self) -> usize {
-        (0..self.nodes.len()).map(|at| self.products(NodeId(at))).sum()
+        (0..self.nodes().len()).map(|at| self.products(NodeId(at))).sum()
     }
 
     /// Returns the number of products that a node computes. For example, a table of polynomials of degree 2 computes two.
@@ -148,7 +149,7 @@ impl ExpressionPlan {
     /// Returns an estimate of the number of look-up tables that the plan takes, before its polynomials are known.
     pub(super) fn cells_without_polynomials(&self) -> f64 {
         let mut cells = self.total_cells();
-        for node in &self.nodes {
+        for node in self.nodes() {
             if matches!(node.operation, Operation::Polynomial(..)) {
                 cells += CELLS_OF_A_TABLE_BIT * f64::from(node.format.width());
             }
@@ -159,7 +160,7 @@ impl ExpressionPlan {
     /// Returns the factors of products that have more bits than a multiplier's input.
     pub(super) fn wide_factors(&self) -> Vec<NodeId> {
         let mut wide = Vec::new();
-        for node in &self.nodes {
+        for node in self.nodes() {
             if let Operation::Multiply(a, b) = node.operation {
                 let widths = factor_widths(self.node(a), self.node(b));
                 for (factor, width) in [a, b].into_iter().zip(widths) {
@@ -197,7 +198,7 @@ pub(super) fn cells_of_function(
     if found.reduction.is_some() {
         let plan = ExpressionPlan::of_function(function, found);
         return match plan {
-            Ok(plan) => ExpressionPlan { memory, ..plan }.total_cells(),
+            Ok(plan) => plan.with_memory(memory).total_cells(),
             Err(_) => f64::INFINITY,
         };
     }

@@ -12,7 +12,7 @@ use glint_approximate::{Curve, Outside, Piecewise, Reduction, Rule, TargetFuncti
 use glint_base::fixed::{Format, Rounding};
 
 use super::node::{Approximation, NodeId, Operation};
-use super::plan::ExpressionPlan;
+use super::plan::{ExpressionPlan, PlanBuilder};
 use super::refusal::PlanRefusal;
 
 /// The operand in the shorter domain, and the nodes from which the result is restored. The steps of the restoring have the
@@ -46,7 +46,7 @@ impl ExpressionPlan {
         function: &TargetFunction,
         polynomials: &Arc<Piecewise>,
     ) -> Result<Self, PlanRefusal> {
-        let mut plan = Self::default();
+        let mut plan = PlanBuilder::default();
         let format = polynomials.operand;
         let reached = match polynomials.outside {
             Outside::Wrap => (format.min_raw() as i64, format.max_raw() as i64),
@@ -54,9 +54,8 @@ impl ExpressionPlan {
         };
         let x = plan.operand(0, "x", format, reached)?;
         let result = plan.curve("result", x, function, polynomials)?;
-        plan.results.push(result);
-        plan.proved.push(result);
-        Ok(plan)
+        plan.add_result(result, result);
+        plan.finish()
     }
 
     /// Returns the plan with the nodes of its range reductions, and the new index of each node. During the search for a plan, a
@@ -65,9 +64,9 @@ impl ExpressionPlan {
     /// # Errors
     /// Fails if a node has too many bits.
     pub(super) fn with_reductions(&self) -> Result<(Self, Vec<NodeId>), PlanRefusal> {
-        let mut plan = Self { memory: self.memory, ..Self::default() };
-        let mut renumbered: Vec<NodeId> = Vec::with_capacity(self.nodes.len());
-        for node in &self.nodes {
+        let mut plan = PlanBuilder::like(self);
+        let mut renumbered: Vec<NodeId> = Vec::with_capacity(self.nodes().len());
+        for node in self.nodes() {
             let operation = node.operation.with_inputs(&|id: NodeId| renumbered[id.0]);
             let reduced = match &operation {
                 Operation::Polynomial(x, approximation) => {
@@ -82,12 +81,14 @@ impl ExpressionPlan {
                 None => plan.push_copy(node, operation),
             });
         }
-        let new_number = |id: &NodeId| renumbered[id.0];
-        plan.results = self.results.iter().map(new_number).collect();
-        plan.proved = self.proved.iter().map(new_number).collect();
-        Ok((plan, renumbered))
+        for (result, proved) in self.results().iter().zip(self.proved()) {
+            plan.add_result(renumbered[result.0], renumbered[proved.0]);
+        }
+        Ok((plan.finish()?, renumbered))
     }
+}
 
+impl PlanBuilder {
     /// Adds a function of the node `x` with known polynomials, and returns the node of its result. The format of `x` must be
     /// the operand format of the polynomials. Fails if a node has more than 64 bits.
     pub(super) fn curve(

@@ -25,14 +25,14 @@ const MERGED_CHOICE: f64 = 0.7;
 
 /// Returns the time of each node's own logic. Products and tables have microinstructions of their own, and count as 0.
 pub(super) fn own_times(plan: &ExpressionPlan) -> Vec<f64> {
-    let mut readers: Vec<Vec<NodeId>> = vec![Vec::new(); plan.nodes.len()];
-    for (at, node) in plan.nodes.iter().enumerate() {
+    let mut readers: Vec<Vec<NodeId>> = vec![Vec::new(); plan.nodes().len()];
+    for (at, node) in plan.nodes().iter().enumerate() {
         for input in node.operation.inputs() {
             readers[input.0].push(NodeId(at));
         }
     }
-    let mut times = Vec::with_capacity(plan.nodes.len());
-    for at in 0..plan.nodes.len() {
+    let mut times = Vec::with_capacity(plan.nodes().len());
+    for at in 0..plan.nodes().len() {
         times.push(time_of(plan, NodeId(at), &readers));
     }
     times
@@ -129,7 +129,7 @@ pub(super) fn selects_by_opcode(plan: &ExpressionPlan, condition: NodeId) -> boo
 
 /// Returns whether a node is the opcode of a unit, which is operand 0.
 fn is_opcode(plan: &ExpressionPlan, node: NodeId) -> bool {
-    plan.is_shared && matches!(plan.node(node).operation, Operation::Operand(0))
+    plan.is_shared() && matches!(plan.node(node).operation, Operation::Operand(0))
 }
 
 /// Returns the longest time that the logic in front of a node may take. In a unit, the operand of a table passes the choice between
@@ -137,7 +137,7 @@ fn is_opcode(plan: &ExpressionPlan, node: NodeId) -> bool {
 pub(super) fn longest_to(plan: &ExpressionPlan, id: NodeId) -> f64 {
     match plan.node(id).operation {
         Operation::Multiply(..) => LONGEST_TO_FACTOR,
-        Operation::Polynomial(..) if plan.is_shared => LONGEST_TO_FACTOR,
+        Operation::Polynomial(..) if plan.is_shared() => LONGEST_TO_FACTOR,
         Operation::Polynomial(..) => LONGEST_TO_TABLE,
         _ => LONGEST_TO_REGISTER,
     }

@@ -18,7 +18,7 @@ pub(super) fn dispatches(
     plan: &ExpressionPlan,
     schedule: &PlanSchedule,
 ) -> Vec<Option<Vec<usize>>> {
-    let opcode = plan.nodes.iter().find(|node| matches!(node.operation, Operation::Operand(0)));
+    let opcode = plan.nodes().iter().find(|node| matches!(node.operation, Operation::Operand(0)));
     let bits = opcode.expect("the opcode of a unit").format.width();
     let last = schedule.steps.len() + 1;
     let mut of_opcodes = Vec::new();
@@ -79,14 +79,14 @@ struct FunctionNodes<'p> {
 
 impl<'p> FunctionNodes<'p> {
     fn new(plan: &'p ExpressionPlan, schedule: &'p PlanSchedule, opcode: i64) -> Self {
-        let count = plan.nodes.len();
+        let count = plan.nodes().len();
         let constants = Vec::with_capacity(count);
         let mut function = Self { plan, schedule, constants, is_needed: vec![false; count] };
         for at in 0..count {
             let constant = function.constant(NodeId(at), opcode);
             function.constants.push(constant);
         }
-        for result in &plan.results {
+        for result in plan.results() {
             function.is_needed[result.0] = true;
         }
         for at in (0..count).rev() {

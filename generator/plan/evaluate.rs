@@ -11,8 +11,8 @@ impl ExpressionPlan {
     /// # Panics
     /// Panics if there are fewer values than operands, or if the plan has a function whose polynomials are not known yet.
     pub fn values(&self, operands: &[i64]) -> Vec<i128> {
-        let mut values: Vec<i128> = Vec::with_capacity(self.nodes.len());
-        for at in 0..self.nodes.len() {
+        let mut values: Vec<i128> = Vec::with_capacity(self.nodes().len());
+        for at in 0..self.nodes().len() {
             let value = self.value(NodeId(at), operands, &|id: NodeId| values[id.0]);
             values.push(value);
         }

@@ -101,7 +101,7 @@ fn add_errors(
             .value(&operands, || statement.exact_operands(raw))
             .map_err(|fault| without_value(statement, number, raw, fault))?;
         let values = values.get_or_insert_with(|| plan.values(raw));
-        let hardware = values[plan.proved[number].0] as f64;
+        let hardware = values[plan.proved()[number].0] as f64;
         let off = (hardware - exact.low * unit).abs().max((hardware - exact.high * unit).abs());
         // A difference of 0 is exact. Any other difference may have been rounded down.
         let error = if off == 0.0 { 0.0 } else { off.next_up() };

@@ -252,7 +252,7 @@ fn find_with(search: &PlanSearch<'_>) -> Result<ProvedPlan, PlanRefusal> {
     }
     let mut shares = Vec::new();
     for of_result in error_shares(statement, &whole, divisions) {
-        let mut of_nodes = vec![0.0; plan.nodes.len()];
+        let mut of_nodes = vec![0.0; plan.nodes().len()];
         for (at, share) in of_result.iter().enumerate() {
             of_nodes[rounding_node(&plan, &renumbered, at).0] += share;
         }
@@ -309,12 +309,12 @@ fn check_multiplier(plan: &ExpressionPlan) -> Result<(), PlanRefusal> {
     };
     let remedy = "give the operands fewer bits, or the results fewer fraction bits";
     let refusal = PlanRefusal::new(message, remedy);
-    let is_product = |id: &usize| matches!(plan.nodes[*id].operation, Operation::Multiply(..));
-    let products = (0..plan.nodes.len()).filter(is_product);
-    let Some(widest) = products.max_by_key(|id| plan.nodes[*id].format.width()) else {
+    let is_product = |id: &usize| matches!(plan.nodes()[*id].operation, Operation::Multiply(..));
+    let products = (0..plan.nodes().len()).filter(is_product);
+    let Some(widest) = products.max_by_key(|id| plan.nodes()[*id].format.width()) else {
         return Err(refusal);
     };
-    let reader = (0..plan.results.len()).find(|result| plan.needed_for(*result)[widest]);
+    let reader = (0..plan.results().len()).find(|result| plan.needed_for(*result)[widest]);
     Err(match reader {
         Some(result) => refusal.of_result(result),
         None => refusal,
@@ -326,7 +326,8 @@ fn check_multiplier(plan: &ExpressionPlan) -> Result<(), PlanRefusal> {
 /// node.
 fn rounding_node(plan: &ExpressionPlan, renumbered: &[NodeId], at: usize) -> NodeId {
     let first = if at == 0 { 0 } else { renumbered[at - 1].0 + 1 };
-    let is_table = |node: &usize| matches!(plan.nodes[*node].operation, Operation::Polynomial(..));
+    let is_table =
+        |node: &usize| matches!(plan.nodes()[*node].operation, Operation::Polynomial(..));
     match (first..=renumbered[at].0).find(is_table) {
         Some(table) => NodeId(table),
         None => renumbered[at],
@@ -570,12 +571,12 @@ fn error_shares(
     let mut shares = Vec::new();
     for result in 0..statement.results.len() {
         let proof = ResultProof::new(statement, plan, result);
-        let mut of_result = vec![0.0; plan.nodes.len()];
+        let mut of_result = vec![0.0; plan.nodes().len()];
         if let Some(worst) = proof.worst(0.0, divisions) {
             // The rounding of the result itself has no source, and is a part of every share.
             let own = proof.share(&worst.limits, NO_SOURCE);
             let mut counted = HashSet::new();
-            for (node, share) in plan.nodes.iter().zip(&mut of_result) {
+            for (node, share) in plan.nodes().iter().zip(&mut of_result) {
                 // A table and the shift behind it can be one rounding operation, which counts at the table.
                 if let Some(source) = node.source
                     && counted.insert(source)
@@ -583,7 +584,7 @@ fn error_shares(
                     *share = (proof.share(&worst.limits, source) - own).max(0.0);
                 }
             }
-            of_result[plan.proved[result].0] += own;
+            of_result[plan.proved()[result].0] += own;
         }
         shares.push(of_result);
     }

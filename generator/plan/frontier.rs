@@ -8,7 +8,7 @@ use glint_base::fixed::exp2;
 use glint_formula::{Expression, Kind, Operator};
 
 use super::node::{NodeId, Operation, PlanNode, ValueAccuracy};
-use super::plan::ExpressionPlan;
+use super::plan::{ExpressionPlan, PlanBuilder};
 use super::statement::{ExpressionStatement, StatedOperand, StatedResult};
 
 /// A plan whose operands are exact parts of another plan, with a statement of these operands.
@@ -30,7 +30,7 @@ impl PlanOfParts {
         let needed = plan.needed_by(node);
         let is_plain = plain_nodes(plan);
         let mut parts: Vec<NodeId> = Vec::new();
-        for (at, reader) in plan.nodes.iter().enumerate() {
+        for (at, reader) in plan.nodes().iter().enumerate() {
             if !needed[at] || is_plain[at] {
                 continue;
             }
@@ -47,9 +47,8 @@ impl PlanOfParts {
         if parts.is_empty() || parts.len() >= most {
             return None;
         }
-        let mut plan = plan.clone();
-        plan.results = vec![node];
-        plan.proved = vec![node];
+        let mut of_parts = PlanBuilder::of_plan(plan.clone());
+        of_parts.end_at(node);
         let mut operands = Vec::new();
         let mut sum: Option<Expression> = None;
         for (number, part) in parts.into_iter().enumerate() {
@@ -65,12 +64,12 @@ impl PlanOfParts {
             });
             let (outside, doc) = (Outside::Anything, String::new());
             operands.push(StatedOperand { name, format, domain, outside, doc });
-            plan.nodes[part.0].operation = Operation::Operand(number);
-            plan.nodes[part.0].stated = None;
+            of_parts.make_operand(part, number);
         }
         // The formula only names the operands on which the error depends.
         let result = StatedResult { formula: sum?, promise: None, ..result.clone() };
-        Some(Self { statement: ExpressionStatement { operands, results: vec![result] }, plan })
+        let statement = ExpressionStatement { operands, results: vec![result] };
+        Some(Self { statement, plan: of_parts.finish().ok()? })
     }
 }
 
@@ -78,7 +77,7 @@ impl PlanOfParts {
 /// part.
 fn plain_nodes(plan: &ExpressionPlan) -> Vec<bool> {
     let mut is_plain: Vec<bool> = Vec::new();
-    for node in &plan.nodes {
+    for node in plan.nodes() {
         let has_branches = matches!(
             node.operation,
             Operation::Normalise { .. } | Operation::Places(_) | Operation::IntegerPart(_)

@@ -1,5 +1,6 @@
-//! Encloses the values of formulas where conditions hold: facts limit the parts of a formula ([`super::facts`]), and a choice limits the
-//! parts in its cases.
+//! Encloses the values of a formula under the conditions of its use. For example, where `hi > lo` holds, `hi - lo` has a lower
+//! limit above 0 ([`super::facts`]), and so `1 / (hi - lo)` has an upper limit. In `if(x > 1, 1 / x, 0)` the comparison limits
+//! the `x` of the first case.
 
 use std::collections::HashMap;
 use std::ptr;

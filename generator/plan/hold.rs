@@ -1,7 +1,8 @@
 //! Decides which values of a plan have registers.
 //!
-//! Products, polynomials and normalised words always have one. In a sequential core, a value has a register too if the logic that
-//! reads it would otherwise take too long ([`super::depth`]).
+//! Results, products and polynomials always have one, and so has the word that [`Operation::Normalise`] shifts to its top bit. In
+//! a sequential unit, this word goes to the register of the table's operand instead. In a sequential core, any other value has a
+//! register too if the logic that reads it would otherwise take too long ([`super::depth`]).
 
 use super::depth::{longest_to, own_times, selects_by_opcode};
 use super::node::{NodeId, Operation};
@@ -12,8 +13,8 @@ use super::placement::StepPlacement;
 pub(super) fn held_nodes(start: &StepPlacement, computed: &[NodeId]) -> Vec<bool> {
     let plan = start.plan;
     let is_read = plan.read_nodes();
-    let mut is_input = vec![false; plan.nodes.len()];
-    for node in &plan.nodes {
+    let mut is_input = vec![false; plan.nodes().len()];
+    for node in plan.nodes() {
         for input in node.operation.inputs() {
             is_input[input.0] = true;
         }
@@ -22,7 +23,7 @@ pub(super) fn held_nodes(start: &StepPlacement, computed: &[NodeId]) -> Vec<bool
         start,
         computed,
         own: own_times(plan),
-        held: vec![false; plan.nodes.len()],
+        held: vec![false; plan.nodes().len()],
         times: Vec::new(),
     };
     for &node in computed {
@@ -32,23 +33,23 @@ pub(super) fn held_nodes(start: &StepPlacement, computed: &[NodeId]) -> Vec<bool
         match plan.node(node).operation {
             Operation::Multiply(..) => holder.held[start.targets[node.0].0] = true,
             // In a sequential unit, the word goes to the register of the table's operand in the same clock.
-            Operation::Places(_) if plan.is_shared && !start.is_pipelined => {}
+            Operation::Places(_) if plan.is_shared() && !start.is_pipelined => {}
             Operation::Places(normalised) => {
                 holder.held[start.targets[normalised.0].0] = true;
                 // The results of a function that covers one octave need no shift back.
                 holder.held[node.0] |= is_read[node.0];
             }
             Operation::Polynomial(..) => holder.held[node.0] = true,
-            Operation::ShiftLeft(..) | Operation::ShiftRight(..) if plan.is_shared => {
+            Operation::ShiftLeft(..) | Operation::ShiftRight(..) if plan.is_shared() => {
                 holder.held[node.0] = !start.is_pipelined;
             }
             _ => {}
         }
         holder.held[node.0] |= start.schedule.register_sharers(node).len() > 1;
         // Later microinstructions read the register of a result, so it is loaded before them.
-        holder.held[node.0] |= plan.results.contains(&node) && is_input[node.0];
+        holder.held[node.0] |= plan.results().contains(&node) && is_input[node.0];
     }
-    for result in &plan.results {
+    for result in plan.results() {
         holder.held[result.0] = true;
     }
     holder.held

@@ -31,7 +31,7 @@
 //! assert!(found.bounds[0] < 1.0);
 //! // 3/16 and 4/16 have the length 5/16, within a unit of 1/256.
 //! let values = found.plan.values(&[48, 64]);
-//! let length = values[found.plan.results[0].0];
+//! let length = values[found.plan.results()[0].0];
 //! assert!((79..=81).contains(&length));
 //! ```
 

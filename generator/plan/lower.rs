@@ -40,7 +40,7 @@ use super::guarded::GuardedFormula;
 use super::memory::TableMemory;
 use super::node::{NodeId, Operation, PlanNode, StatedValue, ValueAccuracy};
 use super::order;
-use super::plan::ExpressionPlan;
+use super::plan::{ExpressionPlan, PlanBuilder};
 use super::projection;
 use super::range::RangeMemo;
 use super::refusal::PlanRefusal;
@@ -197,7 +197,7 @@ pub(super) struct Lowering<'s> {
     guards: &'s Guards,
     first_guard: i32,
     found: &'s FoundPolynomials,
-    plan: ExpressionPlan,
+    plan: PlanBuilder,
     /// The parts of formulas that already have a node.
     known: Vec<KnownPart>,
     /// The uses of the part that is being rewritten.
@@ -294,7 +294,7 @@ pub(super) fn lowered(
         guards,
         first_guard,
         found,
-        plan: ExpressionPlan { memory: search.memory, ..ExpressionPlan::default() },
+        plan: PlanBuilder::new(search.memory),
         known: Vec::new(),
         uses: PartUses::default(),
         octants: Vec::new(),
@@ -319,10 +319,10 @@ pub(super) fn lowered(
         let rounded = lowering.result(number).map_err(of_result)?;
         let proved = lowering.saturated(number, rounded).map_err(of_result)?;
         let node = lowering.in_stated_width(number, proved).map_err(of_result)?;
-        lowering.plan.proved.push(proved);
-        lowering.plan.results.push(node);
+        lowering.plan.add_result(node, proved);
     }
-    Ok(LoweredStatement { plan: lowering.plan, sources: lowering.sources, terms: lowering.terms })
+    let plan = lowering.plan.finish()?;
+    Ok(LoweredStatement { plan, sources: lowering.sources, terms: lowering.terms })
 }
 
 impl<'s> Lowering<'s> {
@@ -383,10 +383,10 @@ impl<'s> Lowering<'s> {
         let source = self.sources;
         self.sources += 1;
         let guard = self.guards.bits.get(source).copied().unwrap_or(self.first_guard);
-        let before = self.plan.nodes.len();
+        let before = self.plan.so_far().nodes().len();
         let node = make(self, frac + guard)?;
         if node.0 >= before {
-            self.plan.nodes[node.0].source = Some(source);
+            self.plan.state_source(node, Some(source));
         }
         Ok(node)
     }
@@ -465,7 +465,7 @@ impl<'s> Lowering<'s> {
         }
         let limits = self.range(part)?;
         if self.is_promised_alone() && !self.plan.is_narrower(node, limits) {
-            self.plan.nodes[node.0].limits = limits;
+            self.plan.state_limits(node, limits);
             return Ok(node);
         }
         let name = format!("{}_guarded", self.plan.node(node).name);

@@ -157,7 +157,7 @@ fn mirror_at(plan: &ExpressionPlan, id: NodeId) -> Option<(Mirror, NodeId, NodeI
 
 fn readers(plan: &ExpressionPlan, id: NodeId) -> Vec<NodeId> {
     let mut readers = Vec::new();
-    for (at, node) in plan.nodes.iter().enumerate() {
+    for (at, node) in plan.nodes().iter().enumerate() {
         if node.operation.inputs().contains(&id) {
             readers.push(NodeId(at));
         }

@@ -136,7 +136,7 @@ impl<'p> StepPlacement<'p> {
         schedule: PlanSchedule,
         is_pipelined: bool,
     ) -> Self {
-        let count = plan.nodes.len();
+        let count = plan.nodes().len();
         Self {
             plan,
             targets,
@@ -189,14 +189,14 @@ impl<'p> StepPlacement<'p> {
 
     /// Returns whether only the outputs read the node. A pipeline loads all such nodes in its last microinstruction.
     fn is_last(&self, node: NodeId) -> bool {
-        let mut others = self.plan.nodes.iter();
+        let mut others = self.plan.nodes().iter();
         let has_reader = others.any(|other| other.operation.inputs().contains(&node));
         self.is_pipelined && !has_reader
     }
 
     /// Loads the results that have no register yet.
     pub(super) fn place_results(&mut self) {
-        let results = self.plan.results.clone();
+        let results = self.plan.results().to_vec();
         let end = self.schedule.steps.len();
         for result in results {
             if !self.is_placed[result.0] {

@@ -25,15 +25,15 @@ impl ExpressionPlan {
     /// Panics if the plan has a function whose polynomials are not known yet.
     pub fn schedule(&self, is_pipelined: bool) -> PlanSchedule {
         let computed = self.computed_nodes();
-        let mut is_coefficient_held = vec![false; self.nodes.len()];
+        let mut is_coefficient_held = vec![false; self.nodes().len()];
         for &NodeId(at) in computed.iter().filter(|_| !is_pipelined) {
-            if let Operation::Polynomial(_, approximation) = &self.nodes[at].operation {
+            if let Operation::Polynomial(_, approximation) = &self.nodes()[at].operation {
                 let it = approximation.polynomials.as_ref().expect("polynomials that are found");
                 is_coefficient_held[at] = it.degree() > 0 && it.rom_bits() >= SMALLEST_BLOCK;
             }
         }
         let targets = self.register_targets();
-        let held = vec![false; self.nodes.len()];
+        let held = vec![false; self.nodes().len()];
         let table_owners = self.table_owners(is_pipelined);
         let empty = PlanSchedule {
             held,
@@ -52,7 +52,7 @@ impl ExpressionPlan {
         }
         placement.place_results();
         let mut schedule = placement.schedule;
-        if self.is_shared && !is_pipelined {
+        if self.is_shared() && !is_pipelined {
             schedule.dispatches = dispatches(self, &schedule);
         }
         schedule
@@ -61,9 +61,9 @@ impl ExpressionPlan {
     /// Returns for each polynomial of a sequential core the first polynomial with the same table, and for other nodes themselves. Each
     /// polynomial of a pipeline has a table of its own, because the pipeline reads the tables of several points in the same clock.
     fn table_owners(&self, is_pipelined: bool) -> Vec<NodeId> {
-        let mut owners: Vec<NodeId> = (0..self.nodes.len()).map(NodeId).collect();
+        let mut owners: Vec<NodeId> = (0..self.nodes().len()).map(NodeId).collect();
         let is_read = self.read_nodes();
-        for at in (0..self.nodes.len()).filter(|at| is_read[*at] && !is_pipelined) {
+        for at in (0..self.nodes().len()).filter(|at| is_read[*at] && !is_pipelined) {
             let is_same = |other: &usize| is_read[*other] && self.have_same_table(at, *other);
             if let Some(first) = (0..at).find(is_same) {
                 owners[at] = NodeId(first);
@@ -75,14 +75,14 @@ impl ExpressionPlan {
     /// Returns for each node the node whose register also stores its value. The operands of polynomials of a unit that share a table also
     /// share a register. The choice between them is in front of the register, and not in front of the multiplier.
     fn register_owners(&self, table_owners: &[NodeId]) -> Vec<NodeId> {
-        let mut owners: Vec<NodeId> = (0..self.nodes.len()).map(NodeId).collect();
+        let mut owners: Vec<NodeId> = (0..self.nodes().len()).map(NodeId).collect();
         let operand_of = |polynomial: NodeId| match self.node(polynomial).operation {
             Operation::Polynomial(operand, _) => operand,
             _ => unreachable!("only polynomials share a table"),
         };
         for (at, owner) in table_owners.iter().enumerate() {
             let polynomial = NodeId(at);
-            if *owner == polynomial || !self.is_shared {
+            if *owner == polynomial || !self.is_shared() {
                 continue;
             }
             let [own, first] = [polynomial, *owner].map(operand_of);
@@ -96,13 +96,13 @@ impl ExpressionPlan {
     /// Returns whether a node is computed for a table, and nothing else reads it.
     fn is_read_by_table_alone(&self, node: NodeId) -> bool {
         let is_operand = matches!(self.node(node).operation, Operation::Operand(_));
-        let readers = self.nodes.iter().filter(|it| it.operation.inputs().contains(&node));
+        let readers = self.nodes().iter().filter(|it| it.operation.inputs().contains(&node));
         !is_operand && readers.count() == 1
     }
 
     /// Returns whether two nodes are polynomials with the same table and operands of the same format.
     fn have_same_table(&self, at: usize, other: usize) -> bool {
-        let [at, other] = [at, other].map(|it| &self.nodes[it].operation);
+        let [at, other] = [at, other].map(|it| &self.nodes()[it].operation);
         let (Operation::Polynomial(x, own), Operation::Polynomial(y, others)) = (at, other) else {
             return false;
         };
@@ -111,8 +111,8 @@ impl ExpressionPlan {
 
     /// Returns for each node the node whose register stores its value: for most nodes the node itself.
     fn register_targets(&self) -> Vec<NodeId> {
-        let mut targets = Vec::with_capacity(self.nodes.len());
-        for (at, node) in self.nodes.iter().enumerate() {
+        let mut targets = Vec::with_capacity(self.nodes().len());
+        for (at, node) in self.nodes().iter().enumerate() {
             let node_id = NodeId(at);
             let is_stored =
                 matches!(node.operation, Operation::Multiply(..) | Operation::Normalise { .. });
@@ -126,7 +126,7 @@ impl ExpressionPlan {
     fn computed_nodes(&self) -> Vec<NodeId> {
         let is_read = self.read_nodes();
         let mut computed = Vec::new();
-        for (at, node) in self.nodes.iter().enumerate() {
+        for (at, node) in self.nodes().iter().enumerate() {
             let is_computed = match node.operation {
                 Operation::Places(word) => is_read[word.0],
                 _ => is_read[at],
@@ -148,14 +148,14 @@ impl ExpressionPlan {
         let mut held = node;
         loop {
             let mut readers = Vec::new();
-            for (at, other) in self.nodes.iter().enumerate() {
+            for (at, other) in self.nodes().iter().enumerate() {
                 let is_places = matches!(other.operation, Operation::Places(_));
                 if !is_places && other.operation.inputs().contains(&held) {
                     readers.push(NodeId(at));
                 }
             }
             let [reader] = readers[..] else { return held };
-            if self.results.contains(&held) {
+            if self.results().contains(&held) {
                 return held;
             }
             match self.node(reader).operation {
@@ -240,7 +240,7 @@ mod tests {
     /// clock before.
     fn assert_reads_loaded_registers(plan: &ExpressionPlan, schedule: &PlanSchedule, what: &str) {
         // For each node, the number of the microinstruction that loads its register.
-        let mut loaded: Vec<Option<usize>> = vec![None; plan.nodes.len()];
+        let mut loaded: Vec<Option<usize>> = vec![None; plan.nodes().len()];
         for (at, step) in schedule.steps.iter().enumerate() {
             let from_tables = match step.work {
                 Some(StepWork::Sum { polynomial, .. }) => Some(polynomial),
@@ -286,7 +286,7 @@ mod tests {
                 _ => {}
             }
         }
-        for result in &plan.results {
+        for result in plan.results() {
             assert!(loaded[result.0].is_some(), "{what}: a result is not loaded");
         }
     }
@@ -316,7 +316,7 @@ mod tests {
     fn polynomials_with_the_same_table_share_it() {
         let plan = plan_of("sin(pi * a) * b - sin(pi * c) * d");
         let mut polynomials = Vec::new();
-        for (at, node) in plan.nodes.iter().enumerate() {
+        for (at, node) in plan.nodes().iter().enumerate() {
             if matches!(node.operation, Operation::Polynomial(..)) {
                 polynomials.push(NodeId(at));
             }

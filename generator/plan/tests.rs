@@ -2,10 +2,14 @@
 
 use glint_approximate::{Curve, Identity, Outside, TargetFunction, Wish};
 use glint_base::fixed::{Format, Rounding};
+use std::mem::discriminant;
+
 use glint_formula::{Comparison, Enclosure, Expression, Kind, parse, parse_condition};
 
 use super::exhaust::largest_errors;
 use super::find::{DIVISIONS, enclosed_errors};
+use super::node::NodeId;
+use super::plan::PlanBuilder;
 use super::{
     ExpressionPlan, ExpressionStatement, Operation, ProofKind, StatedOperand, StatedOverflow,
     StatedResult, StatedWidth, find, least_size,
@@ -139,10 +143,9 @@ fn planted_faults_exceed_the_bound() {
     let statement = &statements(8)[8];
     let found = find(statement).expect("a plan");
     let mut faults = 0;
-    for at in 0..found.plan.nodes.len() {
-        let mut plan = found.plan.clone();
-        let node = &mut plan.nodes[at];
-        match &mut node.operation {
+    for at in 0..found.plan.nodes().len() {
+        let mut operation = found.plan.nodes()[at].operation.clone();
+        match &mut operation {
             Operation::Polynomial(_, approximation) => {
                 let mut wrong =
                     (**approximation.polynomials.as_ref().expect("polynomials")).clone();
@@ -151,16 +154,17 @@ fn planted_faults_exceed_the_bound() {
                 approximation.polynomials = Some(wrong.into());
             }
             Operation::Choose { cases, .. } => cases.swap(0, 1),
-            Operation::Absolute(a) => node.operation = Operation::Narrow(*a, Rounding::Truncate),
+            Operation::Absolute(a) => operation = Operation::Narrow(*a, Rounding::Truncate),
             Operation::Places(_) => {
-                node.operation = Operation::Constant { raw: 1, value: Enclosure::exactly(1.0) }
+                operation = Operation::Constant { raw: 1, value: Enclosure::exactly(1.0) }
             }
             _ => continue,
         }
+        let plan = found.plan.with_fault(NodeId(at), operation);
         faults += 1;
         let largest = largest_errors(statement, &plan).expect("values");
         let is_noticed = largest.iter().zip(&found.bounds).any(|(largest, bound)| largest > bound);
-        assert!(is_noticed, "node {}", found.plan.nodes[at].name);
+        assert!(is_noticed, "node {}", found.plan.nodes()[at].name);
     }
     assert!(faults >= 10, "{faults} faults");
 }
@@ -233,7 +237,7 @@ fn exact_plans_have_exact_values() {
     let found = find(&statement).expect("a plan");
     for (x, y) in [(0i64, 0i64), (-128, 127), (5, 5), (100, -3), (-1, 2)] {
         let values = found.plan.values(&[x, y]);
-        let results: Vec<i128> = found.plan.results.iter().map(|node| values[node.0]).collect();
+        let results: Vec<i128> = found.plan.results().iter().map(|node| values[node.0]).collect();
         let larger = (4 * x.abs()).max(y);
         let chosen = if x >= y { x + 1 } else { -y };
         assert_eq!(results, [x * y - 3 * x, larger, chosen].map(i128::from), "x = {x}, y = {y}");
@@ -316,7 +320,7 @@ fn whole_roots_are_exact() {
     assert!(operands.len() > 80, "{operands:?}");
     for x in operands {
         let values = found.plan.values(&[x]);
-        let given: Vec<i128> = found.plan.results.iter().map(|node| values[node.0]).collect();
+        let given: Vec<i128> = found.plan.results().iter().map(|node| values[node.0]).collect();
         let x = x as u64;
         let down = x.isqrt();
         let up = if down * down == x { down } else { down + 1 };
@@ -347,7 +351,7 @@ fn values_outside_the_domain_are_of_the_formats() {
         for x in low..=high {
             for y in low..=high {
                 let values = found.plan.values(&[x, y]);
-                for (node, value) in found.plan.nodes.iter().zip(values) {
+                for (node, value) in found.plan.nodes().iter().zip(values) {
                     assert!(node.format.holds(value), "{} = {value}", node.name);
                 }
             }
@@ -374,14 +378,14 @@ fn stated_widths_refuse_saturate_or_wrap() {
     let found = find(&statement(narrow(StatedOverflow::Wrap))).expect("a plan");
     assert_eq!(found.bounds, [0.0]);
     // 7/8 + 2/8 is 9/8, which is −7/8 modulo 2.
-    assert_eq!(found.plan.values(&[7, 2])[found.plan.results[0].0], -7);
+    assert_eq!(found.plan.values(&[7, 2])[found.plan.results()[0].0], -7);
     let limited = parse("min(max(x + y, -1), 7/8)").expect("a formula");
     let found = find(&statement(narrow(StatedOverflow::Saturate(limited)))).expect("a plan");
-    let sum = |x: i64, y: i64| found.plan.values(&[x, y])[found.plan.results[0].0];
+    let sum = |x: i64, y: i64| found.plan.values(&[x, y])[found.plan.results()[0].0];
     assert_eq!([sum(7, 2), sum(-8, -1), sum(3, 2)], [7, -8, 5]);
     let wide = Some(StatedWidth { format: Format::signed(4, 3), overflow: StatedOverflow::Refuse });
     let found = find(&statement(wide)).expect("a plan");
-    assert_eq!(found.plan.node(found.plan.results[0]).format, Format::signed(4, 3));
+    assert_eq!(found.plan.node(found.plan.results()[0]).format, Format::signed(4, 3));
 }
 
 /// The rounding of a result has a share of at most half a unit, an exact operation has none, and a table has some.
@@ -392,10 +396,10 @@ fn shares_are_of_the_parts_that_round() {
         for (result, shares) in found.shares.iter().enumerate() {
             let mut largest_table: f64 = 0.0;
             let needed = found.plan.needed_for(result);
-            let has_table = found.plan.nodes.iter().zip(&needed).any(|(node, needed)| {
+            let has_table = found.plan.nodes().iter().zip(&needed).any(|(node, needed)| {
                 *needed && matches!(node.operation, Operation::Polynomial(..))
             });
-            for (node, share) in found.plan.nodes.iter().zip(shares) {
+            for (node, share) in found.plan.nodes().iter().zip(shares) {
                 match node.operation {
                     Operation::Polynomial(..) => largest_table = largest_table.max(*share),
                     Operation::Narrow(..) => {}
@@ -403,7 +407,7 @@ fn shares_are_of_the_parts_that_round() {
                     _ => {}
                 }
             }
-            let proved = found.plan.proved[result];
+            let proved = found.plan.proved()[result];
             let is_rounded = matches!(found.plan.node(proved).operation, Operation::Narrow(..));
             assert!(!is_rounded || shares[proved.0] <= 0.5 + ROUNDING);
             assert_eq!(has_table, largest_table > 0.0, "{}", statement.results[result].name);
@@ -481,7 +485,7 @@ fn plans_of_reduced_functions_compute_the_proved_results() {
             .unwrap_or_else(|refusal| panic!("{formula}: {refusal:?}"));
         let plan = ExpressionPlan::of_function(&function, &polynomials).expect("a plan");
         for raw in domain.0..=domain.1 {
-            let result = plan.values(&[raw])[plan.results[0].0];
+            let result = plan.values(&[raw])[plan.results()[0].0];
             assert_eq!(result, polynomials.result(raw).into(), "{formula} at {raw}");
         }
     }
@@ -499,7 +503,7 @@ fn an_odd_function_has_a_table_for_one_side() {
     let found = find(&statement).expect("a plan");
     assert_eq!(found.proof, ProofKind::EveryCombination);
     let has_size = |node: &super::PlanNode| matches!(node.operation, Operation::Absolute(_));
-    assert!(found.plan.nodes.iter().any(has_size), "{:?}", found.plan);
+    assert!(found.plan.nodes().iter().any(has_size), "{:?}", found.plan);
     let [approximation] = found.plan.approximations()[..] else { panic!("{:?}", found.plan) };
     assert_eq!(approximation.function.domain.0, 0, "{approximation:?}");
 }
@@ -568,4 +572,48 @@ fn the_angle_between_two_points_follows_from_their_lengths() {
     // The errors of all combinations were computed, and none is above the bound of the proof by intervals.
     assert_eq!(found.proof, ProofKind::EveryCombination);
     assert!(found.enclosed[0] < 1.0);
+}
+
+/// Each way in which a plan can contradict itself is refused, with the name of the node.
+#[test]
+fn a_plan_that_contradicts_itself_is_refused() {
+    let zero = Operation::Constant { raw: 0, value: Enclosure::exactly(0.0) };
+    let rebuilt = |plan: ExpressionPlan| PlanBuilder::of_plan(plan).finish();
+    let statement = &statements(8)[8];
+    let plan = find(statement).expect("a plan").plan;
+    assert!(rebuilt(plan.clone()).is_ok());
+    let mut refused = Vec::new();
+    for (at, node) in plan.nodes().iter().enumerate() {
+        let (fault, reason) = match &node.operation {
+            Operation::Absolute(_) => (Operation::Absolute(NodeId(at)), "precede"),
+            Operation::Places(_) => (zero.clone(), "belong"),
+            Operation::Normalise { .. } => (zero.clone(), "belong"),
+            Operation::Choose { cases, .. } => {
+                (Operation::Choose { condition: cases[0], cases: *cases }, "belong")
+            }
+            _ => continue,
+        };
+        let refusal = rebuilt(plan.with_fault(NodeId(at), fault)).expect_err(&node.name);
+        assert!(refusal.message.contains(reason), "{refusal:?}");
+        refused.push(discriminant(&node.operation));
+    }
+    let mut kinds = refused.clone();
+    kinds.dedup();
+    assert!(kinds.len() >= 4, "{} faults", refused.len());
+}
+
+/// Two nodes with the same name would be the same net, and a node with empty limits would have no error.
+#[test]
+fn a_name_that_is_not_unique_and_empty_limits_are_refused() {
+    let mut same_names = PlanBuilder::default();
+    let a = same_names.operand(0, "a", Format::unsigned(0, 4), (0, 15)).expect("an operand");
+    let mut empty_limits = same_names.clone();
+    let b = same_names.operand(1, "a", Format::unsigned(0, 4), (0, 15)).expect("an operand");
+    same_names.add_result(b, b);
+    let refusal = same_names.finish().expect_err("two operands with the same name");
+    assert_eq!(refusal.message, "the node `a` has the name of another node");
+    empty_limits.state_limits(a, Enclosure::between(1.0, 0.0));
+    empty_limits.add_result(a, a);
+    let refusal = empty_limits.finish().expect_err("empty limits");
+    assert_eq!(refusal.message, "the node `a` has limits that contain no value");
 }

@@ -27,7 +27,7 @@ use equality::{FunctionProof, MOST_COMBINATIONS, MergedFunction};
 
 use super::find::{ProvedPlan, find_set};
 use super::node::{NodeId, Operation};
-use super::plan::ExpressionPlan;
+use super::plan::{ExpressionPlan, PlanBuilder};
 use super::refusal::PlanRefusal;
 use super::statement::{ExpressionStatement, StatedOperand};
 
@@ -135,7 +135,7 @@ impl UnitPlan {
             return Err((0, PlanRefusal::new(message, remedy)));
         }
         let mut unit = Self { functions, plan, operands, results, nodes, equalities: Vec::new() };
-        unit.rename_shared_nodes();
+        unit.rename_shared_nodes().map_err(|refusal| (0, refusal))?;
         let opcodes = (0..unit.functions.len()).into_par_iter();
         let proofs = opcodes.map(|opcode| unit.proved_equality(opcode, MOST_COMBINATIONS));
         unit.equalities = proofs.collect();
@@ -148,28 +148,32 @@ impl UnitPlan {
     }
 
     /// Leaves out the name of a function at the beginning of the name of a node that several functions read, unless nets of the hardware could
-    /// then have the same name.
-    fn rename_shared_nodes(&mut self) {
-        let mut readers = vec![0; self.plan.nodes.len()];
+    /// then have the same name. Fails if a name is not unique.
+    fn rename_shared_nodes(&mut self) -> Result<(), PlanRefusal> {
+        let mut readers = vec![0; self.plan.nodes().len()];
         for (opcode, nodes) in self.nodes.iter().enumerate() {
             let is_read = FunctionProof::new(&self.plan, nodes, opcode, 0).read_nodes();
             for (count, is_read) in readers.iter_mut().zip(is_read) {
                 *count += usize::from(is_read);
             }
         }
+        let mut renamed = PlanBuilder::of_plan(self.plan.clone());
         for (at, readers) in readers.into_iter().enumerate() {
-            let is_operand = matches!(self.plan.nodes[at].operation, Operation::Operand(_));
-            let name = self.plan.nodes[at].name.clone();
+            let node = renamed.node(NodeId(at));
+            let is_operand = matches!(node.operation, Operation::Operand(_));
+            let name = node.name.clone();
             let mut functions = self.functions.iter();
             let without_function =
                 functions.find_map(|it| name.strip_prefix(&it.name)?.strip_prefix('_'));
             let Some(shared) = without_function.map(without_number) else { continue };
-            let mut others = self.plan.nodes.iter().map(|node| node.name.as_str());
+            let mut others = renamed.so_far().nodes().iter().map(|node| node.name.as_str());
             let is_free = !others.any(|other| other != name && may_share_nets(shared, other));
             if readers > 1 && !is_operand && is_free {
-                self.plan.rename(NodeId(at), shared);
+                renamed.rename(NodeId(at), shared);
             }
         }
+        self.plan = renamed.finish()?;
+        Ok(())
     }
 
     /// Returns the unit with another plan of one function, such as one whose table has other words.
@@ -207,7 +211,7 @@ fn may_share_nets(name: &str, other: &str) -> bool {
 /// Returns whether a result depends on the opcode, which is operand 0.
 fn reads_opcode(plan: &ExpressionPlan) -> bool {
     let is_read = plan.read_nodes();
-    let mut nodes = plan.nodes.iter().zip(is_read).filter(|(_, is_read)| *is_read);
+    let mut nodes = plan.nodes().iter().zip(is_read).filter(|(_, is_read)| *is_read);
     nodes.any(|(node, _)| {
         let mut inputs = node.operation.hardware_inputs().into_iter();
         inputs.any(|input| matches!(plan.node(input).operation, Operation::Operand(0)))
@@ -242,15 +246,16 @@ impl UnitPlan {
         let mut operands = vec![opcode as i64];
         operands.extend_from_slice(words);
         let values = self.plan.values(&operands);
-        let merged = self.plan.results.iter().map(|result| values[result.0]).collect();
+        let merged = self.plan.results().iter().map(|result| values[result.0]).collect();
         let own = &self.functions[opcode].planned.plan;
         let values = own.values(&self.operands_of(opcode, words));
-        let results: Vec<i128> = own.results.iter().map(|result| values[result.0]).collect();
+        let results: Vec<i128> = own.results().iter().map(|result| values[result.0]).collect();
         [merged, self.words_of(&results)]
     }
 
-    /// Proves that the merged plan computes the results of the function with this opcode, for all operands for which it promises them. The
-    /// proof computes a node for at most `most_combinations` combinations of values.
+    /// Tries to prove that, for this opcode, the merged plan has the same results as the function's own plan, for all operands
+    /// for which the function promises results. The proof computes a node for at most `most_combinations` combinations of its
+    /// inputs. If this does not suffice, the outcome is [`UnitEquality::Open`].
     fn proved_equality(&self, opcode: usize, most_combinations: u128) -> UnitEquality {
         let statement = &self.functions[opcode].planned.statement;
         let operand = |number: usize, word: i128| {
@@ -335,7 +340,7 @@ fn result_ports(functions: &[UnitFunction]) -> Vec<(&'static str, Format)> {
         let mut formats = Vec::new();
         for function in functions {
             let plan = &function.planned.plan;
-            formats.extend(plan.results.get(number).map(|result| plan.node(*result).format));
+            formats.extend(plan.results().get(number).map(|result| plan.node(*result).format));
         }
         let Some(width) = formats.iter().map(|format| format.width()).max() else { break };
         let is_signed = formats.iter().all(|format| format.signed);
@@ -462,9 +467,9 @@ mod tests {
     fn wrong_plans(plan: &ExpressionPlan) -> Vec<ExpressionPlan> {
         let mut wrong = Vec::new();
         let is_read = plan.read_nodes();
-        for at in (0..plan.nodes.len()).filter(|at| is_read[*at]) {
+        for at in (0..plan.nodes().len()).filter(|at| is_read[*at]) {
             let mut others = Vec::new();
-            match plan.nodes[at].operation.clone() {
+            match plan.nodes()[at].operation.clone() {
                 Operation::Constant { raw, value } => {
                     others.push(Operation::Constant { raw: raw + 1, value });
                 }
@@ -481,9 +486,7 @@ mod tests {
                 _ => {}
             }
             for operation in others {
-                let mut other = plan.clone();
-                other.nodes[at].operation = operation;
-                wrong.push(other);
+                wrong.push(plan.with_fault(NodeId(at), operation));
             }
         }
         wrong

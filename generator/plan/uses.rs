@@ -41,8 +41,9 @@ pub(super) fn reads_under(
     reads_unseen(&mut HashSet::new(), formula, part, conditions)
 }
 
-/// Returns what [`reads_under`] does. The result for a part in `seen`, which several operations may share, is false: the part was
-/// searched before for as many conditions.
+/// Returns what [`reads_under`] does, but searches no subformula twice, because several operations may share it. `seen` has the
+/// address of each searched subformula, with the number of conditions that were left. If one comes again, the result is false: a
+/// search that finds `part` ends at once, so the earlier one found nothing.
 fn reads_unseen(
     seen: &mut HashSet<(*const Expression, usize)>,
     formula: &Expression,

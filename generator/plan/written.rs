@@ -57,7 +57,7 @@ impl ProvedPlan {
         let plan = ExpressionPlan::of_function(function, polynomials)?;
         let bound = polynomials.bound;
         let is_polynomial = |operation: &Operation| matches!(operation, Operation::Polynomial(..));
-        let nodes = plan.nodes.iter();
+        let nodes = plan.nodes().iter();
         let shares = nodes.map(|node| if is_polynomial(&node.operation) { bound } else { 0.0 });
         Ok(Self {
             statement,

@@ -27,7 +27,8 @@ pub struct Reproducer {
 }
 
 impl Reproducer {
-    /// Runs the stream with a difference again, and writes the waveform of its last clocks into the file of [`waveform_of`].
+    /// Simulates the stream of `mismatch` again, for which golden model and hardware of the core `one` differ. Writes a waveform
+    /// that ends with the difference, at most 64 clocks before it, into the file of [`waveform_of`].
     ///
     /// # Errors
     /// Fails if the run fails, or if the waveform cannot be written.
@@ -47,8 +48,8 @@ impl Reproducer {
         })
     }
 
-    /// Runs a combination of operands with a difference again, and writes the waveform of its last clocks into the file of
-    /// [`waveform_of`].
+    /// Simulates the combination of `difference` again, for which golden model and hardware of the core `one` differ. Writes a
+    /// waveform that ends with the difference, at most 64 clocks before it, into the file of [`waveform_of`].
     ///
     /// # Errors
     /// Fails if the run fails, or if the waveform cannot be written.

@@ -1,5 +1,5 @@
-//! `glint tune`: searches for the smallest configuration of a device whose error bound is at most a given limit. The search is
-//! local.
+//! `glint tune`: searches for the configuration of a device that has the smallest estimated area, or another cost, and an error
+//! bound of at most a given limit. The search changes one or two keys at a time, so a better configuration may exist.
 
 mod plot;
 

@@ -230,7 +230,8 @@ impl Highlight {
         self.reflectance.at(&self.operands, gamma, n)
     }
 
-    /// See [`Reflectance::cosine`], with the operands of this contract.
+    /// Returns cos γ, limited to 0 … 1, for the raw control operands `control` ([`Reflectance::cosine`]); `None` if they
+    /// determine no cosine.
     pub fn cosine(&self, control: &[i64]) -> Option<f64> {
         self.reflectance.cosine(&self.operands, control)
     }

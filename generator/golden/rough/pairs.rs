@@ -94,8 +94,9 @@ pub fn largest_error(it: &RoughArithmetic, analysis: &Analysis) -> f64 {
 }
 
 impl PairSearch<'_> {
-    /// Examines all pairs of operands with γ in bin `i` and dγ in bin `j`. Appends the pairs to `open` for which other
-    /// exponents may give a larger error. Returns false if this takes too many steps.
+    /// Examines the pairs of operands with γ in bin `i` and dγ in bin `j`, for γ − dγ if `negative` is 1, and for γ + dγ if it
+    /// is 0. Computes the error of a pair only at the exponent n that weighs its roundings most. Appends to `open` the pairs
+    /// for which another n may give an error above the largest found before. Returns false if the steps run out.
     fn look_into(
         &mut self,
         i: usize,

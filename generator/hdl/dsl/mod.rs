@@ -31,7 +31,8 @@
 macro_rules! described {
     ($handle:ident, $net:ident) => {
         impl $handle<'_> {
-            /// Sets the number of this block in the source's block diagram.
+            /// Sets the number that this block has in the block diagram of the device's source, for example of seed 001.
+            /// Comments in the Verilog state it.
             #[must_use]
             pub fn block(self, number: u16) -> Self {
                 let _ = self.$net.block(number);

@@ -210,7 +210,8 @@ impl<'d> InputOperand<'d> {
         self.q
     }
 
-    /// Sets the number of the register in the source's block diagram.
+    /// Sets the number that the register has in the block diagram of the device's source, for example of seed 001. Comments in the
+    /// Verilog state it.
     #[must_use]
     pub fn block(self, number: u16) -> Self {
         let _ = self.q.block(number);

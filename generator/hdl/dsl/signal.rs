@@ -41,7 +41,8 @@ impl<'d> Signal<'d> {
         self.designer.with(|inner| inner.design.net(self.id).range)
     }
 
-    /// Sets the number of this block in the source's block diagram.
+    /// Sets the number that this block has in the block diagram of the device's source, for example of seed 001. Comments in the
+    /// Verilog state it.
     #[must_use]
     pub fn block(self, number: u16) -> Self {
         self.designer.with(|inner| inner.design.nets[self.id.index()].block = Some(number));

@@ -1,4 +1,4 @@
-//! Defines the latency of a device.
+//! Defines the timing of a device's handshake: the numbers of clocks from `start` to `valid`, to `done` and to the next `start`.
 
 use serde::Serialize;
 

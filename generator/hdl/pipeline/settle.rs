@@ -1,7 +1,8 @@
-//! Merges muxes that limit a value to a constant one after another, as in a computation that repeats a saturating step.
+//! Merges muxes that limit a value to a constant, when one follows another, as in a computation that repeats a saturating step.
 //!
-//! For example, in `over₂ ? most : f(over₁ ? most : x)`, `f` is wiring, and the condition `over₂` is a bit of the inner mux. The
-//! result is `most` if either condition holds, and otherwise `f(x)`.
+//! For example, in `y = over₁ ? most : x` and `z = over₂ ? most : f(y)`, `f` is wiring, and `over₂` is a bit of `y` that is 1 in
+//! `most`. If `over₁` is 1, `over₂` is therefore 1 too. So `z` is `most` if `over₁` or the same bit of `x` is 1, and `f(x)`
+//! otherwise: one mux, which does not wait for `y`.
 
 use super::graph::{Cell, Graph, Label, NodeId, NodeOp};
 use glint_base::fixed::Format;

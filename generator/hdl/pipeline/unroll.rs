@@ -97,7 +97,8 @@ pub fn unroll_in_powers(design: &Design) -> Result<Unrolled, Diagnostics> {
     run(design, Iterations::InPowers).map_err(|diagnostic| Diagnostics(vec![diagnostic]))
 }
 
-/// Like [`unroll_in_powers`]; the error is the first mistake that the execution meets. Fails also if the microprogram dispatches.
+/// Unrolls as [`unroll_in_powers`] does, but returns only the first mistake, and fails also if the microprogram dispatches,
+/// because all points of a pipeline pass the same stages.
 pub(super) fn unroll_for_pipeline(design: &Design) -> Result<Unrolled, Diagnostic> {
     let executor = Executor::new(design, Iterations::InPowers);
     for (at, microinstruction) in design.control.microprogram.iter().enumerate() {

@@ -1,5 +1,5 @@
-//! Finds, for each net, the first clock of a computation in which its value is used. `operands` thus knows how long the logic
-//! before it may take.
+//! Finds, for each net, the first clock of a computation in which its value is used. [`super::operands`] thus knows how many
+//! clocks the logic from the operands to the net may take.
 
 use std::collections::{HashSet, VecDeque};
 

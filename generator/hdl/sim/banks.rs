@@ -245,8 +245,8 @@ impl BankSplitter<'_> {
         }
     }
 
-    /// Adds the reads and loads of the clock edge. Conversions are steps of settling, so that they have the values from before
-    /// the edge.
+    /// Adds the ROM reads and register loads of the clock edge, each to the bank of the slot that it writes. If that slot is wide
+    /// and a source is narrow, a settling step widens the source, so that the edge uses the value from before the edge.
     fn edge(&mut self, reads: &[ReadEdge], registers: &[RegisterEdge]) {
         for edge in reads {
             let wide = self.is_wide[edge.to as usize];

@@ -120,17 +120,17 @@ impl Lowering<'_> {
         // π/2 − 2 · atan(t), which is at most 2 · (1 − t). On both sides of an axis they differ by at most twice the angle from the
         // axis, which is at most π · t.
         let agreement = self.agreement(y, x, scaling, "2");
-        self.plan.nodes[in_quadrant.0].agreement = agreement;
+        self.plan.state_agreement(in_quadrant, agreement);
         let in_half = self.mirrored_where_negative("half", in_quadrant, x_node, Some(scaling))?;
         let is_right_half = in_half == in_quadrant;
         let at_axis = self.agreement(y, x, scaling, "pi");
         if !is_right_half {
-            self.plan.nodes[in_half.0].agreement = at_axis.clone();
+            self.plan.state_agreement(in_half, at_axis.clone());
         }
         let whole = self.mirrored_where_negative("direction", in_half, y_node, None)?;
         if is_right_half && whole != in_half {
             // At the negative x axis the direction jumps.
-            self.plan.nodes[whole.0].agreement = at_axis;
+            self.plan.state_agreement(whole, at_axis);
         }
         Ok(whole)
     }

@@ -204,7 +204,7 @@ impl Lowering<'_> {
         let nodes = nodes?;
         for (node, part) in nodes.into_iter().zip([whole, remainder]) {
             let stated = self.stated(&part, &uses, ValueAccuracy::Exact);
-            self.plan.nodes[node.0].stated = Some(stated);
+            self.plan.state_value(node, stated);
             let uses = uses.clone();
             self.known.push(KnownPart { part, node, uses, is_limited: false });
         }

@@ -49,9 +49,9 @@ impl Lowering<'_> {
     /// a result that does not read the part that is being rewritten.
     pub(super) fn errors_by_result(&self, node: NodeId) -> Vec<f64> {
         let unit = exp2(-self.plan.node(node).format.frac);
-        let mut plan = self.plan.clone();
-        plan.results = vec![node];
-        plan.proved = vec![node];
+        let mut ending = self.plan.clone();
+        ending.end_at(node);
+        let plan = ending.so_far();
         let mut errors = Vec::new();
         for (result, reads) in self.statement.results.iter().zip(&self.uses.readers) {
             if !reads {
@@ -72,7 +72,7 @@ impl Lowering<'_> {
             }
             let count = alone.formula.operands().len();
             if count > FEW_OPERANDS
-                && let Some(parts) = PlanOfParts::of(&plan, node, &alone, count)
+                && let Some(parts) = PlanOfParts::of(plan, node, &alone, count)
             {
                 let proof = ResultProof::new(&parts.statement, &parts.plan, 0);
                 let units = self.errors.units_of(&proof, unit);
@@ -82,7 +82,7 @@ impl Lowering<'_> {
                 }
             }
             statement.results = vec![alone];
-            let proof = ResultProof::new(&statement, &plan, 0);
+            let proof = ResultProof::new(&statement, plan, 0);
             errors.push(self.errors.units_of(&proof, unit));
         }
         errors
@@ -90,8 +90,8 @@ impl Lowering<'_> {
 
     /// Returns whether the value of a node has no rounding error.
     pub(super) fn is_exact(&self, node: NodeId) -> bool {
-        let needed = self.plan.needed_by(node);
-        let mut nodes = self.plan.nodes.iter().zip(needed);
+        let plan = self.plan.so_far();
+        let mut nodes = plan.nodes().iter().zip(plan.needed_by(node));
         nodes.all(|(node, is_needed)| {
             let is_nearest = |stated: &StatedValue| stated.accuracy == ValueAccuracy::Nearest;
             !is_needed || node.source.is_none() && !node.stated.as_ref().is_some_and(is_nearest)

@@ -233,7 +233,7 @@ impl Lowering<'_> {
         let format = Format::holding(0, most, 0);
         let places = self.plan.narrow("places", places, format, Rounding::Truncate)?;
         let shifted = self.plan.shift_right("exponential", scaled, places)?;
-        self.plan.nodes[shifted.0].source = source;
+        self.plan.state_source(shifted, source);
         Ok(shifted)
     }
 }

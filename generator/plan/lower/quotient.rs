@@ -513,7 +513,7 @@ impl Lowering<'_> {
         let ratio = self.plan.scale("ratio_scaled", product, -divisor.exponent)?;
         let is_signed = self.plan.node(dividend.node).range.0 < 0 && dividend.limits.is_none();
         let least = if is_signed { -dividend.largest_quotient } else { 0.0 };
-        self.plan.nodes[ratio.0].limits = Enclosure::between(least, dividend.largest_quotient);
+        self.plan.state_limits(ratio, Enclosure::between(least, dividend.largest_quotient));
         Ok(ratio)
     }
 
@@ -548,11 +548,13 @@ impl Lowering<'_> {
         let format = Format { int: format.int + i32::from(is_rounded), ..format };
         let node = self.plan.shift_left("dividend_shifted", dividend, octave.places, format)?;
         if excess.is_some() {
-            self.plan.nodes[node.0].limits =
-                Enclosure::between(limits.low.max(values.low), limits.high.min(values.high));
+            self.plan.state_limits(
+                node,
+                Enclosure::between(limits.low.max(values.low), limits.high.min(values.high)),
+            );
         }
         if is_never_larger {
-            self.plan.nodes[node.0].actual_limits = limits;
+            self.plan.state_actual_limits(node, limits);
         }
         Ok(ShiftedDividend { node, values, can_be_equal: !fits_below })
     }

@@ -135,7 +135,7 @@ impl Lowering<'_> {
             return self.plan.shift_left("power_shifted", scaled, places, format).map(Some);
         }
         let shifted = self.plan.shift_right("power_shifted", scaled, places)?;
-        self.plan.nodes[shifted.0].source = source;
+        self.plan.state_source(shifted, source);
         if range.low > 0.0 {
             return Ok(Some(shifted));
         }
@@ -144,7 +144,7 @@ impl Lowering<'_> {
         let chosen = self.plan.choose("power_or_zero", is_some, [zero, shifted])?;
         // A word that was rounded to 0 has no power in the table.
         let stated = self.stated(part, &self.uses, ValueAccuracy::FromInputs);
-        self.plan.nodes[chosen.0].stated = Some(stated);
+        self.plan.state_value(chosen, stated);
         Ok(Some(chosen))
     }
 
@@ -156,9 +156,9 @@ impl Lowering<'_> {
         else {
             return;
         };
-        self.plan.nodes[node.0].source = None;
+        self.plan.state_source(node, None);
         for case in cases {
-            self.plan.nodes[case.0].source = source;
+            self.plan.state_source(case, source);
         }
     }
 

@@ -78,7 +78,8 @@ fn add_parts<'f>(
     }
 }
 
-/// Returns whether `formula` reads `core` only through `part`.
+/// Returns whether `core` occurs in `formula` only inside `part`. For example, `x` occurs in `1 - sqrt(x)` only inside `sqrt(x)`,
+/// but not in `x - sqrt(x)`.
 fn is_only_read_through(formula: &Expression, core: &Expression, part: &Expression) -> bool {
     let replaced = formula.substitute(part, &number("0"), &formula.span);
     replaced.count(&|inner| inner == core) == 0

@@ -104,8 +104,9 @@ pub(super) struct ExactRoot {
 }
 
 impl Lowering<'_> {
-    /// Writes the root of `square` with constants that are exact in binary. Returns `None` if the operand of the root is rounded. Fails
-    /// if a part has too many bits.
+    /// Writes `square`, the operand of a root, as dividend / divisor with constants that are exact in binary, and adds the nodes
+    /// of the dividend: `x / 3` has the dividend x and the divisor 3. Returns `None` for a formula that has no such form, or if
+    /// the plan rounds the dividend, because the root could then not be rounded exactly. Fails if a part has too many bits.
     pub(super) fn exact_root(
         &mut self,
         square: &Expression,

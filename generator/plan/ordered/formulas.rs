@@ -53,7 +53,9 @@ pub(super) fn ordered_list(
     Ok(OrderedList { results: list.clone(), own, change: common })
 }
 
-/// Returns the change of two formulas with their own operands, and these operands.
+/// Returns in which direction the results `first` and `second` change with the one operand in which their formulas differ, and
+/// this operand of each: `exp(v0 - m)` and `exp(v1 - m)` give `Rises`, `v0` and `v1`. Fails if the formulas are the same or not
+/// alike, or if the result neither rises nor falls.
 fn change_of_pair(
     statement: &ExpressionStatement,
     first: usize,

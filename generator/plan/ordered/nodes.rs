@@ -32,7 +32,7 @@ pub(super) fn check_list(found: &ProvedPlan, list: &OrderedList) -> Result<(), P
     for first in list.results.clone() {
         for second in first + 1..list.results.end {
             let own = [first, second].map(|number| operand(&list.own[number - list.results.start]));
-            let results = (plan.results[first], plan.results[second]);
+            let results = (plan.results()[first], plan.results()[second]);
             let pairs = pairs(plan, &equal, results, own).map_err(|(node, _)| {
                 let name = &plan.node(node).name;
                 refusal(first, &format!("the numbers are not computed alike at the part `{name}`"))
@@ -226,7 +226,7 @@ fn change_of_values(
     (low, high): Interval,
 ) -> Change {
     let Some(last) = path.last() else { return Change::Unknown };
-    let mut values = vec![0; plan.nodes.len()];
+    let mut values = vec![0; plan.nodes().len()];
     let mut change = Change::Constant;
     let mut before = None;
     for raw in low..=high {

@@ -1,4 +1,5 @@
-//! Aligns the operations of several plans: operations of the same kind get the same slot, in an order that suits every plan.
+//! Aligns the plans of a unit's functions: operations of the same kind, such as a product of each function, share one operation
+//! of the merged plan, here called a slot. The order of the slots is also the order of the operations in every plan.
 
 use crate::node::{NodeId, Operation};
 use crate::plan::ExpressionPlan;
@@ -87,7 +88,7 @@ fn is_read_by_choices(
     is_shared_table: &dyn Fn(NodeId) -> bool,
 ) -> bool {
     let mut has_reader = false;
-    for (at, node) in plan.nodes.iter().enumerate() {
+    for (at, node) in plan.nodes().iter().enumerate() {
         if node.operation.inputs().contains(&polynomial) {
             has_reader = true;
             if choice_of_tables(plan, NodeId(at), is_shared_table).is_none() {
@@ -95,7 +96,7 @@ fn is_read_by_choices(
             }
         }
     }
-    has_reader && !plan.results.contains(&polynomial)
+    has_reader && !plan.results().contains(&polynomial)
 }
 
 /// Returns slots for all operations of these kinds. The nodes of each plan are in the order of the slots, so that the merged plan
@@ -121,7 +122,7 @@ pub(super) fn shared_operations(
 ) -> Vec<(NodeId, SharedKind)> {
     let is_read = plan.read_nodes();
     let mut sequence = Vec::new();
-    for (at, node) in plan.nodes.iter().enumerate() {
+    for (at, node) in plan.nodes().iter().enumerate() {
         let id = NodeId(at);
         let kind = match node.operation {
             Operation::Normalise { .. } => SharedKind::Normaliser,

@@ -91,11 +91,11 @@ impl<'u> FunctionProof<'u> {
             merged,
             own,
             constants: Vec::new(),
-            unequal_bits: vec![0; own.plan.nodes.len()],
+            unequal_bits: vec![0; own.plan.nodes().len()],
             most_combinations,
             combinations: 0,
         };
-        for at in 0..merged.nodes.len() {
+        for at in 0..merged.nodes().len() {
             let constant = proof.constant(NodeId(at), opcode as i64);
             proof.constants.push(constant);
         }
@@ -112,7 +112,7 @@ impl<'u> FunctionProof<'u> {
     ) -> UnitEquality {
         let own = &self.own.plan;
         let is_read = own.read_nodes();
-        for at in (0..own.nodes.len()).filter(|at| is_read[*at]) {
+        for at in (0..own.nodes().len()).filter(|at| is_read[*at]) {
             let node = NodeId(at);
             let Some(merged) = self.own.merged[at] else { continue };
             let is_proved = match own.node(node).operation {
@@ -125,13 +125,13 @@ impl<'u> FunctionProof<'u> {
                 return self.open(node);
             }
         }
-        for (number, merged) in self.merged.results.clone().into_iter().enumerate() {
-            let is_proved = match own.results.get(number) {
+        for (number, merged) in self.merged.results().to_vec().into_iter().enumerate() {
+            let is_proved = match own.results().get(number) {
                 Some(result) => self.is_result(*result, merged, &|raw| word(number, raw)),
                 None => self.constants[merged.0] == Some(0),
             };
             if !is_proved {
-                return self.open(own.results.get(number).copied().unwrap_or(NodeId(0)));
+                return self.open(own.results().get(number).copied().unwrap_or(NodeId(0)));
             }
         }
         UnitEquality::Proved { combinations: self.combinations }
@@ -139,8 +139,8 @@ impl<'u> FunctionProof<'u> {
 
     /// Returns for each node of the merged plan whether the function reads it.
     pub(super) fn read_nodes(&self) -> Vec<bool> {
-        let mut is_read = vec![false; self.merged.nodes.len()];
-        let mut open = self.merged.results.clone();
+        let mut is_read = vec![false; self.merged.nodes().len()];
+        let mut open = self.merged.results().to_vec();
         while let Some(node) = open.pop() {
             if !is_read[node.0] {
                 is_read[node.0] = true;
@@ -324,7 +324,7 @@ impl<'u> FunctionProof<'u> {
 
     /// Returns whether the merged node has the word of a result.
     fn is_result(&mut self, own: NodeId, merged: NodeId, word: &dyn Fn(i128) -> i128) -> bool {
-        let end = self.own.plan.nodes.len();
+        let end = self.own.plan.nodes().len();
         let nodes = NodeComparison { end, own, merged, unread: 0 };
         self.are_equal(nodes, &|own, merged| word(own) == merged)
     }
@@ -354,7 +354,7 @@ impl<'u> FunctionProof<'u> {
         if combinations > self.most_combinations {
             return false;
         }
-        let mut of_own = vec![0; self.own.plan.nodes.len()];
+        let mut of_own = vec![0; self.own.plan.nodes().len()];
         let mut of_merged = self.known_values();
         for combination in 0..combinations {
             let mut rest = combination;

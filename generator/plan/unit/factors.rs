@@ -6,7 +6,7 @@
 use glint_base::interval::Interval;
 
 use crate::node::{NodeId, Operation, PlanNode};
-use crate::plan::ExpressionPlan;
+use crate::plan::{ExpressionPlan, PlanBuilder};
 use crate::refusal::PlanRefusal;
 
 /// The widest factor of a multiplier block without its sign. The blocks of ECP5, Gowin and Nexus have 18 bits with the sign.
@@ -20,9 +20,9 @@ const MOST_OPERANDS: i64 = 1 << 18;
 /// # Errors
 /// Fails if an operation has too many bits.
 pub(super) fn with_narrow_factors(plan: &ExpressionPlan) -> Result<ExpressionPlan, PlanRefusal> {
-    let mut narrow = ExpressionPlan { is_shared: plan.is_shared, ..ExpressionPlan::default() };
-    let mut nodes: Vec<NodeId> = Vec::with_capacity(plan.nodes.len());
-    for node in &plan.nodes {
+    let mut narrow = PlanBuilder::like(plan);
+    let mut nodes: Vec<NodeId> = Vec::with_capacity(plan.nodes().len());
+    for node in plan.nodes() {
         let by_table = match node.operation {
             Operation::Multiply(a, b) if has_wide_top(plan, a) => Some([a, b]),
             Operation::Multiply(a, b) if has_wide_top(plan, b) => Some([b, a]),
@@ -39,9 +39,10 @@ pub(super) fn with_narrow_factors(plan: &ExpressionPlan) -> Result<ExpressionPla
             }
         });
     }
-    narrow.results = plan.results.iter().map(|result| nodes[result.0]).collect();
-    narrow.proved = plan.proved.iter().map(|proved| nodes[proved.0]).collect();
-    Ok(narrow)
+    for (result, proved) in plan.results().iter().zip(plan.proved()) {
+        narrow.add_result(nodes[result.0], nodes[proved.0]);
+    }
+    narrow.finish()
 }
 
 /// Returns whether a factor is too wide for a multiplier block, and only its largest value needs the top bit.
@@ -54,7 +55,8 @@ fn has_wide_top(plan: &ExpressionPlan, factor: NodeId) -> bool {
     table_values(plan, factor).is_some_and(|(least, most)| least >= half && most == 2 * half)
 }
 
-/// Returns the smallest and the largest raw value of a node that has the value of a table; `None` for other nodes.
+/// Returns the smallest and the largest raw value in a table of polynomials, for a node that reads the table, or that only moves
+/// the binary point of its value. Returns `None` for other nodes, and for a table of more than 2^18 entries.
 pub(super) fn table_values(plan: &ExpressionPlan, node: NodeId) -> Option<Interval> {
     match &plan.node(node).operation {
         Operation::Scale(before) => table_values(plan, *before),
@@ -73,7 +75,7 @@ pub(super) fn table_values(plan: &ExpressionPlan, node: NodeId) -> Option<Interv
 
 /// Adds a product v · b as b + r · b, where v is 1 + r in units of half of the largest v, and returns its node in the format of `product`.
 fn product_of_rest(
-    plan: &mut ExpressionPlan,
+    plan: &mut PlanBuilder,
     product: &PlanNode,
     [v, b]: [NodeId; 2],
 ) -> Result<NodeId, PlanRefusal> {

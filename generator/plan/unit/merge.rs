@@ -17,7 +17,7 @@ use super::select::OpcodeChoices;
 use super::tables::{PagedTable, paged};
 use super::{UnitFunction, opcode_bits};
 use crate::node::{Approximation, NodeId, Operation, PlanNode};
-use crate::plan::ExpressionPlan;
+use crate::plan::{ExpressionPlan, PlanBuilder};
 use crate::refusal::PlanRefusal;
 use crate::statement::StatedOperand;
 
@@ -28,7 +28,7 @@ pub(super) struct Merger<'u> {
     pub(super) functions: &'u [UnitFunction],
     /// The plan of each function, with narrow factors.
     plans: Vec<ExpressionPlan>,
-    pub(super) plan: ExpressionPlan,
+    pub(super) plan: PlanBuilder,
     opcode: NodeId,
     /// The nodes of the operand ports behind the opcode.
     ports: Vec<NodeId>,
@@ -74,7 +74,7 @@ pub(super) fn merged(
     results: &[(&'static str, Format)],
     shares_tables: bool,
 ) -> Result<(ExpressionPlan, Vec<MergedFunction>), PlanRefusal> {
-    let mut plan = ExpressionPlan { is_shared: true, ..ExpressionPlan::default() };
+    let mut plan = PlanBuilder::shared();
     let mut nodes = Vec::new();
     for (number, port) in ports.iter().enumerate() {
         nodes.push(plan.operand(number, &port.name, port.format, port.domain)?);
@@ -108,14 +108,14 @@ pub(super) fn merged(
         merger.add_slot(slot)?;
     }
     for number in 0..functions.len() {
-        merger.copy_until(number, merger.own(number).nodes.len())?;
+        merger.copy_until(number, merger.own(number).nodes().len())?;
     }
     for (number, (name, format)) in results.iter().enumerate() {
         merger.add_result(number, name, *format)?;
     }
     let nodes = merger.function_nodes();
     merger.choices.finish(&mut merger.plan);
-    Ok((merger.plan, nodes))
+    Ok((merger.plan.finish()?, nodes))
 }
 
 impl Merger<'_> {
@@ -164,7 +164,7 @@ impl Merger<'_> {
     fn copy_until(&mut self, function: usize, end: usize) -> Result<(), PlanRefusal> {
         while self.nodes[function].len() < end {
             let at = self.nodes[function].len();
-            let node = self.own(function).nodes[at].clone();
+            let node = self.own(function).nodes()[at].clone();
             let id = match node.operation {
                 Operation::Operand(number) => self.operand(function, number)?,
                 // A choice between two tables reads the shared table in place of these polynomials.
@@ -249,7 +249,7 @@ impl Merger<'_> {
                     }
                 }
         };
-        self.plan.nodes.iter().position(is_same).map(NodeId)
+        self.plan.so_far().nodes().iter().position(is_same).map(NodeId)
     }
 
     /// Converts a node to a format by dropping bits, and returns the new node.
@@ -563,7 +563,7 @@ fn common_widths(functions: &[UnitFunction]) -> Option<SharedWidths> {
     let mut counts: Vec<(SharedWidths, usize)> = Vec::new();
     for function in functions {
         let own = &function.planned.plan;
-        for at in 0..own.nodes.len() {
+        for at in 0..own.nodes().len() {
             let Some(table) = table_of(own, NodeId(at)) else { continue };
             let Some(widths) = SharedWidths::of(&table) else { continue };
             match counts.iter_mut().find(|(other, _)| fits(&widths, other) || fits(other, &widths))

@@ -16,7 +16,7 @@ pub(super) fn period_bits(
     inputs: &[NodeId],
     cone: &[NodeId],
 ) -> Option<i32> {
-    let mut dropped: Vec<Option<i32>> = vec![None; plan.nodes.len()];
+    let mut dropped: Vec<Option<i32>> = vec![None; plan.nodes().len()];
     for input in inputs {
         dropped[input.0] = Some(0);
     }

@@ -33,7 +33,7 @@ impl Merger<'_> {
         let mut sums = Vec::new();
         for function in 0..self.functions.len() {
             let own = self.own(function);
-            let result = own.results.get(number);
+            let result = own.results().get(number);
             sums.push(result.map(|result| ResultSum::of(own, *result)));
         }
         let adders = sums.iter().flatten().filter(|sum| sum.has_adder()).count();
@@ -42,7 +42,7 @@ impl Merger<'_> {
         let mut cases = Vec::new();
         let zero = self.plan.constant("zero", 0, 0)?;
         for function in 0..self.functions.len() {
-            let Some(result) = self.own(function).results.get(number).copied() else {
+            let Some(result) = self.own(function).results().get(number).copied() else {
                 cases.push(Some(zero));
                 continue;
             };
@@ -67,8 +67,7 @@ impl Merger<'_> {
         let result = self.narrow(&format!("{name}_result"), selected, format)?;
         let is_operand = matches!(self.plan.node(result).operation, Operation::Operand(_));
         let result = if is_operand { self.plan.copy(name, result)? } else { result };
-        self.plan.results.push(result);
-        self.plan.proved.push(result);
+        self.plan.add_result(result, result);
         Ok(())
     }
 
@@ -116,7 +115,7 @@ impl Merger<'_> {
         sum: &ResultSum,
     ) -> Result<SumParts, PlanRefusal> {
         let own = self.own(function);
-        let result_frac = own.node(own.results[number]).format.frac;
+        let result_frac = own.node(own.results()[number]).format.frac;
         let below_result = own.node(sum.value).format.frac - result_frac;
         let name = format!("{}_{name}", self.functions[function].name);
         let routed = self.routed[function].filter(|_| number == 0);

@@ -4,12 +4,12 @@
 //! functions with the same value are seldom neighbours. Such a choice reads its conditions from a table, the *selections*, with a word for
 //! each opcode.
 
-use glint_base::fixed::{Format, Rounding};
+use glint_base::fixed::Rounding;
 
 use super::opcode_bits;
 use super::tables::wide_enough;
 use crate::node::{NodeId, Operation};
-use crate::plan::ExpressionPlan;
+use crate::plan::PlanBuilder;
 use crate::refusal::PlanRefusal;
 
 /// The choices by the opcode in a merged plan.
@@ -37,7 +37,7 @@ impl OpcodeChoices {
     /// # Errors
     /// Fails if the plan has no room for it.
     pub(super) fn new(
-        plan: &mut ExpressionPlan,
+        plan: &mut PlanBuilder,
         opcode: NodeId,
         functions: usize,
     ) -> Result<Self, PlanRefusal> {
@@ -61,7 +61,7 @@ impl OpcodeChoices {
     /// Panics if no case is given.
     pub(super) fn selected(
         &mut self,
-        plan: &mut ExpressionPlan,
+        plan: &mut PlanBuilder,
         name: &str,
         cases: &[Option<NodeId>],
     ) -> Result<NodeId, PlanRefusal> {
@@ -100,7 +100,7 @@ impl OpcodeChoices {
     /// Replaces cases that are bits of the same word, from the same bit on, by as many of these bits as the widest of them has.
     fn with_common_words(
         &self,
-        plan: &mut ExpressionPlan,
+        plan: &mut PlanBuilder,
         name: &str,
         cases: &[Option<NodeId>],
     ) -> Result<Vec<Option<NodeId>>, PlanRefusal> {
@@ -133,7 +133,7 @@ impl OpcodeChoices {
     }
 
     /// Returns the word whose bits a node has.
-    fn source_of(&self, plan: &ExpressionPlan, node: NodeId) -> WordBits {
+    fn source_of(&self, plan: &PlanBuilder, node: NodeId) -> WordBits {
         let mut source = WordBits { word: node, dropped: 0 };
         loop {
             let at = plan.node(source.word);
@@ -159,7 +159,7 @@ impl OpcodeChoices {
     /// Returns the node of a condition that is `column[opcode]`, in a column of the table that may have it already.
     fn condition(
         &mut self,
-        plan: &mut ExpressionPlan,
+        plan: &mut PlanBuilder,
         column: Vec<Option<bool>>,
     ) -> Result<NodeId, PlanRefusal> {
         let agree = |other: &Vec<Option<bool>>| {
@@ -182,7 +182,7 @@ impl OpcodeChoices {
     }
 
     /// Gives the table of conditions its words.
-    pub(super) fn finish(self, plan: &mut ExpressionPlan) {
+    pub(super) fn finish(self, plan: &mut PlanBuilder) {
         let mut words = vec![0i128; 1 << opcode_bits(self.functions)];
         for (number, column) in self.columns.iter().enumerate() {
             for (word, bit) in words.iter_mut().zip(column) {
@@ -190,10 +190,7 @@ impl OpcodeChoices {
             }
         }
         let bits = self.columns.len().max(1) as i32;
-        let selections = &mut plan.nodes[self.selections.0];
-        selections.format = Format::unsigned(bits, 0);
-        selections.range = selections.format.range();
-        selections.operation = Operation::Lookup { address: self.opcode, words };
+        plan.complete_lookup(self.selections, words, bits);
     }
 }
 
@@ -212,7 +209,7 @@ fn choices_in_tree(cases: &[Option<NodeId>]) -> (usize, Option<NodeId>) {
 
 /// Returns a node with the value of the case that the conditions select, the last condition first; `None` if there is no case.
 fn tree(
-    plan: &mut ExpressionPlan,
+    plan: &mut PlanBuilder,
     name: &str,
     cases: &[Option<NodeId>],
     conditions: &[NodeId],

@@ -64,7 +64,7 @@ impl Merger<'_> {
     /// Returns the node of a function that reads a table, if its first result follows from it by a sum alone.
     fn table_before_result(&self, function: usize) -> Option<NodeId> {
         let own = self.own(function);
-        let mut node = ResultSum::of(own, *own.results.first()?).value;
+        let mut node = ResultSum::of(own, *own.results().first()?).value;
         while self.table_read(function, node).is_none() {
             node = match own.node(node).operation {
                 Operation::Scale(before) | Operation::Narrow(before, Rounding::Truncate) => before,

@@ -29,7 +29,7 @@ impl ResultSum {
     /// Returns the sum of a result of a plan.
     pub(super) fn of(plan: &ExpressionPlan, result: NodeId) -> Self {
         let result_frac = plan.node(result).format.frac;
-        let held = vec![false; plan.nodes.len()];
+        let held = vec![false; plan.nodes().len()];
         if let Some(chain) = MirrorChain::ending_at(plan, result, &held)
             && chain.addend.is_none()
         {

@@ -7,13 +7,13 @@ use crate::plan::ExpressionPlan;
 
 /// Returns the number of low bits of a node that no other node reads, and no result.
 pub(super) fn unread_bits(plan: &ExpressionPlan, node: NodeId) -> i32 {
-    let all: Vec<NodeId> = (0..plan.nodes.len()).map(NodeId).collect();
+    let all: Vec<NodeId> = (0..plan.nodes().len()).map(NodeId).collect();
     bits_unread_by(plan, node, &all)
 }
 
 /// Returns the number of low bits of a node that none of `readers` reads, and no result. It is 0 if none of them reads the node.
 pub(super) fn bits_unread_by(plan: &ExpressionPlan, node: NodeId, readers: &[NodeId]) -> i32 {
-    if plan.results.contains(&node) {
+    if plan.results().contains(&node) {
         return 0;
     }
     let frac = plan.node(node).format.frac;

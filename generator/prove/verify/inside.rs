@@ -1,7 +1,7 @@
 //! Defines the checks of `glint verify` that need no outside tool: design rules, co-simulation, the error bound and faults.
 //!
-//! Without full effort, a check does only a part of a long job, or leaves it out, and its finding says so. Random stimulus has
-//! a fixed seed, so a repeated run has the same findings.
+//! Without `--full` ([`super::Effort::full`]), a check does only a part of a long job, or leaves it out, and its finding says so.
+//! Random stimulus has a fixed seed, so a repeated run has the same findings.
 
 use std::ops::ControlFlow;
 
@@ -16,16 +16,16 @@ use glint_core::core::{TEST_POINTS, TEST_SEED};
 use glint_core::cosim::exhaustive::{Job, Proof, Record, Shard, ShardState};
 use glint_golden::{Bound, Contract, Sweep};
 
-/// The number of compared results: without full effort, and with it.
+/// The number of compared results: without `--full`, and with it.
 const POINTS: [u64; 2] = [TEST_POINTS, 100 * TEST_POINTS];
 
-/// The largest number of evaluations of the golden model without full effort. They take some seconds.
+/// The largest number of evaluations of the golden model without `--full`. They take some seconds.
 const EVALUATIONS: u64 = 1 << 28;
 
 /// The approximate number of evaluations of `f` that are repeated for a recorded proof.
 const AGAIN: u64 = 1 << 24;
 
-/// The largest number of faults that are planted without full effort. The check then takes a minute or two.
+/// The largest number of faults that are planted without `--full`. The check then takes a minute or two.
 const MOST_FAULTS: usize = 1 << 11;
 
 /// The design rules are checked when the core is built, so a core that breaks one does not exist, and this check repeats
@@ -245,7 +245,7 @@ pub const CLOCKS: Check = Check {
     },
 };
 
-/// Without full effort it plants at most 2048 faults. If more than 1 % of the faults are undecided, the verdict is
+/// Without `--full` it plants at most 2048 faults. If more than 1 % of the faults are undecided, the verdict is
 /// [`CheckVerdict::Undecided`]. The check does not apply to a pipeline.
 pub const MUTATION: Check = Check {
     id: "mutation",

@@ -28,13 +28,13 @@ use glint_tools::synthesis::synthesise;
 use glint_tools::transient::Directory;
 use glint_tools::{Limits, PROOF_LIMITS, VerilogSimulator, elaborate, lint, prove, run_bench};
 
-/// The number of results that a bench compares: without full effort, and with it.
+/// The number of results that a bench compares: without `--full`, and with it.
 const POINTS: [u64; 2] = [200, 20_000];
 
-/// The time limit for writing the statements for Gappa, and for proving one of them, without full effort.
+/// The time limit for writing the statements for Gappa, and for proving one of them, without `--full`.
 const STATEMENT: Duration = Duration::from_secs(10);
 
-/// The time limit of the solver for each of the proofs of [`EQUALITY`] and [`TEXT`], without full effort.
+/// The time limit of the solver for each of the proofs of [`EQUALITY`] and [`TEXT`], without `--full`.
 const EQUAL: Duration = Duration::from_secs(300);
 
 /// The version of cocotb that the benches in Python are written for.
@@ -280,7 +280,7 @@ pub const VERILATOR: Check = Check {
     run: |subject, _, _| bench(subject, VerilogSimulator::Verilator),
 };
 
-/// Simulates the emitted Verilog with each shipped bench, for 200 results, or 20 000 with full effort.
+/// Simulates the emitted Verilog with each shipped bench, for 200 results, or 20 000 with `--full`.
 fn bench(subject: &CheckSubject<'_>, simulator: VerilogSimulator) -> Result<Finding> {
     let (core, effort) = (subject.core, subject.effort);
     let points = POINTS[usize::from(effort.full)];

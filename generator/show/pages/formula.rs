@@ -83,7 +83,8 @@ impl FormulaPart {
         Self { mathml, inside: None }
     }
 
-    /// A numerator, a denominator, an exponent or a root has no parentheses.
+    /// Returns the MathML without the parentheses around it. A numerator, a denominator, an exponent and the operand of a root
+    /// need none: `(a + b) / 2` becomes a fraction with a + b above the line.
     fn bare(self) -> String {
         format!("<mrow>{}</mrow>", self.inside.unwrap_or(self.mathml))
     }

@@ -78,8 +78,8 @@ impl SideBySide {
         Ok(Self { machine, ports, busy, inputs, copies: None })
     }
 
-    /// Lets each lane read its own copy of the ROMs, as [`Memories::copied`] added them to the design. Without copies,
-    /// [`SideBySide::run_with`] inverts nothing.
+    /// Gives each lane its own copy of the ROMs, so that [`SideBySide::run_with`] can invert other bits in each lane. `copies` is
+    /// the result of [`Memories::copied`], which added the copies to `design`. Without this call, `run_with` inverts no bits.
     ///
     /// # Errors
     /// Fails if the design does not have the input port of the copies.

@@ -278,9 +278,10 @@ impl<'a> Job<'a> {
         Ok(Duration::from_secs_f64(sum / threads.max(1) as f64))
     }
 
-    /// Continues a shard from `state` to its end, and updates `state`. The comparison clock by clock ends at its first
-    /// difference. After every few blocks, the function calls `look` with the state, and returns `ControlFlow::Break` if
-    /// `look` does. The function calls `progress` with the number of combinations in each finished block.
+    /// Checks the remaining blocks of combinations of the shard in `state`, which is one machine's part of the job, and updates
+    /// `state`. After every few blocks, the function calls `look` with the state, and returns `ControlFlow::Break` if `look`
+    /// does. It calls `progress` with the number of combinations in each finished block. The comparison clock by clock ends at
+    /// its first difference.
     ///
     /// # Errors
     /// Fails if the design cannot be simulated, if its signals do not settle in a clock, or if the golden model of a pipeline

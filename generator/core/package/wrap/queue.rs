@@ -71,8 +71,8 @@ fn word_of(results: &[PipelinePort], prefix: &str) -> String {
     together(nets.collect())
 }
 
-/// Adds the module around the pipeline of the job, and with test vectors its proof. `depth` is the largest number of results that
-/// wait.
+/// Adds `<name>_queue.v`, the module around the pipeline, to `files`. Its queue holds up to `depth` results, a power of two,
+/// until software reads them. With test vectors in the job, also adds the formal properties of the module.
 ///
 /// # Errors
 /// Fails if a template fails.

@@ -321,7 +321,8 @@ pub fn clocks(timing: &HandshakeTiming, line: Option<&LineClocks>, design: &Desi
     table
 }
 
-/// Describes the handshake by which points enter and leave a pipeline.
+/// Returns sentences that state in which clocks a pipeline takes a point, and in which clocks its results are on the outputs.
+/// They mention `in_ready` and `out_ready` only if the pipeline can stall.
 pub fn handshake(pipeline: &Pipeline) -> &'static str {
     if pipeline.stall {
         "A point is taken in each clock in which `in_valid` and `in_ready` are high: the operands of that clock are its \

@@ -358,7 +358,7 @@ impl<'a> Blocks<'a> {
         }
     }
 
-    /// Ignores the bits by which an extension widens an operand.
+    /// Returns the width of an operand before it was widened by a sign or zero extension: 8 if 8 bits were extended to 12.
     fn narrow_width(&self, operand: NetId) -> u32 {
         match &self.design.net(operand).driver {
             Driver::Op(Op::Extend(of)) => self.design.width(*of),
