@@ -61,6 +61,14 @@ impl NodeError {
     /// The value of a node without limits. The value does not matter if a choice takes its other case.
     const UNKNOWN: Self = Self { ideal: ANYTHING, error: ANYTHING, actual: ANYTHING };
 
+    /// Returns the value of a node whose formula has a value that is not farther than `distance` from this one's. With `counts`, the
+    /// error counts, too.
+    fn near(self, distance: f64, counts: bool) -> Self {
+        let around = Enclosure::between(-distance, distance);
+        let error = if counts { self.error + around } else { self.error };
+        Self { ideal: self.ideal + around, error, actual: self.actual }
+    }
+
     /// Returns whether the value and its error have limits.
     pub(super) fn is_limited(self) -> bool {
         self.ideal.is_finite() && self.error.is_finite()
@@ -485,7 +493,11 @@ impl ErrorAnalysis<'_> {
             Operation::Scale(a) => {
                 let factor = exp2(self.plan.node(*a).format.frac - node.format.frac);
                 let NodeError { ideal, error, .. } = input(*a);
-                NodeError::new(scaled(ideal, factor), scaled(error, factor))
+                let value = NodeError::new(scaled(ideal, factor), scaled(error, factor));
+                match node.deviation() {
+                    0.0 => value,
+                    distance => value.near(distance, own_errors),
+                }
             }
             Operation::Narrow(a, rounding) => {
                 let places = self.plan.node(*a).format.frac - node.format.frac;
@@ -726,7 +738,8 @@ fn stated_value(node: &PlanNode, operands: &[(&str, Enclosure)]) -> Option<NodeE
     let half = exp2(-node.format.frac) / 2.0;
     Some(match accuracy {
         ValueAccuracy::Nearest => NodeError::new(ideal, Enclosure::between(-half, half)),
-        ValueAccuracy::Exact | ValueAccuracy::FromInputs => NodeError::exactly(ideal),
+        ValueAccuracy::Exact => NodeError::exactly(ideal),
+        ValueAccuracy::FromInputs | ValueAccuracy::NearInputs(_) => return None,
     })
 }
 

@@ -257,9 +257,10 @@ impl<'p> ResultProof<'p> {
         for (at, node) in self.plan.nodes().iter().enumerate() {
             if self.needed[at] {
                 let PlanNode { operation, format, range, limits, actual_limits, .. } = node;
+                let deviation = node.deviation();
                 let _ = write!(
                     digest,
-                    "{at}{operation:?}{format:?}{range:?}{limits:?}{actual_limits:?}"
+                    "{at}{operation:?}{format:?}{range:?}{limits:?}{actual_limits:?}{deviation}"
                 );
             }
         }

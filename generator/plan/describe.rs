@@ -25,6 +25,9 @@ impl ExpressionPlan {
             Operation::Choose { condition, cases: [zero, one] } => {
                 format!("{} where {} is 1, else {}", name(one), name(condition), name(zero))
             }
+            Operation::Scale(a) if self.node(id).deviation() > 0.0 => {
+                format!("{}, whose constants are rounded", name(a))
+            }
             Operation::Scale(a) => format!("{} times a power of two", name(a)),
             Operation::Narrow(a, Rounding::Nearest) => format!("{}, rounded to nearest", name(a)),
             Operation::Narrow(a, Rounding::Truncate) => format!("{}, without low bits", name(a)),

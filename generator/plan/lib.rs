@@ -38,6 +38,7 @@
 mod allocate;
 mod analyse;
 mod boxes;
+mod constant;
 mod cost;
 mod curve;
 mod depth;

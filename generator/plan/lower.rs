@@ -12,6 +12,7 @@ mod divisor;
 mod errors;
 mod exponential;
 mod nearest;
+mod projected;
 mod quotient;
 mod rational;
 mod result;
@@ -35,6 +36,7 @@ use glint_base::fixed::{Rounding, exp2, nearest};
 use glint_formula::{Comparison, Enclosure, Expression, Function, Kind, Operator};
 
 use super::boxes::has_few_operands;
+use super::constant::dyadic;
 use super::facts::has_fact;
 use super::guarded::GuardedFormula;
 use super::memory::TableMemory;
@@ -51,7 +53,7 @@ use rational::{
     QuotientParts, ceiling_of, floor_of_quotient, rational_quotient, with_single_division,
 };
 use shape::{
-    core_of, dyadic, floor_of, has_no_function_of_operands, modulus_exponent, number, power_of_two,
+    core_of, floor_of, has_no_function_of_operands, modulus_exponent, number, power_of_two,
     products_of,
 };
 use table::is_short_operand;
@@ -492,6 +494,9 @@ impl<'s> Lowering<'s> {
         }
         if let Some(quotient) = projection::multiplied_quotient(&part.kind) {
             return self.part(&quotient);
+        }
+        if let Some(node) = self.projection_with_rounded_constants(part)? {
+            return Ok(node);
         }
         if let Some(single) = with_single_division(part)
             && let Ok(node) = self.part(&single)

@@ -7,10 +7,22 @@
 
 use std::sync::Arc;
 
-use glint_formula::{Expression, Function, Kind, Operator, RBig, parse};
+use glint_base::fixed::{exp2, nearest};
+use glint_formula::{Enclosure, Expression, Function, Kind, Operator, RBig, parse};
+
+use super::constant::dyadic;
 
 /// The most terms of a sum that is examined.
 const MOST_TERMS: usize = 32;
+
+/// The largest number of bits of a rounded constant. With a sign, a factor then has 18 bits.
+const MOST_CONSTANT_BITS: i32 = 17;
+
+/// The smallest number of bits of a rounded constant.
+const FEWEST_CONSTANT_BITS: i32 = 2;
+
+/// A factor that exceeds 1 by more than the roundings of a few operations in `f64`.
+const ROUNDED_UP: f64 = 1.0 + 1e-12;
 
 /// A term of a dividend, apart from its sign.
 struct Projected {
@@ -67,6 +79,98 @@ pub(super) fn multiplied_quotient(kind: &Kind) -> Option<Expression> {
         }
     }
     None
+}
+
+/// A quotient with rounded constants.
+pub(super) struct RoundedProjection {
+    pub(super) formula: Expression,
+    /// The largest distance between the values of both formulas.
+    pub(super) deviation: f64,
+}
+
+/// Rounds the constants that are factors in the dividend of a quotient by the length of a vector to `frac` fraction bits, or to as many as
+/// factors of 18 bits can have. The part may also be a minimum or a maximum of such a quotient and a constant: the values are then not
+/// farther from each other. Returns `None` for any other formula, and if all constants are exact with few bits.
+pub(super) fn rounded(part: &Expression, frac: i32) -> Option<RoundedProjection> {
+    match &part.kind {
+        Kind::Binary(operator @ (Operator::Min | Operator::Max), a, b)
+            if !(a.varies() && b.varies()) =>
+        {
+            let (constant, quotient) = if a.varies() { (b, a) } else { (a, b) };
+            let RoundedProjection { formula, deviation } = rounded(quotient, frac)?;
+            let kind = Kind::Binary(*operator, Arc::new(formula), constant.clone());
+            Some(RoundedProjection { formula: Expression::new(kind, part.span.clone()), deviation })
+        }
+        Kind::Binary(Operator::Div, dividend, divisor) => {
+            let squares = squares_of_lengths(divisor)?;
+            let [vector] = squares.as_slice() else { return None };
+            let numbers = numbers_of(vector)?;
+            let mut largest: f64 = 0.0;
+            for Projected { coefficient, .. } in products_with(&numbers, dividend)? {
+                if is_rounded_constant(&coefficient) {
+                    let value = coefficient.enclose(&[]).ok()?;
+                    largest = largest.max(value.low.abs()).max(value.high.abs());
+                }
+            }
+            if largest == 0.0 {
+                return None;
+            }
+            let integer_bits = (largest.log2().floor() as i32 + 1).max(0);
+            let frac = frac.max(FEWEST_CONSTANT_BITS).min(MOST_CONSTANT_BITS - integer_bits);
+            let mut rounding = ConstantRounding { numbers: &numbers, frac, squares: 0.0 };
+            let dividend = rounding.rounded(dividend)?;
+            let kind = Kind::Binary(Operator::Div, dividend, divisor.clone());
+            Some(RoundedProjection {
+                formula: Expression::new(kind, part.span.clone()),
+                deviation: rounding.squares.sqrt() * ROUNDED_UP,
+            })
+        }
+        _ => None,
+    }
+}
+
+/// Returns whether a coefficient is a constant that is not exact with few bits.
+fn is_rounded_constant(coefficient: &Expression) -> bool {
+    !coefficient.varies() && dyadic(coefficient).is_none()
+}
+
+/// Rounds the constants in a sum of products with the numbers of a vector.
+struct ConstantRounding<'n> {
+    numbers: &'n [Arc<Expression>],
+    frac: i32,
+    /// The sum of the squares of all roundings so far.
+    squares: f64,
+}
+
+impl ConstantRounding<'_> {
+    /// Returns a sum with rounded constants. Returns `None` if a constant has no value.
+    fn rounded(&mut self, sum: &Arc<Expression>) -> Option<Arc<Expression>> {
+        let Kind::Binary(operator, a, b) = &sum.kind else { return Some(sum.clone()) };
+        let (a, b) = match operator {
+            Operator::Add | Operator::Sub => (self.rounded(a)?, self.rounded(b)?),
+            Operator::Mul if self.numbers.contains(a) => (a.clone(), self.constant(b)?),
+            Operator::Mul => (self.constant(a)?, b.clone()),
+            Operator::Div => {
+                let inverse = self.constant(&binary(Operator::Div, &one(), b))?;
+                return Some(binary(Operator::Mul, a, &inverse));
+            }
+            _ => return Some(sum.clone()),
+        };
+        Some(binary(*operator, &a, &b))
+    }
+
+    /// Returns a coefficient, rounded if it is a constant with many bits. Returns `None` if the constant has no value.
+    fn constant(&mut self, coefficient: &Arc<Expression>) -> Option<Arc<Expression>> {
+        if !is_rounded_constant(coefficient) {
+            return Some(coefficient.clone());
+        }
+        let value = coefficient.enclose(&[]).ok()?;
+        let raw = nearest(value.middle() * exp2(self.frac));
+        let difference = value - Enclosure::exactly(raw * exp2(-self.frac));
+        self.squares += difference.low.abs().max(difference.high.abs()).powi(2);
+        let rounded = parse(&format!("{raw} / {}", exp2(self.frac))).ok()?;
+        Some(Arc::new(rounded))
+    }
 }
 
 /// Returns the dividend and the divisor of a quotient, or of a constant times a quotient. Returns `None` for any other formula. For example,
@@ -178,6 +282,9 @@ fn products_with(
             Kind::Unary(Function::Negate, a) if is_number(a) => (a.clone(), one()),
             Kind::Binary(Operator::Mul, a, b) if is_number(a) => (a.clone(), b.clone()),
             Kind::Binary(Operator::Mul, a, b) if is_number(b) => (b.clone(), a.clone()),
+            Kind::Binary(Operator::Div, a, b) if is_number(a) && !b.varies() => {
+                (a.clone(), binary(Operator::Div, &one(), b))
+            }
             Kind::Binary(Operator::Power, base, exponent)
                 if **exponent == *two() && is_number(base) =>
             {
@@ -253,6 +360,7 @@ mod tests {
             "-x / sqrt(y * y + x * x + 3)",
             "(x * p + q * y) / sqrt(x^2 + y^2)",
             "(x * p - 3 * y) / sqrt(x^2 + y^2 + 0.5)",
+            "(x / 3 - y / -7) / sqrt(x^2 + y^2)",
             "(x * p + q * y) / (sqrt(x^2 + y^2) * sqrt(p^2 + q^2))",
             "(x * p + q * y) / sqrt((x^2 + y^2) * (p^2 + q^2))",
             "(x^2 + p * y) / sqrt(x^2 + y^2)",
@@ -293,5 +401,46 @@ mod tests {
         ] {
             assert_eq!(limit_of(formula), None, "{formula}");
         }
+    }
+
+    #[test]
+    fn rounded_constants_change_a_quotient_by_at_most_the_deviation() {
+        for formula in [
+            "(0.6 * x - y / 3) / sqrt(x^2 + y^2)",
+            "max(0, (x * p + 0.8 * y) / sqrt(x^2 + y^2))",
+            "min(1, max((x * 100.3 + y * pi) / sqrt(y^2 + x^2 + 1), 0))",
+        ] {
+            let part = parse(formula).expect("a formula");
+            for frac in [4, 9, 14] {
+                let rounded = rounded(&part, frac).expect("rounded constants");
+                assert!(rounded.deviation <= exp2(-frac.min(10)), "{formula}");
+                let text = rounded.formula.python();
+                for point in [[1.0, 2.0, 3.0, -4.0], [-0.5, 0.25, 2.0, 8.0], [3.0, -4.0, 0.5, 0.0]]
+                {
+                    let difference = (value(formula, point) - value(&text, point)).abs();
+                    assert!(difference <= rounded.deviation + 1e-12, "{formula}, {frac} bits");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn quotients_without_constants_to_round_are_left_as_they_are() {
+        for formula in [
+            "(0.5 * x - 3 * y) / sqrt(x^2 + y^2)",
+            "(x * p + y * q) / sqrt(x^2 + y^2)",
+            "(0.3 * x + 0.4 * z) / sqrt(x^2 + y^2)",
+            "(0.3 * x + 0.4 * y) / (x^2 + y^2)",
+        ] {
+            let part = parse(formula).expect("a formula");
+            assert!(rounded(&part, 9).is_none(), "{formula}");
+        }
+    }
+
+    #[test]
+    fn constants_within_other_coefficients_are_not_rounded() {
+        let part = parse("(0.3 * x + (p * 0.3) * y) / sqrt(x^2 + y^2)").expect("a formula");
+        let text = rounded(&part, 4).expect("a rounded constant").formula.python();
+        assert_eq!(text.matches("0.3").count(), 1, "{text}");
     }
 }

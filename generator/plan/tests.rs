@@ -56,7 +56,7 @@ fn statements(bits: i32) -> Vec<ExpressionStatement> {
     let signed = Format::signed(0, bits - 1);
     let unsigned = Format::unsigned(0, bits);
     let not_origin = Some("x^2 + y^2 > 0");
-    let cases: [(&[&str], Format, Option<&str>); 15] = [
+    let cases: [(&[&str], Format, Option<&str>); 17] = [
         (&["x * y"], signed, None),
         (&["sqrt(x^2 + y^2)"], signed, None),
         (&["atan2(y, x) / pi"], signed, not_origin),
@@ -71,6 +71,8 @@ fn statements(bits: i32) -> Vec<ExpressionStatement> {
         // Divisors and coordinates that are themselves rounded.
         (&["x / sqrt(y)"], unsigned, Some("x < sqrt(y)")),
         (&["x / (0.3 + sin(y))", "atan2(sin(x), 1 + exp(y))"], unsigned, Some("y > 0.375")),
+        (&["(0.6 * x - 0.8 * y) / sqrt(x^2 + y^2)"], signed, not_origin),
+        (&["max(0, (x / 3 + y * 0.7) / sqrt(x^2 + y^2))^3"], signed, not_origin),
         (&["x ^ y"], unsigned, Some("x > 0")),
         (&["exp(-8 * (x + y))", "ln(x + y + 1 / 64)"], unsigned, None),
     ];

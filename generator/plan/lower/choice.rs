@@ -7,7 +7,8 @@ use glint_formula::{Comparison, Enclosure, Expression, Function, Kind, Operator,
 
 use super::Lowering;
 use super::rational::without_fractions;
-use super::shape::{dyadic, number};
+use super::shape::number;
+use crate::constant::dyadic;
 use crate::node::NodeId;
 use crate::refusal::PlanRefusal;
 

@@ -36,14 +36,16 @@ impl DoubledExponent {
 }
 
 /// Returns twice the exponent p of a formula that is a constant times x^p. Returns `None` for any other formula, if 2p is no
-/// integer from −8 to 8, or if p is 0 or 1. For example, `3 / sqrt(x)` gives −1.
+/// integer from −8 to 8, or if p is a whole number from 0 on. For example, `3 / sqrt(x)` gives −1. The slope of x^3 is largest for large x,
+/// so that a table over all values, or products, need fewer bits than a table for one octave.
 pub(super) fn power_of(formula: &Expression) -> Option<DoubledExponent> {
     if formula.size() > MOST_PARTS {
         return None;
     }
     let doubled = doubled_exponent(formula)?;
     let value = i32::try_from(doubled.numerator().clone()).ok()?;
-    let is_power = doubled.is_int() && !matches!(value, 0 | 2) && value.abs() <= 8;
+    let is_whole = value >= 0 && value % 2 == 0;
+    let is_power = doubled.is_int() && !is_whole && value.abs() <= 8;
     is_power.then_some(DoubledExponent(value))
 }
 

@@ -4,13 +4,12 @@
 use std::collections::{HashMap, HashSet};
 use std::ptr;
 
-use glint_formula::{Expression, Function, Kind, Operator, RBig};
+use glint_formula::{Expression, Function, Kind, Operator};
+
+use crate::constant::dyadic;
 
 /// The cost of a product of two numbers that vary, if a product with a constant costs 1.
 const PRODUCT: u32 = 2;
-
-/// The largest number of fraction bits that a constant may have to count as exact.
-const MOST_CONSTANT_BITS: u32 = 18;
 
 /// The most parts of a formula whose dominators are searched.
 const MOST_PARTS: u32 = 200;
@@ -253,20 +252,6 @@ pub(super) fn floor_of(a: &Expression, b: &Expression) -> Option<i32> {
 /// Parses a formula. The text must be valid.
 pub(super) fn number(text: &str) -> Expression {
     glint_formula::parse(text).expect("a formula")
-}
-
-/// Returns a constant as a raw value and its number of fraction bits, if it is exact with at most 18 fraction bits and 32 bits
-/// in all. For example, `3/4` gives (3, 2). Returns `None` otherwise.
-pub(super) fn dyadic(part: &Expression) -> Option<(i128, i32)> {
-    let value = part.rational()?;
-    for frac in 0..=MOST_CONSTANT_BITS {
-        let scaled = value.clone() * RBig::from(1u64 << frac);
-        if scaled.is_int() {
-            let raw = i64::try_from(scaled.numerator().clone()).ok()?;
-            return (raw.unsigned_abs() < 1 << 32).then_some((raw.into(), frac as i32));
-        }
-    }
-    None
 }
 
 /// Returns the exponent k if a multiplication by the constant `part`, or a division by it, equals a multiplication by 2^k. For
