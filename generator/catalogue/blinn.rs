@@ -1,9 +1,9 @@
 //! The hardware description of the device `blinn`, which computes f = cⁿ for a run-time exponent n ([symbols](crate#symbols)).
 //!
 //! The seeds start from this formula of Blinn, but give no circuit for it. This circuit computes cⁿ = 2^(−n·decay) with the
-//! decay −log₂ c: a logarithm, a product and an exponential. An octave is a factor of two: the decay is the number of octaves
-//! that c lies below 1/2, plus the decay of the remaining mantissa. For example, c = 0.15 is 2^−2·0.6, with the decay 2 − log₂
-//! 0.6. For c ≤ 0 the result is 0, for n = 0 too; for c = 1.0 it is the largest value below 1.
+//! decay −log₂ c: a logarithm, a product and an exponential. If c is 2^−k·m for a mantissa m from 1/2 to 1, the decay is k plus
+//! the decay of m. For example, c = 0.15 is 2^−2·0.6, with the decay 2 − log₂ 0.6. For c ≤ 0 the result is 0, also for n = 0;
+//! for c = 1.0 it is the largest value below 1.
 
 use glint_base::fixed::Format;
 use glint_config::Config;
@@ -15,7 +15,7 @@ use glint_rtl::netlist::About;
 use super::common;
 use super::decay::{self, Distance};
 
-/// Panics if the schema's check does not accept the configuration.
+/// Builds the hardware. Panics if the schema's check does not accept the configuration.
 pub fn describe(d: &Designer, config: &Config) {
     let keys = Keys::of(config);
     d.about(about(&keys));

@@ -27,7 +27,7 @@ pub struct ColourProducts<'d> {
 }
 
 impl<'d> ColourProducts<'d> {
-    /// Adds the colour operands. `blocks` are their numbers in the source's figure, if it has one.
+    /// Adds the colour operands. `blocks` are their numbers in the source's figure, if the source has one.
     #[track_caller]
     pub fn new(
         d: &'d Designer,
@@ -61,9 +61,9 @@ impl<'d> ColourProducts<'d> {
 /// Returns a paragraph for the page of a device: a busy device ignores writes of operands, and until when the outputs keep their
 /// values.
 ///
-/// If each colour has its own multiplier, the outputs follow the register that `follow` names. They do so until a colour is
-/// written or the next computation does `until`. For example, `follow` is "the accumulator", and `until` is "begins". With one
-/// multiplier for all colours, the outputs are registers, and neither text is used.
+/// If each colour has its own multiplier, the outputs follow the register that `follow` names, until a colour is written or the
+/// next computation does `until`. For example, `follow` is "the accumulator", and `until` is "begins". With one multiplier for
+/// all colours, the outputs are registers, and neither text is used.
 pub fn outputs_note(keys: &keys::ColourKeys, follow: &str, until: &str) -> Note {
     if keys.in_turn() {
         return Topic::Writes.note(

@@ -68,8 +68,8 @@ pub fn describe(d: &Designer, config: &Config) {
     d.microprogram(steps.into_iter().chain(outputs));
 }
 
-/// Returns the base as the complement of the accumulator. It is one unit in the last place (an ulp) too small, and therefore
-/// always below 1. If cos γ ≤ 0, the base is 0.
+/// Returns the base as the complement of the accumulator. The base is one unit in the last place (an ulp) too small, and
+/// therefore always below 1. If cos γ ≤ 0, the base is 0.
 fn base<'d>(d: &'d Designer, cos_gamma: Signal<'d>, accumulator: Signal<'d>) -> Signal<'d> {
     let facing = d.any("facing", cos_gamma).doc("1 if the surface faces the half vector");
     let inverse = d.not("inverse", accumulator).doc("1.0 - accumulator - 1 ulp");

@@ -1,8 +1,8 @@
 //! The hardware description that the devices `blinn` and `gauss` share: f = 2^(−n·decay(c)) ([symbols](crate#symbols)).
 //!
-//! The decay is −log₂ c in `blinn`, and γ²/(2 ln 2) in `gauss`. `gauss` computes it as the distance 1 − c times a smooth ratio.
-//! `blinn` first scales c by 2^octave to a mantissa m from 1/2 to 1, and computes (1 − m) times a ratio plus the octave. The
-//! relative error of the decay therefore stays small near c = 1, where n multiplies the error.
+//! The decay is −log₂ c in `blinn`, and γ²/(2 ln 2) in `gauss`. `gauss` computes the decay as the distance 1 − c times a smooth
+//! ratio. `blinn` first scales c by 2^octave to a mantissa m from 1/2 to 1, and computes (1 − m) times a ratio plus the octave.
+//! The relative error of the decay therefore stays small near c = 1, where n multiplies the error.
 //!
 //! In the sequential core, piecewise polynomials on one multiplier give the ratio and 2^−x. Another multiplier computes
 //! distance times ratio, and n times decay. The integer part of n·decay becomes a shift. f is 0 if c ≤ 0.

@@ -99,7 +99,8 @@ pub fn describe(d: &Designer, config: &Config) {
     ]);
 }
 
-/// Returns the absolute value of a number in its own format. The most negative number has none: its sign bit remains 1.
+/// Returns the absolute value of a number in its own format, which lacks one value: the most negative number keeps its sign
+/// bit.
 fn size<'d>(d: &'d Designer, number: Signal<'d>) -> Signal<'d> {
     let format = number.format();
     let zero = d.constant("none", 0.0, format);

@@ -12,7 +12,7 @@ use glint_rtl::netlist::About;
 
 use crate::plan::{PlanOutput, describe_plan};
 
-/// `planned` must be the plan of the configuration's formulas. Each result has an output port `<result>_out`.
+/// Builds the hardware. `planned` must be the plan of the configuration's formulas. Each result has a port `<result>_out`.
 pub fn describe(d: &Designer, config: &Config, planned: &ProvedPlan) {
     let keys = Keys::of(config);
     d.about(about(&keys, planned));

@@ -14,7 +14,7 @@ use glint_rtl::netlist::About;
 use crate::piecewise::WRITABLE_TABLE;
 use crate::plan::{PlanOutput, describe_plan};
 
-/// `planned` must be the plan of the function that the configuration states.
+/// Builds the hardware. `planned` must be the plan of the function that the configuration states.
 pub fn describe(d: &Designer, config: &Config, planned: &FunctionPlan) {
     let polynomials = &planned.polynomials;
     d.about(about(&Keys::of(config), planned.function.proof(), polynomials));

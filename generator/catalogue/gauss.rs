@@ -1,8 +1,8 @@
 //! The hardware description of the device `gauss`, which computes f = exp(−n·γ²/2) with γ = arccos c ([symbols](crate#symbols)).
 //!
-//! Seed 002 compares this function with others, and gives no circuit. The paper prints the angle as ∠(H,L), but its formulas use
-//! ∠(N,H), and so does this device. The device computes exp(−n·γ²/2) as 2^(−n·decay). The decay γ²/(2 ln 2) is 1 − c times a
-//! smooth function of 1 − c. For c ≤ 0 the result is 0, for n = 0 too.
+//! Seed 002 compares this function with others, and gives no circuit. The paper prints the angle as ∠(H,L), but its formulas
+//! use ∠(N,H), and so does this device. The device computes exp(−n·γ²/2) as 2^(−n·decay). The decay γ²/(2 ln 2) is 1 − c times
+//! a smooth function of 1 − c. For c ≤ 0 the result is 0, also for n = 0.
 
 use glint_base::fixed::Format;
 use glint_config::Config;
@@ -13,7 +13,7 @@ use glint_rtl::netlist::About;
 use super::common;
 use super::decay::{self, Distance};
 
-/// Panics if the schema's check does not accept the configuration.
+/// Builds the hardware. Panics if the schema's check does not accept the configuration.
 pub fn describe(d: &Designer, config: &Config) {
     let keys = Keys::of(config);
     d.about(about(&keys));

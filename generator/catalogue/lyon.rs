@@ -4,9 +4,9 @@
 //! `scale` = `"multiplier"`, β is n/(2·m) for the specular exponent n. With the default `"shift"`, as in the patent, β is
 //! 2^shift/(2·m), where the operand `shift` is log₂ n, rounded.
 //!
-//! The source is the patent US 5 739 820 (Fig. 7C and 7D), which [seed 000](crate#symbols) cites. Seed 000 lists only the blocks:
-//! two adders, four multipliers, shift register, counter, comparator and mux. Glint chose the wiring, and numbers each kind of
-//! block from 1: adder 1, multiplier 1.
+//! The source is the patent US 5 739 820 (Fig. 7C and 7D), which [seed 000](crate#symbols) cites. Seed 000 lists only the
+//! blocks: two adders, four multipliers, shift register, counter, comparator and mux. Glint chose the wiring, and numbers each
+//! kind of block from 1.
 
 use glint_base::fixed::{Format, Overflow, Rounding};
 use glint_config::{Config, Shared};
@@ -90,8 +90,8 @@ fn distance<'d>(d: &'d Designer, keys: &Keys, components: [Signal<'d>; 3]) -> Sq
     }
 }
 
-/// Builds D² with one multiplier and one adder. A register collects the first two squares in two microinstructions, and the one
-/// after them adds the third square.
+/// Builds D² with one multiplier and one adder. A register collects the first two squares in two microinstructions, and the
+/// next microinstruction adds the third square.
 fn distance_in_turn<'d>(
     d: &'d Designer,
     keys: &Keys,
@@ -189,8 +189,8 @@ fn by_multiplier<'d>(d: &'d Designer, keys: &Keys, distance: SquaredDistance<'d>
     Scaled { value: scaled.q(), steps, squarings }
 }
 
-/// Returns `1 − β·D²` as the complement of β·D². It is one unit in the last place (an ulp) too small, and so always below 1.0.
-/// If β·D² is 1.0 or more, the comparator makes the mux pass 0 instead.
+/// Returns `1 − β·D²` as the complement of β·D². The complement is one unit in the last place (an ulp) too small, and so always
+/// below 1.0. If β·D² is 1.0 or more, the comparator makes the mux pass 0 instead.
 fn base<'d>(d: &'d Designer, value: Signal<'d>, f: Format) -> Signal<'d> {
     let one = d.constant("one", 1.0, Format::unsigned(1, f.frac));
     let comparator = d.less("comparator", value, one).doc("1 if beta*D^2 is below 1.0");

@@ -1,4 +1,4 @@
-//! Builds a chain of mirrored values with a single adder ([`MirrorChain`]).
+//! Builds a chain of mirrors, which are choices between v and c − v, with a single adder ([`MirrorChain`]).
 
 use glint_base::fixed::{Format, Overflow, Rounding};
 use glint_plan::{ExpressionPlan, MirrorChain, NodeId};

@@ -1,6 +1,6 @@
 //! The hardware description of the device `normaliser`, which computes the unit vector v/|v| of a vector v of any length.
 //!
-//! A multiplier squares the components one after the other, a shifter scales their sum v·v, and a table interpolates 1/√(v·v),
+//! A multiplier squares the components in turn, a shifter scales their sum v·v, and a table interpolates 1/√(v·v),
 //! which scales all components. For example, v = (0, 0, 0.5) gives (0, 0, 1). The zero vector, which has no direction, gives (0,
 //! 0, 0).
 
@@ -80,7 +80,8 @@ pub fn describe(d: &Designer, config: &Config) {
     ]);
 }
 
-/// Shifts a word left by pairs of bits until one of its two top bits is 1, and returns the number of pairs too. Zeros stay 0.
+/// Shifts a word left by pairs of bits until one of its two top bits is 1. Returns the shifted word and the number of pairs.
+/// Zeros stay 0.
 pub(super) fn by_pairs<'d>(d: &'d Designer, mut word: Signal<'d>) -> (Signal<'d>, Signal<'d>) {
     let width = word.format().width();
     let mut places = Vec::new();
@@ -138,8 +139,8 @@ pub(super) fn inverse_root<'d>(
     d.narrow("inverse_kept", left, format, Rounding::Truncate, Overflow::Wrap)
 }
 
-/// Returns a component times 2^`places`, divided by 2: from −2 to 2, with one more fraction bit. Its square is at most the
-/// mantissa, so the bits that are dropped at the top are copies of the sign.
+/// Returns a component times 2^`places`, divided by 2: from −2 to 2, with one more fraction bit. The square of the result is at
+/// most the mantissa, so the bits that are dropped at the top are copies of the sign.
 fn shifted<'d>(d: &'d Designer, x: Signal<'d>, places: Signal<'d>, fraction: i32) -> Signal<'d> {
     let wide = Format::signed(2, fraction);
     let keep = |name: &str, x| d.narrow(name, x, wide, Rounding::Truncate, Overflow::Wrap);

@@ -86,8 +86,8 @@ impl<'d> StepMultiplier<'d> {
         polynomial.sum(step, product)
     }
 
-    /// Returns the product of a pair of factors, one that [`StepMultiplier::new`] received unless the device has only one
-    /// product.
+    /// Returns the product of a pair of factors. If the device has several products, [`StepMultiplier::new`] must have received
+    /// the pair.
     pub fn product(&self, [first, second]: [Signal<'d>; 2]) -> Signal<'d> {
         match &self.shared {
             Some((_, product)) => product.of(first, second),
@@ -95,7 +95,7 @@ impl<'d> StepMultiplier<'d> {
         }
     }
 
-    /// Selects a pair of factors. The only product of a device needs no selection.
+    /// Returns the setting that selects a pair of factors, or `None` for the only product of a device.
     pub fn pick(&self, [first, _]: [Signal<'d>; 2]) -> Option<StepSetting> {
         let (factors, _) = self.shared.as_ref()?;
         Some(factors.pick(first))
@@ -164,10 +164,11 @@ pub struct PolynomialDatapath<'d, 'p> {
 }
 
 impl<'d, 'p> PolynomialDatapath<'d, 'p> {
-    /// Makes the table, and the registers of the whole polynomial and of the partial sums. The three names are theirs, the whole
-    /// polynomial first; `None` in its place makes no register for the value. Other names begin with `prefix`. `number` is the
-    /// position of the operand in its domain, an integer of [`glint_approximate::Segments::number_bits`] bits. It must be stable
-    /// while the sums are loaded, and also one clock earlier if the table is read at the rising clock edge.
+    /// Makes the table, and the registers of the whole polynomial and of the partial sums. The three names are names of these
+    /// registers, the whole polynomial first; with `None` in its place, the value has no register. Other names begin with
+    /// `prefix`. `number` is the position of the operand in its domain, an integer of
+    /// [`glint_approximate::Segments::number_bits`] bits. `number` must be stable while the sums are loaded, and also one clock
+    /// earlier if the table is read at the rising clock edge.
     pub fn new(
         d: &'d Designer,
         prefix: &str,
@@ -214,7 +215,6 @@ impl<'d, 'p> PolynomialDatapath<'d, 'p> {
         (0..self.count()).rev()
     }
 
-    /// Returns the number of Horner's steps.
     fn count(&self) -> usize {
         self.it.degree().max(1)
     }
@@ -236,7 +236,6 @@ impl<'d, 'p> PolynomialDatapath<'d, 'p> {
         Some([above.unwrap_or(self.coefficients[step + 1]), offset])
     }
 
-    /// Builds the sum of a step's coefficient and the product.
     fn sum(&self, step: usize, product: Option<Signal<'d>>) -> Signal<'d> {
         let Self { d, it, prefix, .. } = self;
         let coefficient = self.coefficients[step];

@@ -1,8 +1,9 @@
 //! Builds the hardware of a plan: registers, the logic of the operations between them, and a microprogram.
 //!
-//! The devices `function` and `expression` use this hardware. A plan is a list of fixed-point operations ([`glint_plan`]). All
-//! products of a plan share one multiplier, and each has its own microinstruction. In a pipeline the microprogram is unrolled,
-//! and each product gets its own multiplier. With an interval above 1 (the key `pipeline.interval`), products can share one.
+//! The devices `function`, `expression` and `unit` use this hardware. A plan is a list of fixed-point operations
+//! ([`glint_plan`]). All products of a plan share one multiplier, and each has its own microinstruction. In a pipeline the
+//! microprogram is unrolled, and each product gets its own multiplier. With an interval above 1 (the key `pipeline.interval`),
+//! products can share multipliers.
 
 use glint_approximate::{Outside, Piecewise};
 use glint_base::fixed::{Format, Overflow, Rounding};
@@ -25,7 +26,8 @@ pub(super) struct PlanOutput {
     pub(super) doc: String,
 }
 
-/// Result number k of the plan is connected to the port `outputs[k]`. `is_pipelined` decides how tables store their coefficients.
+/// Builds the hardware. Result k of the plan is connected to the port `outputs[k]`. `is_pipelined` decides how tables store
+/// their coefficients.
 pub(super) fn describe_plan(
     d: &Designer,
     operands: &[StatedOperand],
@@ -165,7 +167,6 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
         }
     }
 
-    /// Returns the settings that load the register of a node.
     fn load(&self, node: NodeId) -> Vec<StepSetting> {
         let mut settings = vec![self.register(node).load()];
         let owner = self.schedule.register_owners[node.0];
@@ -189,7 +190,7 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
         [first, second]
     }
 
-    /// Panics if the node is not built yet.
+    /// Returns the signal of a node. Panics if the node is not built yet.
     fn signal(&self, id: NodeId) -> Signal<'d> {
         self.signals[id.0].unwrap_or_else(|| panic!("`{}` is built", self.plan.node(id).name))
     }
@@ -412,7 +413,7 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
         self.with_dispatches(steps)
     }
 
-    /// Lets the microinstructions of a unit continue with the next one that the opcode needs.
+    /// Lets the microinstructions of a unit continue with the next microinstruction that the opcode needs.
     fn with_dispatches(&self, mut steps: Vec<Step>) -> Vec<Step> {
         let names: Vec<String> = steps.iter().map(|step| step.name().to_owned()).collect();
         for (at, step) in steps.iter_mut().enumerate() {
@@ -456,7 +457,6 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
         settings
     }
 
-    /// Returns microinstruction number `at`.
     fn microinstruction(&self, at: usize, plan_step: &PlanStep, parts: &PlanWork<'d>) -> Step {
         let PlanStep { work, loads, coefficients } = plan_step;
         let mut names = Vec::new();
@@ -502,7 +502,7 @@ impl<'d, 'p> PlanDatapath<'d, 'p> {
         shared.or(self.polynomials[owner].as_ref()).expect("a polynomial")
     }
 
-    /// Returns the name and the settings of what the multiplier or a table does.
+    /// Returns the name and the settings for the work of the multiplier or a table.
     fn work(&self, work: &StepWork, parts: &PlanWork<'d>) -> (String, Vec<StepSetting>) {
         let multiplier = &parts.multiplier;
         let name_of = |id: NodeId| self.plan.node(id).name.as_str();

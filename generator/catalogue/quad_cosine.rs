@@ -2,13 +2,13 @@
 //!
 //! δ is the angle at a point of the line, and n the specular exponent. Decoder 10 chooses k from n: 1 for n = 1, 2 for n = 2, 4
 //! for n = 3 to 6, and 16 for all other n. f is 0 if δ does not lie from −90° (included) to 90°, or if √(n/k)·|δ| is 90° or
-//! more. The source is [seed 000](crate#symbols), whose figure numbers the blocks and outputs. Its control unit, block 14,
-//! consists of triggers (flip-flops); Glint replaces them by a microprogram with the same order of events.
+//! more. The source is [seed 000](crate#symbols), whose figure numbers the blocks and outputs. The patent's control unit, block
+//! 14, consists of triggers (flip-flops); Glint replaces them by a microprogram with the same order of events.
 //!
-//! Output 37 (`write_angle`) writes the angle of a point into register 8. The output `valid` is a copy of it, delayed until the
-//! result of the point is ready. With the default key `line.stages` = 2 the delay is two clocks: one for register 8, and one
-//! for ROM 12, which is synchronous like ROM 9. With `line.stages` = 7 five more registers lie between register 8 and the
-//! output. Registers behind the outputs (`output.registered`) add another clock.
+//! Output 37 (`write_angle`) writes the angle of a point into register 8. The output `valid` is a copy of output 37, delayed
+//! until the result of the point is ready. With the default key `line.stages` = 2 the delay is two clocks: one for register 8,
+//! and one for ROM 12, which is synchronous like ROM 9. With `line.stages` = 7 five more registers lie between register 8 and
+//! the output. Registers behind the outputs (`output.registered`) add another clock.
 
 use glint_base::fixed::Format;
 use glint_config::Config;

@@ -2,10 +2,10 @@
 //! surface ([symbols](crate#symbols)).
 //!
 //! dγ is the deviation of the normal on a rough surface. The source is [seed 001](crate#symbols), whose figure has the block
-//! numbers. Multiplier 10 computes four products one after the other, and the select lines V1 and V2 choose its operands. The
+//! numbers. Multiplier 10 computes four products in turn, and the select lines V1 and V2 choose its operands. The
 //! microprogram equals table 1 of the patent, word by word. Only with one multiplier for all colours, or with output registers,
 //! it has additional microinstructions. With the default key `arithmetic` = `"exact"`, f is 0 for cos γ ≤ 0. With the default
-//! key `clamp` = true, f is 0 too where n/2·(cos(γ ± dγ) − 1) + 1 is negative.
+//! key `clamp` = true, f is also 0 where n/2·(cos(γ ± dγ) − 1) + 1 is negative.
 
 mod sine;
 

@@ -2,7 +2,7 @@
 //!
 //! Seed 002 says that the division makes this function of Schlick hard to build, and gives no circuit. The sequential core has
 //! one multiplier for the divisor, n·(1 − c) + c, and a divider that computes one bit of the quotient a clock. For c ≤ 0 the
-//! result is 0, for n = 0 too; a quotient of 1.0 becomes the largest value below 1.
+//! result is 0, also for n = 0; a quotient of 1.0 becomes the largest value below 1.
 
 use glint_base::fixed::{Format, Overflow, Rounding};
 use glint_config::Config;
@@ -39,7 +39,7 @@ pub fn describe(d: &Designer, config: &Config) {
     d.microprogram(steps.into_iter().chain(outputs));
 }
 
-/// Builds the exact divisor. If cos γ = 0, it is larger by one unit in the last place, so that it is not 0 for n = 0. The
+/// Builds the exact divisor. If cos γ = 0, the divisor is larger by one unit in the last place, and so not 0 for n = 0. The
 /// quotient is then 0, whatever the divisor is.
 fn divisor<'d>(d: &'d Designer, cos_gamma: Signal<'d>, exponent: Signal<'d>) -> Signal<'d> {
     let (c, n) = (cos_gamma.format(), exponent.format());

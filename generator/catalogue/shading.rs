@@ -11,7 +11,7 @@ use glint_config::Config;
 use glint_keys::shading::{HighlightDevice, HighlightPart, Keys, LightParts};
 use glint_rtl::dsl::{About, Designer, Signal};
 
-/// `parts` has the configurations of the parts.
+/// Builds the hardware. `parts` has the configurations of the parts.
 pub fn describe<'d>(d: &'d Designer, config: &Config, parts: &LightParts) {
     let keys = Keys::of(config);
     d.about(about(&keys));

@@ -1,4 +1,4 @@
-//! Builds a table of polynomials that several operands of a sequential core read, one after the other.
+//! Builds a table of polynomials that several operands of a sequential core read in turn.
 //!
 //! A mux selects the operand that addresses the table. Memory, adders and the registers of the partial sums serve all operands, and
 //! each value has a register of its own. For example, a unit computes the reciprocal and then the arctangent of `atan2` with one table.
@@ -26,7 +26,7 @@ impl<'d> TableReaders<'d> {
         Self { readers: Vec::new() }
     }
 
-    /// Adds the polynomial of a node. Its value will be in the register `value`.
+    /// Adds the polynomial of a node. The register `value` will have the polynomial's value.
     pub(super) fn add(&mut self, node: NodeId, operand: Signal<'d>, value: Register<'d>) {
         self.readers.push(TableReader { node, operand, value });
     }
@@ -71,7 +71,7 @@ impl<'d, 'p> SharedTable<'d, 'p> {
         &self.datapath
     }
 
-    /// Returns the setting that lets the operand of a polynomial address the table.
+    /// Returns the setting that lets the operand of a polynomial address the table; `None` if there is only one operand.
     pub(super) fn address_by(&self, node: NodeId) -> Option<StepSetting> {
         Some(self.mux?.pick(self.reader(node).operand))
     }
@@ -102,7 +102,7 @@ pub(super) struct SharedSteps<'d> {
 }
 
 impl SharedSteps<'_> {
-    /// Returns the settings of a step of the polynomial of `node`.
+    /// Returns the settings of step `coefficient` of the polynomial of `node`.
     pub(super) fn step(&self, node: NodeId, coefficient: usize) -> Vec<StepSetting> {
         let mut settings = self.of_steps[coefficient].clone();
         if coefficient == 0 {

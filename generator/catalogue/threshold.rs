@@ -1,10 +1,10 @@
 //! The hardware description of the device `threshold`, which computes f = (n/2·(c − 1) + 1)², or 0 if this square is below a
 //! level ([symbols](crate#symbols)).
 //!
-//! The level comes from a table, ROM(n). f is 0 too for c ≤ 0, and where n/2·(c − 1) + 1 is negative. The source is the patent UA
-//! 30041, which seed 001 cites. UA 30041 connects its blocks without a control block. This description adds two registers, so
-//! that no clock contains more than one multiplier before the outputs. Each kind of block is numbered from 1, as in the text of
-//! seed 001: register 1, adder 1, multiplier 1.
+//! The level comes from a table, ROM(n). f is also 0 for c ≤ 0, and where n/2·(c − 1) + 1 is negative. The source is the patent
+//! UA 30041, which seed 001 cites. UA 30041 connects its blocks without a control block. This description adds two registers,
+//! so that no clock contains more than one multiplier before the outputs. Each kind of block is numbered from 1, as in seed
+//! 001.
 
 use glint_base::fixed::{Format, Overflow, Rounding, exp2};
 use glint_config::Config;
@@ -62,7 +62,7 @@ pub fn describe(d: &Designer, config: &Config) {
     d.microprogram(steps.into_iter().chain(outputs));
 }
 
-/// Returns the square, or 0 if it is below ROM(n) or the surface faces away.
+/// Returns the square, or 0 if the square is below ROM(n) or the surface faces away.
 fn gates<'d>(
     d: &'d Designer,
     keys: &Keys,

@@ -1,7 +1,8 @@
 //! The hardware description of the device `unit`: several functions behind one datapath, selected by an opcode.
 //!
-//! The planner ([`glint_plan::find_unit`]) merges the plans of the functions into one list of fixed-point operations. The module
-//! `plan` builds its hardware, in which the functions share the normaliser, the tables, the multiplier and the shifters.
+//! The planner ([`glint_plan::find_unit`]) merges the plans of the functions into one list of fixed-point operations. The
+//! module `plan` builds the hardware of this list, in which the functions share the normaliser, the tables, the multiplier and
+//! the shifters.
 
 use glint_base::text;
 use glint_config::{Config, Shared};
@@ -12,7 +13,8 @@ use glint_rtl::netlist::{About, CoreFunction, FunctionPort};
 use crate::piecewise::WRITABLE_TABLE;
 use crate::plan::{PlanOutput, describe_plan};
 
-/// `planned` must be the plan of the functions that the configuration states. Each result has an output port `<result>_out`.
+/// Builds the hardware. `planned` must be the plan of the functions that the configuration states. Each result has an output
+/// port `<result>_out`.
 pub fn describe(d: &Designer, config: &Config, planned: &UnitPlan) {
     d.about(about(planned));
     let is_pipelined = Shared::of(config).architecture == "pipelined";

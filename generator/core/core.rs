@@ -20,17 +20,17 @@ use glint_config::{Config, Key};
 use glint_golden::{Contract, Sweep};
 use glint_rtl::netlist::Design;
 
-/// The number of results that the default test of a configuration checks. An option of `glint cosim` changes it.
+/// The number of results that the default test of a configuration checks. An option of `glint cosim` changes this number.
 pub const TEST_POINTS: u64 = 100_000;
 
 pub const TEST_SEED: u64 = 1;
 
-/// The number of random computations at the beginning of the emitted bench of a sequential core. They use everything that the
-/// handshake allows, such as writes while the core is busy. A device with lines computes random lines until they have this
-/// number times [`BENCH_LINE`] results.
+/// The number of random computations at the beginning of a sequential core's emitted bench. The computations use the whole
+/// handshake, such as writes while the core is busy. A device with lines computes random lines until they have `BENCH_POINTS` ·
+/// [`BENCH_LINE`] results.
 const BENCH_POINTS: u64 = 64;
 
-/// The largest number of results of a line among these computations.
+/// The largest number of results of a random line in the emitted bench.
 const BENCH_LINE: i64 = 6;
 
 /// The number of random points at the beginning of the emitted bench of a pipeline.
@@ -39,7 +39,7 @@ const PIPELINE_POINTS: u64 = 2000;
 /// The seed of the random inputs of emitted test benches.
 pub const BENCH_SEED: u64 = 1;
 
-/// A configuration of a device, with the netlist and the accuracy contract that are built from it.
+/// A configured device: its configuration, netlist and accuracy contract.
 pub struct Core {
     pub opened: OpenedConfig,
     /// The netlist, as the device's description builds it.
@@ -49,7 +49,7 @@ pub struct Core {
 }
 
 impl Core {
-    /// Builds the netlist of a configuration and checks it.
+    /// Builds the netlist of a configuration, and checks the netlist and the contract.
     ///
     /// # Errors
     /// Fails in these cases:
@@ -67,19 +67,19 @@ impl Core {
         Self::build(device.open(config)?)
     }
 
-    /// Does the same as [`Core::new`] for a configuration that is already open.
+    /// Builds the core of a configuration that is already open.
     ///
     /// # Errors
-    /// Fails as [`Core::new`] does.
+    /// Fails if the netlist cannot be built, or if a check of [`Core::new`] finds a mistake.
     pub fn build(opened: OpenedConfig) -> Result<Self> {
         let design = opened.design();
         Self::of_design(opened, design)
     }
 
-    /// Builds the core of a configuration that states no clock frequency. If its pipeline cannot reach the default frequency,
+    /// Builds the core of a configuration that states no clock frequency. If the pipeline cannot reach the default frequency,
     /// the core gets the fastest clock that the pipeline can reach.
     ///
-    /// Fails as [`Core::new`] does with the chosen clock.
+    /// Fails if the netlist cannot be built, or if a check of [`Core::new`] finds a mistake.
     pub fn build_with_free_clock(mut opened: OpenedConfig) -> Result<Self> {
         let design = opened.design_with_free_clock();
         Self::of_design(opened, design)
@@ -126,8 +126,7 @@ impl Core {
         &self.opened.config
     }
 
-    /// Returns a digest that tells two configurations, or two versions of Glint, apart: SHA-256 of the version and the TOML
-    /// text, in hexadecimal.
+    /// Returns a digest of the configuration and of Glint's version: SHA-256 of version and TOML text, in hexadecimal.
     pub fn digest(&self) -> String {
         let text = self.config().to_toml(&(self.device().schema)());
         package::digest(format!("{}\n{text}", env!("CARGO_PKG_VERSION")).as_bytes())
@@ -153,8 +152,8 @@ impl Core {
     }
 
     /// Returns a digest that identifies this core, whatever its name: SHA-256 in hexadecimal. The digest covers the keys of
-    /// [`Core::contract_digest`] and the shared keys, such as the architecture. It leaves out the tables `interface` and
-    /// `package`, which concern only wrappers and packages around the core.
+    /// [`Core::contract_digest`] and the shared keys, such as the architecture. The digest leaves out the tables `interface`
+    /// and `package`, which concern only wrappers and packages around the core.
     pub fn core_digest(&self) -> String {
         let schema = (self.device().schema)();
         self.digest_of(schema.all_keys().filter(|key| {
@@ -199,10 +198,11 @@ impl Core {
         self.lockstep_of(&self.design, seed)
     }
 
-    /// Does the same as [`Core::lockstep`] with another netlist that has the same ports and registers, for example a mutant.
+    /// Returns a co-simulation of the golden model with the netlist `design`, for example a mutant. `design` must have the
+    /// ports and registers of the core's own netlist.
     ///
     /// # Errors
-    /// Fails as [`Core::lockstep`] does.
+    /// Fails if golden model, `design` and contract have different signals.
     pub fn lockstep_of<'a>(&'a self, design: &'a Design, seed: u64) -> Result<Lockstep<'a>> {
         let model = self.opened.golden();
         Lockstep::new(design, model, self.contract.as_ref(), seed)
@@ -212,7 +212,7 @@ impl Core {
     /// total, compares model and hardware clock by clock.
     ///
     /// # Errors
-    /// Fails as [`Core::lockstep`] does.
+    /// Fails if golden model, design and contract have different signals.
     pub fn job(&self) -> Result<Job<'_>> {
         self.job_of(self.contract.sweep())
     }
@@ -220,16 +220,16 @@ impl Core {
     /// Returns the exhaustive check for the operand values in `sweep`, in place of the contract's own sweep.
     ///
     /// # Errors
-    /// Fails as [`Core::lockstep`] does.
+    /// Fails if golden model, design and contract have different signals.
     pub fn job_of(&self, sweep: Sweep) -> Result<Job<'_>> {
         Ok(Job::of_sweep(self.contract.as_ref(), sweep).with(self.clocks()?))
     }
 
-    /// Returns the clock-by-clock comparison of model and hardware alone. It compares nothing if the operands have more than
-    /// 26 bits.
+    /// Returns the clock-by-clock comparison of model and hardware alone. The comparison is empty if the operands have more
+    /// than 26 bits.
     ///
     /// # Errors
-    /// Fails as [`Core::lockstep`] does.
+    /// Fails if golden model, design and contract have different signals.
     pub fn clocks(&self) -> Result<Clocks<'_>> {
         let model = self.opened.golden();
         Clocks::new(&self.design, model, self.contract.as_ref())
@@ -247,16 +247,16 @@ impl Core {
     /// Returns one computation with the values of all operands and outputs, for pages that show an example.
     ///
     /// # Errors
-    /// Fails as [`Core::timing`] does.
+    /// Fails if a simulated computation does not finish, or never raises `valid`.
     pub fn example(&self) -> Result<WorkedExample> {
         trial::example(&self.design, self.contract.as_ref())
     }
 
-    /// Returns the clock numbers of a line (the points that the device computes after one `start`) as linear functions of its
-    /// length. Returns `None` for a device of single points, or if the numbers are no linear functions.
+    /// Returns the clock numbers of a line as linear functions of its length. Returns `None` for a device of single points, or
+    /// if the numbers are no linear functions.
     ///
     /// # Errors
-    /// Fails as [`Core::timing`] does.
+    /// Fails if a simulated computation does not finish, or never raises `valid`.
     pub fn line(&self) -> Result<Option<LineClocks>> {
         trial::line(&self.design, self.contract.as_ref())
     }
@@ -265,16 +265,16 @@ impl Core {
     /// results in all. The golden model and the simulated netlist agree on the outputs.
     ///
     /// # Errors
-    /// Fails as [`Core::lockstep`] does, or if golden model and simulation differ.
+    /// Fails if golden model, design and contract have different signals, or if golden model and simulation differ.
     pub fn vectors(&self, points: u64, seed: u64) -> Result<Vectors> {
         self.lockstep(seed)?.record(points, &[])
     }
 
-    /// Returns the vectors of the emitted test bench. Its random computations use all of the handshake. The computations after
-    /// them, which the module `directed` chooses, detect faults in the datapath and its ROMs.
+    /// Returns the vectors of the emitted test bench: first random computations, which use the whole handshake, then
+    /// computations that the module `directed` chooses, because they detect faults in the datapath and its ROMs.
     ///
     /// # Errors
-    /// Fails as [`Core::vectors`] does, or if a computation does not end.
+    /// Fails if golden model and simulation differ, or if a computation does not end.
     pub fn shipped_vectors(&self) -> Result<Vectors> {
         self.shipped_vectors_of(&directed::ComputationCache::default())
     }
@@ -283,7 +283,7 @@ impl Core {
     /// The search for these computations takes most of the time.
     ///
     /// # Errors
-    /// Fails as [`Core::vectors`] does.
+    /// Fails if golden model and simulation differ, or if a computation does not end.
     pub fn shipped_vectors_of(&self, known: &directed::ComputationCache) -> Result<Vectors> {
         let contract = self.contract.as_ref();
         // A pipeline has the same datapath as the microprogram from which it was made.
@@ -300,8 +300,8 @@ impl Core {
         Ok(Vectors { word_stride: directed.word_stride, ..vectors? })
     }
 
-    /// Returns a C program that recomputes the results of every combination of operands. It includes the C model and the
-    /// contents of the ROMs.
+    /// Returns a C program that recomputes the results of every combination of operands. The program includes the C model and
+    /// the contents of the ROMs.
     ///
     /// # Errors
     /// Fails if the contract is neither a formula of one operand nor a list of formulas with conditions. Fails if the operands of
@@ -399,7 +399,7 @@ impl Core {
     /// Returns the files of [`Core::core_files`] in the portable form, as pairs of a file name and contents.
     ///
     /// # Errors
-    /// Fails as [`Core::core_files`] does.
+    /// Fails if the design cannot be written as Verilog.
     pub fn verilog(&self) -> Result<Vec<(String, String)>> {
         self.verilog_for("")
     }
@@ -408,7 +408,7 @@ impl Core {
     /// with a special form for this family replaces the portable one.
     ///
     /// # Errors
-    /// Fails as [`Core::core_files`] does.
+    /// Fails if the design cannot be written as Verilog.
     pub fn verilog_for(&self, target: &str) -> Result<Vec<(String, String)>> {
         Ok(self.core_files()?.sources_for(FileKind::CORE_SOURCES, target))
     }

@@ -1,5 +1,5 @@
-//! Defines the facts that manifests and pages state about a core besides its netlist: the clocks of a computation, a worked example
-//! and the vectors of the bench, which simulation gives, and the domain, formulas and bounds of the contract.
+//! Defines the facts about a core that manifests and pages state and the netlist does not have. The clocks of a computation, a
+//! worked example and the bench's vectors come from simulation. The domain, formulas and bounds come from the contract.
 
 use glint_formula::Comparison;
 use glint_golden::Contract;
@@ -41,7 +41,7 @@ impl Linear {
         self.constant + self.each * length
     }
 
-    /// Returns the function as text. For example, `4 + length`, `4 + 2 · length`, or `4` if the length does not matter.
+    /// Returns the function as text: `4 + length`, `4 + 2 · length`, or `4` if the length does not matter.
     pub fn text(self, length: &str) -> String {
         match self.each {
             0 => self.constant.to_string(),
@@ -56,8 +56,7 @@ impl Linear {
 pub struct ContractFacts {
     /// The operands, each with the smallest and the largest raw value for which the contract holds.
     pub domain: Vec<(String, (i64, i64))>,
-    /// The result outputs. Each has the name of the colour operand that a highlight multiplies by f, if the device is a
-    /// highlight.
+    /// The result outputs, each with the name of the colour operand that belongs to it, if the device is a highlight.
     pub outputs: Vec<(String, Option<String>)>,
     /// The operand that gives the number of results beyond the first, if a computation can have several.
     pub length: Option<String>,
@@ -144,18 +143,18 @@ pub struct Quantity {
 
 /// The inputs and expected outputs of every clock of a test bench.
 ///
-/// The bench applies the inputs of a clock on the falling edge that begins the clock. It compares the outputs just before the
-/// rising edge in the middle of the clock.
+/// The bench applies the inputs of a clock on the falling edge that begins the clock. The bench compares the outputs just
+/// before the rising edge in the middle of the clock.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Vectors {
     /// For each clock, the bit patterns of all input ports except `clk`, in the order of the ports.
     pub inputs: Vec<Vec<u64>>,
     /// For each clock, the expected bit patterns of all output ports, in the order of the ports.
     pub expected: Vec<Vec<u64>>,
-    /// The index of the first clock in which the bench compares results and status. It compares the handshake outputs from the
-    /// first clock after a clock with reset.
+    /// The index of the first clock in which the bench compares results and status. The bench compares the handshake outputs
+    /// from the first clock after a clock with reset.
     pub known_from: usize,
-    /// The distance between two ROM words with computations that detect faults. It is 2 if every second word has some, and 0
-    /// if the bench has no computations for ROM words.
+    /// The distance between two ROM words with computations that detect faults. The distance is 2 if every second word has
+    /// some, and 0 if the bench has no computations for ROM words.
     pub word_stride: usize,
 }

@@ -27,7 +27,7 @@ pub type PartsResult = Result<Arc<dyn DeviceParts>, ConfigError>;
 /// outside Glint.
 #[derive(Clone, Copy)]
 pub struct Device {
-    /// The value of the key `device`. It must equal [`Schema::device`].
+    /// The value of the key `device`. The value must equal [`Schema::device`].
     pub name: &'static str,
     /// A description of one line, which `glint list` prints.
     pub summary: &'static str,
@@ -44,7 +44,7 @@ pub struct Device {
 }
 
 impl Device {
-    /// The module name is [`Schema::module`].
+    /// Returns the default configuration. The module name is [`Schema::module`].
     pub fn defaults(&self) -> Config {
         let schema = (self.schema)();
         Config::defaults(&schema, &schema.module())
@@ -154,10 +154,10 @@ impl Registry {
         self.0.iter().find(|device| device.name == name)
     }
 
-    /// Also returns the location of each key in the file, for errors that are found later.
+    /// Reads and opens a configuration file. Also returns the location of each key, for errors that are found later.
     ///
     /// # Errors
-    /// Fails as [`config::read`] does, or if the device cannot have the configuration ([`Device::open`]).
+    /// Fails if the file cannot be read or is not valid, or if the device cannot have the configuration ([`Device::open`]).
     pub fn read(&self, path: &Path) -> Result<(OpenedConfig, ConfigSource), Problems> {
         self.opened(config::read_located(path, &self.schemas())?)
     }
@@ -165,7 +165,7 @@ impl Registry {
     /// Does the same as [`Registry::read`] with the text of a configuration file, whose name in messages is `file_name`.
     ///
     /// # Errors
-    /// Fails as [`config::parse`] does, or if the device cannot have the configuration ([`Device::open`]).
+    /// Fails if the text is not valid, or if the device cannot have the configuration ([`Device::open`]).
     pub fn parse(
         &self,
         file_name: &str,

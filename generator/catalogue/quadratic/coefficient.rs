@@ -44,7 +44,7 @@ fn touching(n: f64, x: f64) -> f64 {
 
 /// Returns the error of the parabola with the coefficient `a` at its zero, which is the value of cⁿ there. This is the largest
 /// error below cⁿ, and for the coefficients of [`taylor`] and [`minimax`] the largest error of all. For n ≤ 2 these coefficients
-/// make no error, and for a ≤ 1 the zero is not within 0 < c < 1. Both give 0.
+/// make no error, and for a ≤ 1 the zero is not within 0 < c < 1. Both cases give 0.
 pub fn error(a: f64, n: u32) -> f64 {
     if n <= 2 || a <= 1.0 { 0.0 } else { libm::exp(f64::from(n) * libm::log1p(-1.0 / a)) }
 }

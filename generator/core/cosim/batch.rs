@@ -1,4 +1,4 @@
-//! Defines the interface of the engines that compute many points (sets of operands) at once.
+//! Defines the interface of the engines that compute many points at once.
 //!
 //! There are three engines: the golden model ([`Golden`]), the built-in simulator ([`RustHdl`]), and the emitted Verilog under
 //! an outside simulator. For a core without mistakes all three return the same results, so a caller such as `glint render` may
@@ -30,7 +30,7 @@ pub struct Points {
 }
 
 impl Points {
-    /// Each point must have `operands` operands, in the order of the [`Contract`].
+    /// Makes an empty list. Each point that is added must have `operands` operands, in the order of the [`Contract`].
     pub fn new(operands: usize) -> Self {
         Self { operands, values: Vec::new(), results: vec![0] }
     }
@@ -69,8 +69,7 @@ impl Points {
         &self.values[at * self.operands..(at + 1) * self.operands]
     }
 
-    /// Returns the index of the first result of computation `at` in a list of the results of all computations. For example, if
-    /// computation 0 gives 3 results, computation 1 begins at index 3.
+    /// Returns the index of the first result of computation `at` in a list of the results of all computations.
     pub fn results_before(&self, at: usize) -> usize {
         self.results[at]
     }
@@ -80,7 +79,7 @@ impl Points {
     }
 }
 
-/// Computes the results of many points (sets of operands).
+/// Computes the results of many points.
 pub trait Engine {
     /// Returns the raw outputs of all computations, one after another. Each result has one value for each output, in the order
     /// of the [`Contract`]. A computation with several results has them in the order of their index.
@@ -91,7 +90,7 @@ pub trait Engine {
     /// fails if a computation has more or fewer operands than the contract.
     ///
     /// # Panics
-    /// The other engines panic if a computation lacks an operand of the design.
+    /// Engines other than [`Golden`] panic if a computation lacks an operand of the design.
     fn compute(&mut self, points: &Points) -> Result<Vec<i64>>;
 }
 

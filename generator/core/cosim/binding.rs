@@ -1,8 +1,7 @@
 //! Finds, for each signal of a golden model, the port or the register of the design with the same name.
 //!
-//! Co-simulation compares the predictions of the model with the simulated design by this binding, which fails if a signal has
-//! no partner. A pipeline has checkpoints in place of registers. For example, the model's signal `busy` is bound to the port
-//! `busy` of the design.
+//! By this binding, co-simulation compares the model's predictions with the simulated design. A pipeline has checkpoints in
+//! place of registers.
 
 use std::sync::Arc;
 
@@ -17,7 +16,7 @@ use super::sequential::{SequentialModel, registers};
 use glint_golden::{Contract, Model};
 use glint_rtl::netlist::{Design, NetId};
 
-/// The model that predicts the signals of a device: for a core with a microprogram, or for a pipeline.
+/// The model that predicts the signals of a device: for a sequential core, or for a pipeline.
 #[derive(Clone)]
 pub(super) enum Host {
     Core(SequentialModel),
@@ -43,8 +42,8 @@ pub(super) struct Binding<'a> {
 }
 
 impl<'a> Binding<'a> {
-    /// Fails if the model predicts a signal that the design does not have, or if the design has an architectural register or an
-    /// output that the model does not predict. Fails also if design and contract do not have the same operands and outputs.
+    /// Fails if model and design do not have the same signals, or if design and contract do not have the same operands and
+    /// outputs.
     pub(super) fn new(
         design: &'a Design,
         model: Box<dyn Model>,
@@ -82,8 +81,8 @@ impl<'a> Binding<'a> {
         self.address.is_none()
     }
 
-    /// Fixes operands at the given raw values. Combinations then cover only the other operands. Random inputs seldom have
-    /// other values for a fixed operand.
+    /// Fixes operands at the raw values in `held`. Combinations never have another value for a fixed operand, and random inputs
+    /// seldom.
     pub(super) fn holding(mut self, held: &[(String, i64)]) -> Self {
         for (name, raw) in held {
             self.points.hold(name, *raw);
@@ -92,7 +91,7 @@ impl<'a> Binding<'a> {
         self
     }
 
-    /// Limits the lines that are drawn at random to at most `results` results. A device without lines does not change.
+    /// Limits random lines to at most `results` results. Changes nothing for a device without lines.
     pub(super) fn shorten(&mut self, results: i64) {
         self.points.shorten(results - 1);
     }

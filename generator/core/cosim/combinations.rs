@@ -1,10 +1,9 @@
 //! Drives a device with every combination of the bit patterns of its operands, one computation after another. A caller may also
 //! give a list of operands for the first computations.
 //!
-//! A combination is a number: the bits of all operands side by side, without operands that the caller fixed at a value. For
-//! example, two operands of 8 bits have 2^16 combinations. The combinations are shuffled: computation number p has the
-//! combination p·k mod 2^bits, for an odd constant k. Consecutive computations thus have little in common, and a register that
-//! failed to load seldom contains the right value by chance.
+//! A combination is a number: the bits of all operands side by side, without operands that the caller fixed at a value. The
+//! combinations are shuffled: computation number p has the combination p·k mod 2^bits, for an odd constant k. Consecutive
+//! computations thus have little in common, and a register that failed to load seldom contains the right value by chance.
 
 use std::sync::Arc;
 
@@ -29,13 +28,13 @@ impl Space {
         Self { held: vec![None; ports.operands.len()], listed: Vec::new(), ports: ports.clone() }
     }
 
-    /// Makes the space of all combinations, but gives place i the raw operands `list[i]` as long as the list reaches.
+    /// Makes the space of all combinations, but the first places have the raw operands in `list`.
     pub(super) fn listed(ports: &Arc<Ports>, list: &[Vec<i64>]) -> Self {
         Self { listed: list.to_vec(), ..Self::new(ports) }
     }
 
-    /// Fixes operands at raw values, so that the combinations cover only the other operands. A name that no operand has is
-    /// ignored.
+    /// Fixes operands at raw values, so that the combinations vary only the operands that `held` does not name. Ignores a name
+    /// that no operand has.
     pub(super) fn hold(&mut self, held: &[(String, i64)]) {
         for (name, raw) in held {
             let operands = self.ports.operands.iter().zip(&mut self.held);

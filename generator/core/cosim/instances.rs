@@ -1,6 +1,5 @@
-//! Runs instances of one design side by side in the lanes of one simulator, which is faster than one simulator for each instance.
-//!
-//! The caller gives each instance the operands of a computation, and reads its results from the same lane.
+//! Runs instances of one design side by side in the lanes of one simulator, which is faster than one simulator for each
+//! instance.
 
 use anyhow::{Context, Result, ensure};
 
@@ -27,10 +26,11 @@ impl<const LANES: usize> Instances<LANES> {
         Ok(Self { simulator, ports })
     }
 
-    /// Writes words into the writable table, the same in all lanes. No instance may compute.
+    /// Writes the same words into the writable table of every lane. No instance may compute.
     ///
     /// # Errors
-    /// Fails as [`RustHdl::load_table`](super::batch::RustHdl::load_table) does.
+    /// Fails if the design has no writable table, if a word has another number of parts, or if the core is not ready to load a
+    /// word.
     pub(super) fn load_table(&mut self, design: &Design, words: &[Vec<i64>]) -> Result<()> {
         let input = |role: Role| design.inputs().position(|port| port.role == role);
         let lacks = || format!("`{}` has no table that can be written", design.name);

@@ -1,11 +1,8 @@
 //! Simulates a design and its golden model side by side, and compares every predicted signal at every clock.
 //!
-//! A run compares a given number of results of the device. The run is divided into *streams*. Each stream starts at power-up,
-//! and has its own seed for random inputs and its share of the results. The number of streams, their seeds and their shares
-//! depend only on the design, the seed of the run and the number of results.
-//!
-//! Up to [`LANES`] streams share a simulator, and each thread works on other simulators. The outcome joins the streams in
-//! order, up to the first stream in which model and hardware differ. The number of threads therefore does not change it.
+//! A run is divided into *streams*, each with its own seed for random inputs and its share of the compared results. Each stream
+//! starts at power-up. The division depends on the design, the seed of the run and the number of results, but not on the number
+//! of threads. The outcome joins the streams in order, up to the first stream in which model and hardware differ.
 
 use std::io::Write;
 use std::sync::Arc;
@@ -29,7 +26,7 @@ pub(super) const LANES: usize = 32;
 /// The number of streams of a run of middle length, enough for two threads. A longer run has a multiple of this number.
 const STREAMS: u64 = 2 * LANES as u64;
 
-/// The smallest number of results in a stream of a core with a microprogram.
+/// The smallest number of results in a stream of a sequential core.
 const FEWEST_POINTS: u64 = 64;
 
 /// The smallest length of a stream, in computations with the largest number of results. For example, a stream has at least 2000
@@ -60,8 +57,8 @@ impl<'a> Lockstep<'a> {
     /// inputs of all runs.
     ///
     /// # Errors
-    /// Fails if the model predicts a signal that the design does not have, or if the design has an architectural register or an
-    /// output that the model does not predict. Fails also if design and contract do not have the same operands and outputs.
+    /// Fails if model and design do not have the same signals, or if design and contract do not have the same operands and
+    /// outputs.
     pub fn new(
         design: &'a Design,
         model: Box<dyn Model>,
@@ -140,7 +137,7 @@ impl<'a> Lockstep<'a> {
     /// Does the same as [`Lockstep::run`] in one stream, from a single power-up.
     ///
     /// # Errors
-    /// Fails as [`Lockstep::run`] does.
+    /// Fails if the design cannot be simulated.
     pub fn run_alone(&self, points: u64) -> Result<Outcome> {
         let mut alone = self.alone(points)?;
         alone.go_on(u64::MAX)?;
@@ -152,7 +149,7 @@ impl<'a> Lockstep<'a> {
     /// far, and the simulator. Returns the observers in the order of the streams.
     ///
     /// # Errors
-    /// Fails as [`Lockstep::run`] does. A difference between model and hardware is not reported.
+    /// Fails if the design cannot be simulated. A difference between model and hardware is not reported.
     pub fn watch<W: Send>(
         &self,
         points: u64,
@@ -181,7 +178,7 @@ impl<'a> Lockstep<'a> {
     /// `Contract::operands`.
     ///
     /// # Errors
-    /// Fails if golden model and simulation differ, or as [`Lockstep::run`] does.
+    /// Fails if golden model and simulation differ, or if the design cannot be simulated.
     pub fn record(&self, points: u64, computations: &[Vec<i64>]) -> Result<Vectors> {
         let mut alone = self.alone(points)?;
         let mut vectors = Vectors::default();
@@ -227,7 +224,7 @@ impl<'a> Lockstep<'a> {
     /// recording. Results are not compared with the formula.
     ///
     /// # Errors
-    /// Fails as [`Lockstep::run`] does. Fails also if a stream has no clock, or if a clock has more or fewer inputs than the
+    /// Fails if the design cannot be simulated, if a stream has no clock, or if a clock has more or fewer inputs than the
     /// design.
     pub fn replay(&self, streams: &[Vec<Vec<u64>>], clocks: u64) -> Result<Outcome> {
         let inputs = self.binding.ports.inputs;
@@ -254,7 +251,7 @@ impl<'a> Lockstep<'a> {
     /// Does the same as [`Lockstep::run`] in one stream, and writes its waveform (VCD) to `file`, from clock `from` on.
     ///
     /// # Errors
-    /// Fails as [`Lockstep::run`] does, or if the file cannot be written.
+    /// Fails if the design cannot be simulated, or if the file cannot be written.
     pub fn trace(
         &self,
         points: u64,
@@ -270,7 +267,7 @@ impl<'a> Lockstep<'a> {
         Runner::new(&self.binding, [self.course(points, 1, 0)])
     }
 
-    /// The course has the stream's seed and its share of the results.
+    /// Returns the random inputs of stream `number`: its seed and its share of the `points` results.
     fn course(&self, points: u64, streams: u64, number: u64) -> Course {
         Course::Random {
             seed: stream_seed(self.seed, number),
@@ -282,8 +279,7 @@ impl<'a> Lockstep<'a> {
         Outcome::of(self.binding.registers, self.binding.outputs.len(), streams)
     }
 
-    /// Returns the number of streams of a run. For example, the default test of 100 000 results has 64 streams for `rough`,
-    /// and 49 for `rough_pipelined`.
+    /// Returns the number of streams of a run of `points` results.
     fn streams(&self, points: u64) -> u64 {
         if self.binding.is_pipeline() {
             let streams = points.div_ceil(PIPELINE_POINTS);

@@ -1,4 +1,4 @@
-//! Drives the inputs of a pipeline with random points (sets of operands) and a random valid/ready handshake, clock by clock.
+//! Drives the inputs of a pipeline with random points and a random valid/ready handshake, clock by clock.
 //!
 //! [`Offers`] raises `in_valid` with the operands of a point, keeps both until the pipeline takes the point, and pauses at
 //! random between points. Now and then it withdraws a point, lowers `out_ready`, so that results must wait, or applies a
@@ -37,7 +37,7 @@ pub(super) struct Offers {
 }
 
 impl Offers {
-    /// The first two clocks are the reset after power-up.
+    /// Begins with two clocks of reset after power-up.
     pub(super) fn new(ports: &Arc<Ports>, seed: u64) -> Self {
         Self {
             random: Random::new(seed),
@@ -51,7 +51,7 @@ impl Offers {
         }
     }
 
-    /// Offers only the given points from now on, as raw operands in the order of `Contract::operands`. A point that is already
+    /// Offers only the given points from now on: raw operands in the order of `Contract::operands`. A point that is already
     /// offered stays first.
     pub(super) fn follow(&mut self, points: &[Vec<i64>]) {
         self.listed = Some(points.iter().cloned().collect());

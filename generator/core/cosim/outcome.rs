@@ -137,7 +137,7 @@ pub(super) struct StreamRecord {
     pub(super) exact: Vec<[f64; 2]>,
 }
 
-/// Stream 0 has the seed of the run.
+/// Returns the seed of stream `number` of a run with the seed `seed`. Stream 0 has the seed of the run.
 pub(super) fn stream_seed(seed: u64, number: u64) -> u64 {
     if number == 0 {
         seed
@@ -147,7 +147,7 @@ pub(super) fn stream_seed(seed: u64, number: u64) -> u64 {
     }
 }
 
-/// Returns the number of points of stream `number`. For example, 10 points in 4 streams are 3, 3, 2 and 2.
+/// Returns the number of points of stream `number`: 10 points in 4 streams are 3, 3, 2 and 2.
 pub(super) fn share(points: u64, streams: u64, number: u64) -> u64 {
     points / streams + u64::from(number < points % streams)
 }

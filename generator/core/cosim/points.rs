@@ -1,7 +1,7 @@
 //! Draws the operands of computations at random, and prefers operands at which an error would show.
 //!
-//! A highlight device multiplies colours by a reflectance `f`, from 0 to 1. Often `f` is 0 in most of the domain, so evenly
-//! drawn operands test little. Three of four points (sets of operands) are therefore drawn by the value of the formula for `f`:
+//! For a highlight, `f` is often 0 in most of the domain, so evenly drawn operands test little. Three of four points are
+//! therefore drawn by the value of the formula for `f`:
 //!
 //! 1. [`PointSource`] draws operands in the domain, and a target value for `f`. Half of the targets are drawn evenly, and half
 //!    with an evenly drawn logarithm.
@@ -27,11 +27,11 @@ use super::random::Random;
 /// evenly. For a highlight, the other kinds are drawn by the value of the formula.
 const KINDS: i64 = 16;
 
-/// If the device is no highlight, kinds above this take the operands that [`Contract::hint`] suggests.
+/// If the device is no highlight, kinds above `HINTED` take the operands that [`Contract::hint`] suggests.
 const HINTED: i64 = 7;
 
-/// A line that is not drawn by the value of the formula has a length operand at most `SHORT` above its lowest value, except for
-/// one line in `LONG`. With many long lines, few other points would be tested.
+/// The length operand of a line that is not drawn by the value of the formula is at most `SHORT` above its lowest value. One
+/// such line in `LONG` may be longer. With many long lines, few points of other kinds would be tested.
 const SHORT: i64 = 12;
 const LONG: u64 = 64;
 
@@ -39,7 +39,7 @@ const LONG: u64 = 64;
 const HALVINGS: u32 = 10;
 const _: () = assert!(HALVINGS.is_multiple_of(2), "they come in pairs");
 
-/// The parts of an octave that the halvings can distinguish, and two to the power of minus each part.
+/// The number of parts of an octave that the halvings can distinguish, and 2 to the power of −part/`PARTS` for each part.
 const PARTS: usize = 1 << HALVINGS;
 static POWERS: LazyLock<[f64; PARTS]> =
     LazyLock::new(|| std::array::from_fn(|part| libm::exp2(-(part as f64) / PARTS as f64)));
@@ -51,8 +51,7 @@ const MIDDLE: f64 = 0.6;
 /// peak.
 const OCTAVES: u32 = 32;
 
-/// The number of random values of the other operands with which the peak is searched, and the largest number of operands that
-/// are moved.
+/// The number of random values of the other operands with which the peak is searched.
 const SETTINGS: u32 = 8;
 const MOVED: usize = 6;
 
@@ -64,7 +63,7 @@ pub struct PointSource<'a> {
     operands: Vec<Operand>,
     /// The number of control operands, which determine `f` and come first.
     control: usize,
-    /// The index of the operand that gives the number of results of a computation, if a computation can have several.
+    /// The index of the length operand, if the device computes lines.
     length: Option<usize>,
     /// For each control operand, its value at the largest `f`, or `None` if the operand need not move. Used if the contract
     /// does not state the peak.
@@ -86,7 +85,7 @@ impl<'a> PointSource<'a> {
         points
     }
 
-    /// Restricts the operand `name` to one raw value. A point of arbitrary bit patterns may still have another.
+    /// Restricts the operand `name` to the value `raw`. A point of arbitrary bit patterns may still have another value.
     pub fn hold(&mut self, name: &str, raw: i64) {
         let held = self.operands.iter_mut().filter(|operand| operand.name == name);
         held.for_each(|operand| operand.domain = (raw, raw));
@@ -112,8 +111,8 @@ impl<'a> PointSource<'a> {
         &self.operands
     }
 
-    /// Draws new raw values for the operands whose bit is set in `free`; bit i belongs to operand i. Other operands may change
-    /// too, because the search toward the largest `f` can move them.
+    /// Draws new raw values for the operands whose bit is set in `free`; bit i belongs to operand i. The search toward the
+    /// largest `f` can move other operands as well.
     pub fn draw(&self, random: &mut Random, values: &mut [i64], free: u64) {
         let kind = random.within(0, KINDS - 1);
         self.draw_kind(random, values, free, kind);
@@ -183,8 +182,8 @@ impl<'a> PointSource<'a> {
         low.wrapping_add(lengths[0].min(lengths[1]) as i64)
     }
 
-    /// Returns a random raw value for operand number `at`: half of the values are arbitrary bit patterns, the others come from
-    /// [`PointSource::one`]. For a device that is no highlight, a quarter of the values are drawn outside the domain instead,
+    /// Returns a random raw value for operand number `at`. Half of the values are arbitrary bit patterns, and the rest come
+    /// from [`PointSource::one`]. For a device that is no highlight, a quarter of the values are instead outside the domain,
     /// mostly just outside, where a core may saturate.
     pub fn any(&self, random: &mut Random, at: usize) -> i64 {
         let Operand { format, domain: (low, high), .. } = self.operands[at];
@@ -283,7 +282,7 @@ impl<'a> PointSource<'a> {
     }
 
     /// Returns the straight line from the peak to the control operands `far`. If the formula is as large at `far` as at the
-    /// peak, the line ends nearer, where the formula is smaller. Returns `None` if no such end is found.
+    /// peak, the line ends at nearer operands, where the formula is smaller. Returns `None` if no such end is found.
     fn way(&self, far: &[i64]) -> Option<Way> {
         let highlight = self.highlight?;
         let peak = self.peak(highlight, far);
@@ -372,7 +371,7 @@ struct Way {
 }
 
 impl Way {
-    /// Scale 0 is the peak, and 1 is the far end.
+    /// Sets `operands` to the operands at `scale`: the peak at 0, the far end at 1.
     #[inline]
     fn go(&self, scale: f64, operands: &mut [i64]) {
         let ends = self.peak.iter().zip(&self.far);
@@ -381,8 +380,8 @@ impl Way {
         }
     }
 
-    /// Returns the two scales between which the formula crosses `target`: it is not below `target` at the first scale, and
-    /// below at the second. If `exact` is true, both lie at neighbouring operands. `at` is overwritten.
+    /// Returns two scales between which the formula crosses `target`: it is not below `target` at the first scale, and below at
+    /// the second. If `exact` is true, the scales give neighbouring operands. `at` is overwritten.
     fn crossing(
         &self,
         highlight: &Highlight,
@@ -427,7 +426,7 @@ fn power(parts: usize) -> f64 {
     POWERS[parts % PARTS] * exp2(-((parts / PARTS) as i32))
 }
 
-/// Takes the first result of a computation.
+/// Returns the formula's value for the first result of a computation.
 #[inline]
 fn value(highlight: &Highlight, control: &[i64]) -> f64 {
     highlight.reference(&highlight.point(control, 0))
@@ -522,7 +521,7 @@ pub(super) mod tests {
         }
     }
 
-    /// Compares with a search by single halvings. A halving evaluates the formula in the middle.
+    /// Compares `crossing` with a search that evaluates the formula in the middle, one halving at a time.
     #[test]
     fn a_crossing_is_where_single_halvings_lead() {
         let pulse = Pulse::pair(true);

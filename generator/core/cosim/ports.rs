@@ -56,7 +56,7 @@ impl OperandPort {
 
 impl Ports {
     /// Fails if the design lacks a port of the handshake or an output of the contract, or if the strobe of an operand is not an
-    /// input. Fails also if design and contract do not have the same operands.
+    /// input. Also fails if design and contract have different operands.
     pub(super) fn new(design: &Design, contract: &dyn Contract) -> Result<Self> {
         let pipelined = design.pipeline.is_some();
         let find = |role: Role| design.port(|other| other == role).map(|port| port.net);

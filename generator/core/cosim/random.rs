@@ -46,7 +46,7 @@ impl Random {
         bits
     }
 
-    /// Returns the bits of the number that comes `draws` draws from here.
+    /// Returns the bits of the number that the `draws`-th draw from here on will give.
     #[inline]
     fn ahead(&self, draws: u64) -> u64 {
         let mut z = self.0.wrapping_add(STEP.wrapping_mul(draws));

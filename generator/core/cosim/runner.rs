@@ -15,7 +15,7 @@ use glint_rtl::sim::Simulator;
 /// inputs of one stream then stay in the processor's cache, together with the inputs and predictions of these clocks.
 const AHEAD: usize = 4;
 
-/// Runs at most as many streams as there are lanes.
+/// Runs at most `LANES` streams.
 ///
 /// The random inputs of a stream react to the `busy` that its model predicts. The simulated `busy` is the same, unless model
 /// and hardware differ. If a stream whose clocks were computed ahead differs, it runs once more, alone, to find the first
@@ -73,7 +73,7 @@ impl<'a, const LANES: usize> Runner<'a, LANES> {
         })
     }
 
-    /// Returns whether all streams have ended, or all up to the first that differs.
+    /// Returns whether all streams have ended, or all streams up to the first stream that differs.
     pub(super) fn ended(&self) -> bool {
         for (stream, differs) in self.streams.iter().zip(self.differ) {
             if differs || !stream.ended() || stream.seen.mismatch.is_some() {
@@ -92,8 +92,7 @@ impl<'a, const LANES: usize> Runner<'a, LANES> {
         &mut self.streams[0]
     }
 
-    /// Runs the next clock, or the next few, of all streams that have not ended. Returns the number of results in these
-    /// clocks.
+    /// Runs the next one or [`AHEAD`] clocks of all streams that have not ended. Returns the number of results in these clocks.
     pub(super) fn run(&mut self) -> Result<u64> {
         let before = self.points();
         self.prepare()?;
@@ -163,7 +162,7 @@ impl<'a, const LANES: usize> Runner<'a, LANES> {
         Ok(())
     }
 
-    /// Returns the records of the streams, up to and including the first that differs.
+    /// Returns the records of the streams, up to and including the first stream that differs.
     pub(super) fn into_seen(self) -> Result<Vec<StreamRecord>> {
         let mut all = Vec::new();
         for (stream, differs) in self.streams.into_iter().zip(self.differ) {

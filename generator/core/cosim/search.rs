@@ -1,10 +1,10 @@
-//! Searches for the operands with the largest output error by hill climbing.
+//! Searches for the operands with the largest output error by hill climbing, because at random points the roundings rarely all
+//! err in the same direction.
 //!
-//! At a random point (one set of operands), the roundings rarely all err in the same direction. The search starts from random
-//! points and changes one operand, or a pair of operands with fraction bits, by powers of two while the error grows. For a
-//! highlight, the search first climbs the error of `f`, and then the error of an output, with the worst colour. Around the points
-//! with the largest errors, the search tries all nearby values of each pair of operands, since rounding makes the last steps too
-//! irregular to climb. The largest error that the search finds is a lower bound of the true maximum, not a proof.
+//! The search starts from random points and changes one operand, or a pair of operands with fraction bits, by powers of two
+//! while the error grows. For a highlight, the search first climbs the error of `f`, and then the error of an output, with the
+//! worst colour. Near the largest errors, rounding makes the steps too irregular to climb, so the search tries all nearby
+//! values of each pair of operands. The largest error that the search finds is a lower bound of the true maximum, not a proof.
 
 use rayon::prelude::*;
 
@@ -17,7 +17,7 @@ use glint_golden::{Contract, Highlight, nearer};
 /// The largest distance from the largest colour at which a colour is tried.
 const MOST_COLOURS: i64 = 256;
 
-/// Operands are moved by powers of two below 2 to this power.
+/// Operands are moved by powers of two below 2^`MOST_BITS`.
 const MOST_BITS: u32 = 24;
 
 /// The number of points with the largest errors around which the search tries all neighbours, and about the number of
@@ -26,7 +26,7 @@ const HIGHEST: usize = 16;
 const AROUND: u64 = 1 << 18;
 
 /// The number of combinations that are tried around a point of a device without a highlight, for all pairs of operands
-/// together. Each of them takes a run of the model, clock by clock.
+/// together. Each combination takes a run of the model, clock by clock.
 const MOST_AROUND: u64 = 1 << 16;
 
 /// After this number of starts only the points with the largest errors are kept, so that memory does not grow.
@@ -84,9 +84,9 @@ pub fn steps(starts: u64) -> u64 {
     starts.saturating_add(starts.min(HIGHEST as u64))
 }
 
-/// Searches from `starts` random points, and then around the largest errors that these reach. Returns `None` if `starts` is 0,
+/// Searches from `starts` random points, and then around the points with the largest errors. Returns `None` if `starts` is 0,
 /// or if the contract has no output. The result depends on `seed` but not on the number of threads. The function calls
-/// `progress` after each start and after each of the later searches.
+/// `progress` after each start and each later search.
 pub fn worst(
     contract: &dyn Contract,
     starts: u64,
@@ -169,7 +169,7 @@ impl<'a> Climber<'a> {
         }
     }
 
-    /// Multiplies the errors by the weights of the outputs.
+    /// Returns the largest error of an output, multiplied by the weight of the output.
     fn largest_error(&self, operands: &[i64]) -> f64 {
         let errors = self.contract.errors(operands);
         errors.iter().zip(&self.weights).map(|(error, weight)| error * weight).fold(0.0, f64::max)

@@ -1,4 +1,4 @@
-//! Predicts the signals of a core with a microprogram at every clock, with the core's golden model.
+//! Predicts the signals of a sequential core at every clock, with the core's golden model.
 
 use std::mem;
 
@@ -10,7 +10,7 @@ use super::ports::Ports;
 use glint_golden::Model;
 use glint_rtl::netlist::{Design, NetId, RegisterKind};
 
-/// The golden model of a core with a microprogram, which gets the same inputs as the core.
+/// The golden model of a sequential core, which gets the same inputs as the core.
 #[derive(Clone)]
 pub(super) struct SequentialModel {
     model: Box<dyn Model>,
@@ -32,7 +32,8 @@ pub(super) struct SequentialModel {
 }
 
 impl SequentialModel {
-    /// Also returns the nets that the model predicts, in the order of the predictions.
+    /// Matches the model's inputs and signals with the design's nets by name. Also returns the predicted nets, in the order of
+    /// the predictions.
     ///
     /// # Errors
     /// Fails if the model has an input or a signal that the design does not have, or if it does not predict an output or an
@@ -99,8 +100,8 @@ impl SequentialModel {
         self.model.values()
     }
 
-    /// Counts a result in `seen`, if the model predicts a result in this clock, and measures its error. `accepted` has the raw
-    /// operands of the computation that started last; without them no error is measured.
+    /// Counts a result in `seen`, if the model predicts a result in this clock, and measures the result's error. `accepted` has
+    /// the raw operands of the computation that started last; without them no error is measured.
     #[inline]
     pub(super) fn note(
         &mut self,

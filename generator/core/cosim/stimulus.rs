@@ -1,12 +1,8 @@
-//! Draws random inputs for a core with a microprogram, clock by clock.
+//! Draws random inputs for a sequential core, clock by clock.
 //!
 //! Computations follow each other with idle gaps or back to back. Operands are written one after another, all at once or
 //! together with `start`, or they stay from the previous computation. Writes, starts and resets also come while the core is
 //! busy. The stimulus reacts to `busy`, as a host does, and the same seed gives the same inputs.
-//!
-//! At the start of a computation, the stimulus draws whether and after how many clocks it is reset. Short and long delays are
-//! equally likely on a logarithmic scale. Resets therefore often hit a computation of ten clocks, and most computations of
-//! thousands of clocks still finish.
 
 use std::sync::Arc;
 
@@ -15,13 +11,14 @@ use super::ports::Ports;
 use super::random::Random;
 use glint_base::fixed::mask;
 
-/// The delay from `start` to a reset is drawn below 2^m clocks, with m equally likely from 0 to 12. The largest delay, 4095
-/// clocks, reaches the end of the longest line.
+/// The delay from `start` to a reset is drawn below 2^m clocks, with m equally likely from 0 to 12. Resets therefore often hit
+/// a computation of ten clocks, and most computations of thousands of clocks still finish. The largest delay, 4095 clocks,
+/// reaches the end of the longest line.
 const RESET_MAGNITUDES: u64 = 13;
 
 #[derive(Clone, Copy, PartialEq)]
 enum Phase {
-    /// The clocks for which `rst_n` still stays low after the clock that comes next.
+    /// A reset. The number is the clocks of reset that follow the next clock.
     Reset(u32),
     /// Operands are being written. Bit i of the mask is 1 if operand port i must still be written.
     Writing(u64),
@@ -31,7 +28,7 @@ enum Phase {
     Running(Option<u64>),
 }
 
-/// The random inputs of a core with a microprogram. Each call of [`Stimulus::next`] gives the inputs of one clock.
+/// The random inputs of a sequential core. Each call of [`Stimulus::next`] gives the inputs of one clock.
 pub(super) struct Stimulus {
     ports: Arc<Ports>,
     random: Random,
@@ -49,7 +46,7 @@ pub(super) struct Stimulus {
 }
 
 impl Stimulus {
-    /// The first three clocks are the reset after power-up.
+    /// Begins with three clocks of reset after power-up.
     pub(super) fn new(ports: &Arc<Ports>, seed: u64) -> Self {
         let nothing = vec![0; ports.operands.len()];
         Self {
@@ -65,7 +62,7 @@ impl Stimulus {
         }
     }
 
-    /// Returns raw operands in the order of `Contract::operands`.
+    /// Returns the raw operands of the computation that the latest `start` began, in the order of `Contract::operands`.
     pub(super) fn accepted(&self) -> &[i64] {
         self.taken.as_ref().unwrap_or(&self.written)
     }
@@ -124,9 +121,9 @@ impl Stimulus {
         self.phase = Phase::Running(reset);
     }
 
-    /// Drives one clock after `start`. While the device is busy, this clock may have the reset, or random writes and starts.
-    /// The device must ignore them, except that operand buffers take the writes. Once the device is free, the next point
-    /// begins in the same clock.
+    /// Drives one clock after `start`. While the device is busy, this clock may have a reset, or random writes and starts. The
+    /// device must ignore such writes and starts, except that operand buffers take the writes. Once the device is free, the
+    /// next point begins in the same clock.
     fn run(&mut self, busy: bool, reset: Option<u64>, points: &PointSource) {
         if busy {
             if self.random.once_in(6) {
@@ -214,8 +211,7 @@ impl Stimulus {
         }
     }
 
-    /// Drives random strobes and data. A busy device must ignore them, unless it has operand buffers, and so must a device in
-    /// reset.
+    /// Drives random strobes and data. A device in reset, and a busy device without operand buffers, must ignore them.
     fn noise(&mut self, busy: bool, points: &PointSource) {
         self.idle = false;
         let random = &mut self.random;

@@ -1,6 +1,6 @@
 //! Makes the inputs of one simulated instance, clock by clock from power-up on, and predicts its signals with the golden model.
 //!
-//! The inputs are random, or go through combinations of operands, or come from a recording. The module does not simulate. Its
+//! The inputs are random, or go through combinations of operands, or come from a recording. The module does not simulate. The
 //! caller gives the inputs to the simulator, and then calls `compare`, which records the first signal that differs from the
 //! prediction.
 
@@ -104,7 +104,7 @@ impl Stream {
     }
 
     /// Continues the stream, from the present state of the device, with the given computations: raw operands in the order of
-    /// the contract.
+    /// `Contract::operands`.
     pub(super) fn follow(&mut self, binding: &Binding, computations: &[Vec<i64>]) {
         let count = computations.len() as u64;
         self.course = Course::Combinations { first: 0, count };

@@ -1,5 +1,5 @@
-//! Simulates a few points (sets of operands) in a pipeline, and records the values of chosen nets at every clock, for example for
-//! a timing diagram.
+//! Simulates a few points in a pipeline, and records chosen nets at every clock, for example for a timing
+//! diagram.
 
 use anyhow::{Result, bail};
 

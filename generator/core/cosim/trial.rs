@@ -1,7 +1,7 @@
 //! Runs single computations of a design in the built-in simulator, and records facts for manifests and pages.
 //!
-//! The runs give the clocks between `start`, `valid` and `done`, a worked example, and a recording of chosen nets. They also
-//! give a list of computations by which users can check the device without a model.
+//! The runs give the clocks between `start`, `valid` and `done`, a worked example, and a recording of chosen nets. The runs
+//! also give a list of computations by which users can check the device without a model.
 
 use anyhow::{Context, Result, ensure};
 
@@ -15,7 +15,7 @@ use glint_golden::{Contract, Highlight, Operand};
 use glint_rtl::netlist::{self, Design, HandshakeTiming, NetId};
 use glint_rtl::sim::Simulator;
 
-/// The number of clocks after which a computation counts as a computation that never ends.
+/// A computation that takes more clocks counts as endless.
 const LIMIT: u32 = 1 << 16;
 
 /// The number of sample computations in [`computations`]. The first of them are corners of the domain.
@@ -103,11 +103,11 @@ fn corners(contract: &dyn Contract, ends: fn(&Operand) -> (i128, i128)) -> [Vec<
 }
 
 /// Returns 40 computations with their results and clocks, by which users check the device without a golden model. In the first
-/// three, all operands are at the lowest, the highest or the middle value of their domains; the others are random points of
-/// the domain. A line has a length operand of at most 9.
+/// three, all operands are at the lowest, the highest or the middle value of their domains; the rest are random points of the
+/// domain. A line has a length operand of at most 9.
 ///
 /// # Errors
-/// Fails as [`timing`] does, or if the contract's results and the simulated results differ.
+/// Fails if a computation does not end, or if the contract's results and the simulated results differ.
 pub fn computations(design: &Design, contract: &dyn Contract) -> Result<Vec<Computation>> {
     let mut random = Random::new(1);
     let mut points = PointSource::new(contract);
@@ -156,7 +156,7 @@ fn listed<'a>(names: impl Iterator<Item = &'a str>, raw: &[i64]) -> String {
 /// the given raw operands.
 ///
 /// # Errors
-/// Fails as [`timing`] does.
+/// Fails if the computation does not end.
 pub fn throughput(
     design: &Design,
     contract: &dyn Contract,
@@ -167,12 +167,11 @@ pub fn throughput(
     Ok((clocks, trial.results.len() as u32))
 }
 
-/// Measures the clock numbers of a line as linear functions of its length, from the four shortest lines and a long one. A line
-/// is the points that a device computes after one `start`. Returns `None` for a device of single points, or if the functions
-/// are not linear.
+/// Measures the clock numbers of a line as linear functions of its length, from the four shortest lines and a long one. Returns
+/// `None` for a device of single points, or if the functions are not linear.
 ///
 /// # Errors
-/// Fails as [`timing`] does.
+/// Fails if a computation does not end.
 pub fn line(design: &Design, contract: &dyn Contract) -> Result<Option<LineClocks>> {
     let mut operands = typical(contract, &[]);
     let Some(at) = length(contract) else { return Ok(None) };
@@ -198,11 +197,11 @@ pub fn line(design: &Design, contract: &dyn Contract) -> Result<Option<LineClock
     Ok(Some(LineClocks { length: name, last_valid, done, next_start }))
 }
 
-/// Simulates the computation with the operands that [`typical`] chooses; for a highlight, `f` is mostly between 0.4 and 0.8.
-/// If it has several results, `outputs` has the outputs of the first result, and `results` the outputs of all.
+/// Simulates the computation with the operands that [`typical`] chooses; for a highlight, `f` is mostly between 0.4 and 0.8. In
+/// the example, `outputs` has the outputs of the first result, and `results` the outputs of all results.
 ///
 /// # Errors
-/// Fails as [`timing`] does.
+/// Fails if the computation does not end.
 pub fn example(design: &Design, contract: &dyn Contract) -> Result<WorkedExample> {
     let operands = typical(contract, &[]);
     let trial = run(design, contract, &operands, &mut |_| Ok(()))?;
@@ -228,9 +227,9 @@ fn quantity(name: &str, format: Format, raw: i64) -> Quantity {
 }
 
 /// Returns raw operands for a worked example. An operand with a value in `given` keeps it; `given` may be shorter than the
-/// operands. For a highlight, the function lowers a control operand with fraction bits, such as a cosine or an angle. It takes
-/// the first with which `f` gets between 0.4 and 0.8. For lines, it then also lowers operands such as a step (`slow_down`).
-/// For other devices, it prefers operands from [`Contract::hint`].
+/// operands. For a highlight, the function lowers a control operand with fraction bits, such as a cosine or an angle, until `f`
+/// is between 0.4 and 0.8. For lines, the function then also lowers operands such as a step (`slow_down`). For other devices,
+/// the function prefers operands from [`Contract::hint`].
 pub fn typical(contract: &dyn Contract, given: &[Option<i64>]) -> Vec<i64> {
     let given = |at: usize| given.get(at).copied().flatten();
     let mut colour = 0;
@@ -319,12 +318,12 @@ fn hinted(contract: &dyn Contract) -> Option<Vec<i64>> {
     None
 }
 
-/// Simulates the computation of [`example`], and returns the bit patterns of `nets` in each clock, just before its rising
-/// edge. Clock 0 is the clock in which `start` is high. The last clock is the first in which the device is idle again, or the
-/// clock of a pipeline's result. All of these nets must have names.
+/// Simulates the computation of [`example`], and returns the bit patterns of `nets`, which must have names, in each clock just
+/// before its rising edge. Clock 0 is the clock in which `start` is high. The last clock is the first in which the device is
+/// idle again, or the clock of a pipeline's result.
 ///
 /// # Errors
-/// Fails as [`timing`] does.
+/// Fails if the computation does not end.
 pub fn record(design: &Design, contract: &dyn Contract, nets: &[NetId]) -> Result<Vec<Vec<u64>>> {
     let mut clocks = Vec::new();
     run(design, contract, &typical(contract, &[]), &mut |simulator| {
@@ -339,7 +338,7 @@ pub fn record(design: &Design, contract: &dyn Contract, nets: &[NetId]) -> Resul
 /// point, and the first result waits for two clocks if the pipeline has an `out_ready`.
 ///
 /// # Errors
-/// Fails as [`timing`] does.
+/// Fails if not all results appear.
 pub fn record_points(
     design: &Design,
     contract: &dyn Contract,

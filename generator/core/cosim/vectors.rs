@@ -1,8 +1,8 @@
 //! Applies the vectors of a test bench to a design in the built-in simulator, and compares only outputs, as the emitted bench
 //! does.
 //!
-//! Mutation testing does this once for each planted fault. The code is in this crate because the release profile optimises
-//! this crate for inner loops, and the crate of mutation testing not.
+//! Mutation testing does this once for each planted fault. The code is in this crate because the release profile optimises this
+//! crate for inner loops, but not the crate of mutation testing.
 
 use anyhow::Result;
 use glint_rtl::netlist::{Design, Role};

@@ -39,7 +39,8 @@ struct StepLabel {
     name: String,
 }
 
-/// Fails if the design has no inputs or no outputs, if the vectors are empty, or if they do not fit the ports.
+/// Adds the bench and its two vector files. Fails if the design has no inputs or no outputs, or if the vectors are empty or do
+/// not fit the ports.
 pub fn files(job: &EmitJob, vectors: &Vectors, files: &mut OutputFiles) -> Result<()> {
     let design = job.design;
     let inputs: Vec<_> = design.inputs().collect();

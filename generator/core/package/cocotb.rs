@@ -12,7 +12,7 @@ use super::output_files::OutputFiles;
 use super::seal::{Seal, sealed};
 use crate::observation::{ContractFacts, Quantity, WorkedExample};
 
-/// The driver's tests for a core with a microprogram. The first test needs the formula as a Python expression.
+/// The driver's tests for a sequential core. The first test needs the formula as a Python expression.
 const SEQUENTIAL: [&str; 5] = [
     "formula_holds_at_random_points",
     "computations_are_exact",
@@ -59,7 +59,7 @@ pub fn file(
     Ok(())
 }
 
-/// Returns one line for each number. A Python comment shows its value if that differs from the raw integer.
+/// Returns one line for each number, with the value in a Python comment if the value differs from the raw integer.
 fn lines(quantities: &[Quantity], code: fn(&str, i128) -> String) -> Vec<String> {
     let mut lines = Vec::new();
     for quantity in quantities {
@@ -72,7 +72,8 @@ fn lines(quantities: &[Quantity], code: fn(&str, i128) -> String) -> Vec<String>
     lines
 }
 
-/// Returns the Python driver that the cocotb benches of all configurations share. Its last line has a digest of its text.
+/// Returns the Python driver that the cocotb benches of all configurations share. The driver's last line has a digest of its
+/// text.
 pub fn driver() -> OutputFile {
     let text = fill!("glint_cocotb.py" {}).expect("a template without fields");
     let kind = FileKind::CocotbDriver;

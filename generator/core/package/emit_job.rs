@@ -28,7 +28,7 @@ impl<'a> EmitJob<'a> {
     /// Returns the job for a core, with the registers and the instructions that its configuration asks for.
     ///
     /// # Errors
-    /// Fails if the core cannot have them.
+    /// Fails if the core cannot have these registers or instructions.
     pub fn new(design: &'a Design, inputs: &'a EmitInputs, naming: &'a Naming) -> Result<Self> {
         let registers = match inputs.around.registers {
             Some(bus) => Some((bus, Map::new(design, inputs)?)),

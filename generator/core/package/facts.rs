@@ -27,7 +27,7 @@ pub struct PortFacts<'a> {
     /// The write strobe of an operand.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub strobe: Option<&'a str>,
-    /// The number of the port's block in the block diagram of the document that describes the device.
+    /// The number of the port's block in the source's block diagram.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub block: Option<u16>,
     /// A description in one line; may be empty.
@@ -47,7 +47,7 @@ pub struct FieldFacts<'a> {
     /// The names of a select field's choices, from the value 0 on.
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
     pub choices: &'a [String],
-    /// The numbers of the field's control lines in the block diagram of the document that describes the device.
+    /// The numbers of the field's control lines in the source's block diagram.
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
     pub lines: &'a [u16],
 }
@@ -111,7 +111,7 @@ pub struct RomFacts<'a> {
     words: Option<&'a [u64]>,
     /// The meaning of a word, in one or more lines.
     pub doc: &'a [String],
-    /// The number in the block diagram of the document that describes the device.
+    /// The number in the source's block diagram.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub block: Option<u16>,
 }

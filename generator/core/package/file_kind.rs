@@ -8,59 +8,61 @@ use FileKind::{
     TargetVerilog, VendorScript, Vhdl, WrapperProof, WrapperProofScript,
 };
 
-/// Lists of a core's files follow the order of the kinds here, except for the kinds that `FileKind::listed_with` moves.
+/// Lists of a core's files follow the order of the kinds here, except for the kinds that `FileKind::listed_with` moves. The
+/// file names are examples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum FileKind {
-    /// Verilog of the core, the top module first. For example, `rough.v`, `rough_control.v` and `rough_datapath.v`.
+    /// Verilog of the core, the top module first: `rough.v`, `rough_control.v` and `rough_datapath.v`.
     CoreVerilog,
-    /// Verilog of the core for one target, in place of the file of the same name for all targets. For example,
+    /// Verilog of the core for one target, in place of the file of the same name for all targets:
     /// `ecp5/blinn_pipelined_multiplier.v`.
     TargetVerilog,
-    /// Verilog that puts the core between two AXI4-Streams, the top module first. For example, `rough_axis.v`.
+    /// Verilog that puts the core between two AXI4-Streams, the top module first: `rough_axis.v`.
     StreamWrapper,
-    /// Verilog that puts the core behind registers on a bus, the top module first. For example, `rough_axil.v` and
+    /// Verilog that puts the core behind registers on a bus, the top module first: `rough_axil.v` and
     /// `rough_registers.v`.
     BusWrapper,
-    /// Verilog by which a processor calls the core. For example, `rough_cfu.v`.
+    /// Verilog by which a processor calls the core: `rough_cfu.v`.
     ProcessorWrapper,
-    /// Verilog that computes one point at a time with a pipeline, for the two wrappers above. For example, `rough_single.v`.
+    /// Verilog that computes one point at a time with a pipeline, for bus registers and processors:
+    /// `rough_single.v`.
     SingleWrapper,
-    /// Verilog that computes several points at a time with a pipeline, for bus registers. For example, `rough_queue.v`.
+    /// Verilog that computes several points at a time with a pipeline, for bus registers: `rough_queue.v`.
     QueueWrapper,
-    /// ROM contents. For example, `rough_sine.mem`.
+    /// ROM contents: `rough_sine.mem`.
     Memory,
-    /// The FuseSoC core of the device. For example, `rough.core`.
+    /// The FuseSoC core of the device: `rough.core`.
     CorePackage,
-    /// Timing constraints. For example, `rough.sdc`.
+    /// Timing constraints: `rough.sdc`.
     Constraint,
-    /// Scripts and descriptions for vendors' tools. For example, `rough_vivado.tcl`.
+    /// Scripts and descriptions for vendors' tools: `rough_vivado.tcl`.
     VendorScript,
-    /// Components and an entity for designs in VHDL. For example, `rough.vhd`.
+    /// Components and an entity for designs in VHDL: `rough.vhd`.
     Vhdl,
-    /// Formats and functions for designs in SystemVerilog. For example, `rough_pkg.sv`.
+    /// Formats and functions for designs in SystemVerilog: `rough_pkg.sv`.
     SystemVerilogPackage,
-    /// Benches in Python. The bench of the core comes first. For example, `test_rough.py`.
+    /// Benches in Python. The bench of the core comes first: `test_rough.py`.
     CocotbBench,
-    /// Properties of a wrapper in SystemVerilog. For example, `rough_axis_formal.sv`.
+    /// Properties of a wrapper in SystemVerilog: `rough_axis_formal.sv`.
     WrapperProof,
-    /// The Yosys commands that make a [`FileKind::WrapperProof`] a problem for a solver. For example, `rough_axis_formal.ys`.
+    /// The Yosys commands that make a [`FileKind::WrapperProof`] a problem for a solver: `rough_axis_formal.ys`.
     WrapperProofScript,
-    /// Properties of the core in SystemVerilog. For example, `rough_formal.sv`.
+    /// Properties of the core in SystemVerilog: `rough_formal.sv`.
     CoreProof,
-    /// The Yosys commands that make a [`FileKind::CoreProof`] a problem for a solver, and the task of SymbiYosys. For example,
+    /// The Yosys commands that make a [`FileKind::CoreProof`] a problem for a solver, and the task of SymbiYosys:
     /// `rough_formal.ys` and `rough_formal.sby`.
     CoreProofScript,
-    /// Benches in Verilog. The bench of the core comes first. For example, `rough_tb.v`.
+    /// Benches in Verilog. The bench of the core comes first: `rough_tb.v`.
     Bench,
-    /// Stimulus and expected outputs of benches in Verilog. For example, `rough_stimulus.mem` and `rough_expected.mem`.
+    /// Stimulus and expected outputs of benches in Verilog: `rough_stimulus.mem` and `rough_expected.mem`.
     BenchVectors,
-    /// The FuseSoC core of the benches. For example, `rough_tb.core`.
+    /// The FuseSoC core of the benches: `rough_tb.core`.
     BenchPackage,
-    /// The model in C, and the other files for software. For example, `rough_model.c`.
+    /// The model in C, and the other files for software: `rough_model.c`.
     Software,
-    /// The program in C that recomputes the results of every combination of operands. For example, `rough_recompute.c`.
+    /// The program in C that recomputes the results of every combination of operands: `rough_recompute.c`.
     Recomputation,
-    /// The manifest, which has the digests of all files above. For example, `rough.json`.
+    /// The manifest, which has the digests of all files above: `rough.json`.
     Manifest,
     /// The driver that the benches in Python of all configurations share, `glint_cocotb.py`.
     CocotbDriver,

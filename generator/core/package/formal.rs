@@ -1,4 +1,4 @@
-//! Generates formal properties of a core with a microprogram, which Yosys and an SMT solver prove by k-induction.
+//! Generates formal properties of a sequential core, which Yosys and an SMT solver prove by k-induction.
 //!
 //! The generated wrapper asserts the handshake that the manifest promises, for example the clock in which `done` is high. The
 //! emitted Verilog of the core has the invariants that the proof needs, in a section that only formal tools read. A Yosys script
@@ -273,8 +273,8 @@ fn bounded_view(
     }
 }
 
-/// Returns the clocks of `valid` and `done`, and the number of clocks from one start to the next. None of them may depend on
-/// the data.
+/// Returns the clocks of `valid` and `done`, and the number of clocks from one start to the next. Returns `None` if one of
+/// these depends on the data.
 fn exact(timing: &HandshakeTiming) -> Option<([u32; 2], u32)> {
     let (valid, done) = (timing.start_to_valid?, timing.start_to_done?);
     // The next computation may start in the clock of `done`, but the age counts every computation to its last clock.

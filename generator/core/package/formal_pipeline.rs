@@ -28,7 +28,8 @@ struct SideChannel {
 }
 
 /// Two counters from 0 to k − 1 of a pipeline that accepts a point every k clocks. `slot` is the path of the pipeline's own
-/// counter, and `name` is the wrapper's, with `next` as the expression of its next value. The proof shows that both are equal.
+/// counter. `name` is the wrapper's counter, and `next` the expression of its next value. The proof shows that the two counters
+/// are equal.
 struct Turn {
     range: String,
     name: String,

@@ -11,8 +11,8 @@ use super::output_files::OutputFiles;
 use super::tops::{Face, Top};
 use glint_rtl::verilog::text::ascii;
 
-/// Adds `<name>.core`. With a bench, it gets a target for simulation, and `<name>_tb.core` is added too. The file names in a
-/// core file are relative to its directory.
+/// Adds `<name>.core` and, if there is a bench, `<name>_tb.core`. With a bench, `<name>.core` has a target for simulation. The
+/// file names in a core file are relative to the file's directory.
 pub fn files(job: &EmitJob, tops: &[Top], files: &mut OutputFiles) -> Result<()> {
     let (name, around) = (job.name(), &job.inputs.around);
     let (version, licence) = (around.version.as_str(), around.licence.as_str());

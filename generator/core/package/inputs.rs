@@ -1,4 +1,4 @@
-//! Defines the data that Glint needs in addition to the netlist to generate the files of a core.
+//! Defines the data that Glint needs besides the netlist to generate the files of a core.
 
 use super::surroundings::Surroundings;
 use super::table_image::TableImage;
@@ -8,7 +8,7 @@ use glint_rtl::verilog::header::Origin;
 
 #[derive(Clone, Debug, Default)]
 pub struct EmitInputs {
-    /// The command that generates the files again. It names the configuration by its [`glint_base::input::label`].
+    /// The command that generates the files again. The command names the configuration by its [`glint_base::input::label`].
     pub regenerate: String,
     /// The SHA-256 of the configuration, in hexadecimal.
     pub configuration: String,

@@ -1,8 +1,9 @@
 //! Lays out the instructions by which a processor calls a core: their function ids, and the bits of the two source registers that
 //! the operands take.
 //!
-//! An instruction of RISC-V has ten bits for its user, funct7 and funct3, here together the function id. Its lowest four bits are the
-//! opcode of a unit, and 0 for any other core. The six bits above are the number of the result that the instruction returns.
+//! An instruction of RISC-V has ten bits for its user, funct7 and funct3, here together the *function id*. The lowest four bits
+//! of the function id are the opcode of a unit, and 0 for a core without functions. The six bits above are the number of the
+//! result that the instruction returns.
 
 use anyhow::{Result, bail};
 
@@ -32,7 +33,7 @@ pub struct OperandBits {
     pub format: Format,
     /// The source register, 0 or 1.
     pub word: u32,
-    /// The lowest bit in it.
+    /// The operand's lowest bit in the source register.
     pub low: u32,
 }
 

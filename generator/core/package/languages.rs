@@ -113,7 +113,7 @@ fn vhdl(job: &EmitJob, tops: &[Top]) -> Result<String> {
     })
 }
 
-/// VHDL separates ports and generics by semicolons, and has none behind the last.
+/// Adds a semicolon behind each declaration but the last, as VHDL requires for ports and generics.
 fn listed(mut declarations: Vec<String>) -> Vec<String> {
     let last = declarations.len().saturating_sub(1);
     declarations.iter_mut().take(last).for_each(|line| line.push(';'));
@@ -133,7 +133,7 @@ fn std_logic(width: u32, vector: bool) -> String {
     }
 }
 
-/// Returns a fixed-point type whose bits are numbered by their weights. For example, `u1.20` becomes `ufixed(0 downto -20)`.
+/// Returns a fixed-point type whose bits are numbered by their weights: `u1.20` becomes `ufixed(0 downto -20)`.
 fn fixed(format: Format) -> String {
     let kind = if format.signed { "sfixed" } else { "ufixed" };
     let low = -format.frac;
@@ -197,7 +197,7 @@ impl VerilogConstant {
         (format!("{:?}", low as f64), format!("{:?}", high as f64))
     }
 
-    /// Returns the smallest value as a bit pattern. For example, `{1'b1, 7'd0}` for 8 bits with a sign.
+    /// Returns the smallest value as a bit pattern: `{1'b1, 7'd0}` for 8 bits with a sign.
     fn least(&self) -> String {
         let width = self.format.width();
         match self.format.signed {

@@ -19,8 +19,8 @@ use super::wrap::fields::Transfer;
 use crate::observation::{Computation, ContractFacts, Quantity};
 use glint_rtl::netlist::{CoreFunction, Design, FunctionPort, HandshakeTiming, Pipeline, RegId};
 
-/// The version of the manifest's structure, for programs that read it. It increases when a name is renamed, moved, or gets
-/// another meaning, and not when a name is added.
+/// The version of the manifest's structure, for programs that read it. The version increases when a name is renamed, moved, or
+/// gets another meaning, and not when a name is added.
 const SCHEMA: u32 = 2;
 
 #[derive(Serialize)]
@@ -107,7 +107,7 @@ fn file_names(files: &OutputFiles) -> serde_json::Map<String, Value> {
     names
 }
 
-/// `others` are the files of the configuration except the manifest, which has their digests.
+/// Returns the manifest as JSON, with the digests of `others`, the configuration's other files.
 ///
 /// # Errors
 /// Fails if the configuration asks for streams and the core has no operands or no results. Fails if an operand or a result of the

@@ -28,7 +28,6 @@ pub const INTERRUPT_ENABLE: u32 = 6;
 
 pub const INTERRUPT_PENDING: u32 = 7;
 
-/// The word address of the first operand.
 const FIRST_OPERAND: u32 = 8;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
@@ -110,7 +109,8 @@ pub struct Map {
     pub registers: Vec<BusRegister>,
     /// The operands in the order of the ports.
     pub operands: Vec<PortPlacement>,
-    /// The parts of a word of a writable table, and last its address: a write to the address writes the word into the table.
+    /// The ports of a writable table: the parts of a word, then the address. A write to the address writes the word into the
+    /// table.
     pub table: Vec<PortPlacement>,
     /// The results in the order of the ports.
     pub results: Vec<PortPlacement>,
@@ -214,12 +214,12 @@ impl Map {
         last_place(self.results.iter())
     }
 
-    /// Returns the number of bits of a byte address. For example, a map whose last register has word address 15 needs 6 bits.
+    /// Returns the number of bits of a byte address: a map whose last register has word address 15 needs 6 bits.
     pub fn address_bits(&self) -> u32 {
         (4 * self.last()).ilog2() + 1
     }
 
-    /// Software refers to registers by their names, so no two may have the same.
+    /// Checks that no two registers have the same name, by which software refers to them.
     fn check(&self, core: &str) -> Result<()> {
         let mut names = BTreeSet::new();
         for register in &self.registers {
@@ -289,8 +289,8 @@ struct CommonRegisters {
     register: Vec<BusRegister>,
 }
 
-/// The constant registers have an identification, the version of Glint, the digest of the configuration, and the numbers of
-/// operands and results of this core. The last operand and the last register are given as word addresses.
+/// Returns the registers of every core. The constant registers have an identification, the version of Glint, the digest of the
+/// configuration, and the numbers of `operands` and `results`. `last_operand` and `last` are word addresses.
 ///
 /// # Errors
 /// Fails if `registers.toml`, which is part of the program, is not valid.
@@ -328,7 +328,7 @@ fn fixed(
     Ok(registers)
 }
 
-/// Adds the fields of a queue of results to the registers that every core has, and says how the queue changes the meaning of others.
+/// Adds the fields of a queue of results to the registers that every core has, and describes the fields that a queue changes.
 /// `depth` is the largest number of results that wait.
 fn describe_queue(registers: &mut [BusRegister], depth: u32) {
     for register in registers {

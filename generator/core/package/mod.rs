@@ -5,7 +5,7 @@
 //! plain struct, and a template in `templates/` prints the view. Emission returns the files and writes nothing to disk, and
 //! the same design always gives the same bytes.
 
-/// Declares a struct with names for the variables of a test bench. Its function `new` chooses names that no port has.
+/// Declares a struct with names for the variables of a test bench. The struct's function `new` chooses names that no port has.
 macro_rules! fresh_names {
     ($all:ident { $($name:ident),* }) => {
         struct $all {
@@ -73,7 +73,7 @@ pub use software::{check_recomputation, image_file, image_header};
 pub use surroundings::{Surroundings, check_clock, check_rom_style, check_written_memories};
 pub use table_image::{TableImage, TableLayout, words_of};
 
-/// Returns a Verilog test bench that computes the points (sets of operands) of a file. The simulation ends with `FAIL` if a
+/// Returns a Verilog test bench that computes the points of a file. The simulation ends with `FAIL` if a
 /// computation takes `limit` clocks or more. For a pipeline, `limit` counts the clocks from the last point to the last result.
 ///
 /// # Errors
@@ -98,7 +98,7 @@ pub fn emit_core(design: &Design, inputs: &EmitInputs) -> Result<OutputFiles> {
     Ok(files)
 }
 
-/// The names of modules are not checked yet.
+/// Returns the Verilog and the ROM contents of a core. The names of modules are not checked yet.
 fn core_files(job: &EmitJob) -> Result<OutputFiles> {
     let EmitJob { design, inputs, naming, .. } = *job;
     ensure!(
@@ -117,9 +117,11 @@ fn core_files(job: &EmitJob) -> Result<OutputFiles> {
     Ok(files)
 }
 
+/// Returns all files of a core that the configuration asks for.
+///
+/// # Errors
 /// Fails if [`Design::verify_structure`] finds mistakes, if a net is named `clk`, or if vectors do not fit the ports. Fails if
-/// the core cannot have a wrapper or a model that the configuration asks for, or if the name of a module is used for anything
-/// else.
+/// the core cannot have a wrapper or a model, or if the name of a module is used for anything else.
 pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<OutputFiles> {
     let naming = Naming::new(design).styled(inputs.around.style);
     let job = EmitJob::new(design, inputs, &naming)?;

@@ -65,7 +65,7 @@ pub fn check_together<'a>(
     Ok(())
 }
 
-/// Only in files of Verilog or SystemVerilog can the name of a module have another meaning.
+/// Returns whether a file is Verilog or SystemVerilog, in which the name of a module can have another meaning.
 fn is_checked(kind: FileKind) -> bool {
     let is_system_verilog = matches!(
         kind,

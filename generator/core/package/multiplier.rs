@@ -1,9 +1,9 @@
 //! Generates `<name>_multiplier.v`: a multiplier with an output register, for pipelines whose key `pipeline.multipliers` is
 //! "registered".
 //!
-//! There are two files with the same module name. The portable file is ordinary Verilog. The file for a target, which is
-//! always ECP5, instantiates the target's DSP block and is in a directory with the target's name. A build for that target uses
-//! it in place of the portable file.
+//! There are two files with the same module name. The portable file is ordinary Verilog. The file for a target, which is always
+//! ECP5, instantiates the target's DSP block and is in a directory with the target's name. A build for ECP5 uses this file in
+//! place of the portable file.
 
 use anyhow::Result;
 use glint_base::fill;
@@ -26,7 +26,7 @@ const ECP5: &str = "This is the form for ECP5: a DSP block in which only the out
                     nextpnr-ecp5 times the paths into the block, which end in that register, and the paths \
                     from the register. The portable form is in the directory above.";
 
-/// Adds nothing unless `pipeline.multipliers` is "registered", which puts the register behind a product into the DSP block.
+/// Adds both files if the pipeline has registered multipliers, and otherwise nothing.
 pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<()> {
     let Some(pipeline) = job.design.pipeline.as_ref().filter(|it| !it.registered.is_empty()) else {
         return Ok(());

@@ -30,7 +30,7 @@ impl OutputFile {
         }
     }
 
-    /// Returns the last part of the path. For example, `rtl_out/rough/rough.v` gives `rough.v`.
+    /// Returns the last part of the path: `rtl_out/rough/rough.v` gives `rough.v`.
     pub fn name(&self) -> &str {
         self.path.rsplit('/').next().unwrap_or(&self.path)
     }
@@ -49,7 +49,7 @@ impl OutputFile {
         }
     }
 
-    /// Returns an empty text for a file without modules.
+    /// Returns the first module's name, or an empty text for a file without modules.
     pub fn main_module(&self) -> &str {
         self.modules.first().map_or("", String::as_str)
     }

@@ -12,7 +12,7 @@ use super::output_file::OutputFile;
 /// order in which they were added.
 #[derive(Clone, Debug)]
 pub struct OutputFiles {
-    /// Its directories have the same name.
+    /// The name of the configuration and of its directories.
     name: String,
     files: Vec<OutputFile>,
 }
@@ -81,7 +81,7 @@ impl OutputFiles {
         self.files.iter().filter(|file| kinds.contains(&file.kind)).collect()
     }
 
-    /// Returns paths relative to the directory of the configuration. For example, [`FileKind::Memory`] gives `rough_sine.mem`.
+    /// Returns paths relative to the directory of the configuration: [`FileKind::Memory`] gives `rough_sine.mem`.
     pub(super) fn local_paths(&self, kinds: &[FileKind]) -> Vec<String> {
         self.of(kinds).into_iter().map(OutputFile::local_path).collect()
     }

@@ -1,4 +1,4 @@
-//! Generates a Verilog test bench that computes a list of points with a core that has a microprogram.
+//! Generates a Verilog test bench that computes a list of points with a sequential core.
 //!
 //! The bench reads the operands of each point from one file and writes the results to another. `glint render --through
 //! verilator` computes pictures with it.
@@ -12,17 +12,17 @@ use glint_rtl::netlist::{Design, NetId, Role};
 use glint_rtl::verilog::rows::{connections, variables};
 use glint_rtl::verilog::text::Names;
 
-/// The default name of the operand file. It has a line for each computation: the operands in hexadecimal, in the order of
+/// The default name of the operand file. The file has a line for each computation: the operands in hexadecimal, in the order of
 /// [`PointsBench::operands`], with spaces between.
 pub const POINTS_FILE: &str = "points.hex";
 
-/// The default name of the result file. It has a line for each result: the outputs in hexadecimal, in the order of
+/// The default name of the result file. The file has a line for each result: the outputs in hexadecimal, in the order of
 /// [`PointsBench::results`]. A line with a dot follows the last result of each computation.
 pub const RESULTS_FILE: &str = "results.hex";
 
 /// A test bench that reads operands from a file and writes results to another file.
 pub struct PointsBench {
-    /// The module's name; its file has the same with `.v`.
+    /// The name of the module, and of its file without `.v`.
     pub name: String,
     pub text: String,
     /// The operand ports, in the order of the values on a line of the operand file.
@@ -31,7 +31,7 @@ pub struct PointsBench {
     pub results: Vec<String>,
 }
 
-/// The common data of the benches for a pipeline and for a core with a microprogram.
+/// The common data of the benches for a pipeline and for a sequential core.
 struct PointList {
     name: String,
     module: String,
@@ -93,7 +93,7 @@ impl PointList {
 
 fresh_names!(Variables { points, results, read, clocks, total, tick, dut });
 
-/// Returns the bench for a core that has a microprogram. The simulation ends with `FAIL` if a computation takes `limit` clocks
+/// Returns the bench for a sequential core. The simulation ends with `FAIL` if a computation takes `limit` clocks
 /// or more.
 ///
 /// # Errors

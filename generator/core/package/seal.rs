@@ -1,7 +1,7 @@
 //! Adds a SHA-256 digest to generated files that no manifest lists, and checks the digest of such a file.
 //!
-//! The digest shows whether anybody changed the file since Glint wrote it. It is in the last line of a text file, or in a
-//! member of a JSON object. In Python, the line is `# sha256` and 64 hexadecimal digits.
+//! The digest shows whether anybody changed the file since Glint wrote it. The digest is in the last line of a text file, or in
+//! a member of a JSON object. In Python, the line is `# sha256` and 64 hexadecimal digits.
 
 use anyhow::{Context, Result};
 use serde_json::Value;

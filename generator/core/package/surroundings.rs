@@ -18,7 +18,6 @@ const CLOCK: &str = "package.clock_mhz";
 /// The key that says whether ROMs should be in memory blocks or in look-up tables.
 const ROM_STYLE: &str = "package.rom_style";
 
-/// The key that says where the contents of ROMs are.
 const MEMORIES: &str = "package.memories";
 
 /// Checks that the clock of the constraint files is not faster than the clock for which the pipeline is scheduled.
@@ -92,7 +91,7 @@ pub fn check_written_memories(config: &Config, design: &Design) -> Result<(), Co
     Ok(())
 }
 
-/// The wrappers and packages that a configuration asks for in addition to the core.
+/// The wrappers and packages that a configuration asks for besides the core.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surroundings {
     pub stream: bool,
@@ -137,7 +136,7 @@ impl Default for Surroundings {
 }
 
 impl Surroundings {
-    /// Returns the number of results that wait behind bus registers of a pipeline. Returns `None` for a core with a microprogram, and
+    /// Returns the number of results that wait behind bus registers of a pipeline. Returns `None` for a sequential core, and
     /// if one point is computed at a time.
     pub fn queue_of(&self, design: &Design) -> Option<u32> {
         (design.pipeline.is_some() && self.queue > 1).then_some(self.queue)

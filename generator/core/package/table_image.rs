@@ -16,8 +16,8 @@ pub struct TableLayout {
     /// The inputs for the parts of a word, such as `table_c0`, with their formats.
     pub parts: Vec<(String, Format)>,
     pub words: usize,
-    /// The first 64 bits of the SHA-256 of the netlist and of the words of its other ROMs. Two cores with the same digest compute the same
-    /// results from the same words.
+    /// The first 64 bits of the SHA-256 of the netlist and of the words of all other ROMs. Two cores with the same digest
+    /// compute the same results from the same words.
     pub digest: u64,
 }
 
@@ -56,9 +56,9 @@ impl TableLayout {
         self.parts.iter().all(|(_, format)| format.width() <= i32::BITS)
     }
 
-    /// Returns the bytes of an image in a file: the magic number `GLINTTAB`, the digest of the layout, the numbers of words and of parts
-    /// as 32 bits each, the raw values of all parts, 32 or 64 bits each, and the CRC-32 of all bytes before it. All numbers are little
-    /// endian.
+    /// Returns the bytes of an image in a file, with all numbers in little endian. The bytes are the magic number `GLINTTAB`,
+    /// the digest of the layout, the numbers of words and of parts (32 bits each), the raw values of all parts (32 or 64 bits
+    /// each), and the CRC-32 of the bytes before.
     pub fn binary(&self, image: &TableImage) -> Vec<u8> {
         let mut bytes = MAGIC.to_vec();
         bytes.extend(self.digest.to_le_bytes());

@@ -60,7 +60,7 @@ pub struct Top {
 }
 
 impl Top {
-    /// Returns 0 if there is no such port.
+    /// Returns the width of the port `name` in bits, or 0 without such a port.
     pub fn width(&self, name: &str) -> u32 {
         self.ports.iter().find(|port| port.name == name).map_or(0, |port| port.width)
     }

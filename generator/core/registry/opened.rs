@@ -1,8 +1,8 @@
 //! Defines [`DeviceParts`], the description, golden model and contract of a device, and [`OpenedConfig`], a configuration for
 //! which Glint has them.
 //!
-//! Opening does once what takes long and what can fail. For example, the device `expression` plans its formulas and proves
-//! their error bounds.
+//! Opening does slow work once, and reports errors. For example, the device `expression` plans its formulas and proves their
+//! error bounds.
 
 use std::sync::Arc;
 
@@ -20,10 +20,8 @@ use glint_rtl::pipeline::{self, PassResult};
 
 use super::{CLOCK_MHZ, DesignError, Device, PartsResult, pipeline_keys};
 
-/// The key that asks for registers behind the results.
 const OUTPUT_REGISTERED: &str = "output.registered";
 
-/// The key that asks for buffers in front of the operand registers.
 const OPERANDS_BUFFERED: &str = "operands.buffered";
 
 /// The hardware description, the golden model and the contract of a device, for the values of its own keys with which it was
@@ -40,8 +38,8 @@ pub trait DeviceParts: Send + Sync {
 
     fn contract(&self, config: &Config) -> Box<dyn Contract>;
 
-    /// Returns the contract of each function that an opcode selects, in the order of [`Design::functions`]. Its operands and results
-    /// have the formats of the function.
+    /// Returns the contract of each function that an opcode selects, in the order of [`Design::functions`]. The contract's
+    /// operands and results have the formats of the function.
     fn function_contracts(&self, _config: &Config) -> Vec<Box<dyn Contract>> {
         Vec::new()
     }
@@ -116,11 +114,11 @@ impl Device {
 }
 
 impl OpenedConfig {
-    /// Returns another configuration of the same device. It shares the parts if the device's own keys have the same values;
-    /// otherwise it is opened.
+    /// Returns another configuration of the same device. The configuration shares the parts if the device's own keys have the
+    /// same values; otherwise it is opened.
     ///
     /// # Errors
-    /// Fails as [`Device::open`] does.
+    /// Fails if the device cannot have the values of the keys together.
     pub fn with_config(&self, config: Config) -> Result<Self, ConfigError> {
         let schema = (self.device.schema)();
         let mut own_keys = schema.keys.iter();
@@ -172,7 +170,7 @@ impl OpenedConfig {
     /// Returns each further function that the configuration states for a writable table, and the core with this function.
     ///
     /// # Errors
-    /// Fails as [`OpenedConfig::refitted`] does.
+    /// Fails if the table cannot hold one of the functions. The error names a key to change.
     pub fn images(&self) -> Result<Vec<(StatedImage, Self)>, ConfigError> {
         let mut images = Vec::new();
         for image in self.stated_images() {
@@ -309,7 +307,7 @@ impl OpenedConfig {
     }
 }
 
-/// The user can also leave out a key from which a mistake comes; the messages say so.
+/// Adds to each mistake that comes from a key the remedy to remove the key.
 fn with_key_remedies(mut mistakes: Diagnostics, keys: &Shared) -> Diagnostics {
     for mistake in &mut mistakes.0 {
         if mistake.code == codes::OUTPUT_REGISTER && keys.output_registered {

@@ -11,7 +11,7 @@ use glint_rtl::pipeline::{self, PassResult, PipelineError, PipelineErrorKind};
 /// The key with the clock frequency in MHz for which a pipeline is scheduled.
 pub const CLOCK_MHZ: &str = "pipeline.clock_mhz";
 
-/// Returns `None` if the configuration has a sequential architecture.
+/// Returns the pipeline, or `None` if the configuration has a sequential architecture.
 ///
 /// # Errors
 /// Fails if the pipeline cannot be made. The error names the key that the user should change.
@@ -26,7 +26,7 @@ pub fn pipelined(sequential: &Design, config: &Config) -> Result<Option<Design>,
     }
 }
 
-/// Returns the computation before the passes and after each of them, or `None` for a sequential architecture. Fails if the
+/// Returns the computation before the passes and after each pass, or `None` for a sequential architecture. Fails if the
 /// microprogram cannot be unrolled.
 pub fn pass_results(
     sequential: &Design,

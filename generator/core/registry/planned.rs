@@ -1,4 +1,4 @@
-//! Opens the devices whose configurations state formulas. Their formulas are planned once, and the hardware description, the
+//! Opens the devices whose configurations state formulas. The formulas are planned once, and the hardware description, the
 //! golden model and the contract read the plan.
 
 use std::sync::Arc;

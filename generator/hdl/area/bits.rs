@@ -1,6 +1,7 @@
 //! Finds the bits of a netlist that synthesis gets without logic: constants, and copies of other bits.
 //!
-//! For example, the sum of `x · 2^16` and a product needs an adder only above bit 15, because the product has the lower 16 bits already.
+//! For example, the sum of `x · 2^16` and a product needs an adder only above bit 15: its lower 16 bits are bits of the
+//! product.
 
 use std::collections::BTreeSet;
 
@@ -83,7 +84,7 @@ impl BitSources {
         sum
     }
 
-    /// Returns the origins of the bits of a net. The nets before it must have theirs.
+    /// Returns the origins of the bits of a net. The origins of the nets that its cell reads must be known.
     fn origins(&self, design: &Design, id: NetId) -> Vec<BitSource> {
         let own = own_bits(design, id);
         let width = own.len();
@@ -123,8 +124,8 @@ impl BitSources {
         bits
     }
 
-    /// Returns the bits of an AND (`controlling` is false) or an OR (true): a controlling constant decides a bit, and with the other
-    /// constant it is the bit of the other operand.
+    /// Returns the bits of an AND (`controlling` is false) or an OR (`controlling` is true). A bit with the constant
+    /// `controlling` decides the result. With the opposite constant, the result is the other operand's bit.
     fn gated(&self, a: NetId, b: NetId, controlling: bool, own: &[BitSource]) -> Vec<BitSource> {
         let pairs = self.bits(a).iter().zip(self.bits(b)).zip(own);
         let gate = |((&a, &b), &own): ((&BitSource, &BitSource), &BitSource)| match (a, b) {
@@ -150,7 +151,7 @@ impl BitSources {
         own.iter().enumerate().map(bit).collect()
     }
 
-    /// Returns the bits of a sum or difference, which are the bits of `a` below the lowest bit of `b` that is no 0.
+    /// Returns the bits of a sum or difference. Below the lowest bit of `b` that is no constant 0, they are the bits of `a`.
     fn low_bits_kept(&self, a: NetId, b: NetId, own: &[BitSource]) -> Vec<BitSource> {
         let is_zero = |bit: &&BitSource| **bit == BitSource::Constant(false);
         let zeros = self.bits(b).iter().take_while(is_zero).count();

@@ -24,14 +24,14 @@ pub struct Features {
     /// The number of bits of the ROMs that are made of look-up tables, divided by 16.
     pub rom: f64,
     /// The number of bits in the sums of partial products: half the width of the product for each multiplier beyond the first.
-    /// For a family without DSP blocks, the number of look-up tables that its products take.
+    /// For a family without DSP blocks, the number of look-up tables of the products.
     pub product: f64,
     /// The number of look-up tables of delay memories.
     pub delay: f64,
 }
 
 impl Features {
-    /// Counts the logic of a netlist for a family, whose products and memories differ from those of others.
+    /// Counts the logic of a netlist for a family, which decides how products and memories count.
     pub fn new(design: &Design, family: &Family) -> Self {
         let sources = BitSources::of(design);
         let mut sum = Self::default();
@@ -73,7 +73,7 @@ impl Features {
         sum
     }
 
-    /// Returns the number of look-up tables of the netlist in a family.
+    /// Returns the estimated number of look-up tables of the netlist in a family.
     pub fn luts(&self, family: &Family) -> f64 {
         let Self { adder, mux, logic, rom, product, delay } = *self;
         let mut luts = delay;
@@ -86,8 +86,8 @@ impl Features {
     }
 }
 
-/// Returns the look-up tables of a product of factors with these numbers of varying bits: all, for a family without DSP blocks, and
-/// otherwise the bits in the sums of partial products. `width` is the width of the product.
+/// Returns the number of look-up tables of a product in a family without DSP blocks, otherwise the number of bits in the sums
+/// of partial products. `factors` are the factors' numbers of varying bits, and `width` is the product's width.
 fn luts_of_product(family: &Family, factors: [u32; 2], width: f64) -> f64 {
     let [a, b] = factors;
     if let Some(product) = family.fabric_product {

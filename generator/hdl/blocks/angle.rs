@@ -16,11 +16,11 @@ pub struct Folded<'d> {
     pub within: Signal<'d>,
 }
 
-/// Returns the magnitude of a signed `angle` with `fraction` fraction bits, which the angle must have at least. For example, in
-/// `s1.4` the raw angles 5 and −6 both have the magnitude 5.
+/// Returns the magnitude of a signed `angle` with `fraction` fraction bits; the angle must have at least this number. For
+/// example, in `s1.4` the raw angles 5 and −6 both have the magnitude 5.
 ///
-/// The magnitude of a negative angle is the complement of its bits, which needs no adder. It is smaller than the exact magnitude
-/// by up to one unit in the last place, as truncation makes a positive angle smaller too.
+/// The magnitude of a negative angle is the complement of its bits, which needs no adder. This magnitude is smaller than the
+/// exact magnitude by up to one unit in the last place, as truncation makes a positive angle smaller too.
 #[track_caller]
 pub fn fold<'d>(d: &'d Designer, angle: Signal<'d>, fraction: i32) -> Folded<'d> {
     let Format { int, frac, .. } = angle.format();
@@ -62,8 +62,8 @@ pub fn address<'d>(
     d.choose(name, within, [last, step])
 }
 
-/// Returns the words of a table of `cosᵏ` over a right angle, for the power k = `power`. They are raw values in `u0.F` with F =
-/// `fraction`.
+/// Returns the words of a table of `cosᵏ` over a right angle, for the power k = `power`. The words are raw values in `u0.F`
+/// with F = `fraction`.
 ///
 /// The table has 2^`bits` steps. A word is the mean of the values at the two ends of its step. The last word is 0, because it
 /// also serves all larger angles.

@@ -1,7 +1,7 @@
 //! Builds the colour operands and outputs of a device. The outputs are the products of the colours with the reflectance f,
 //! rounded to integers.
 //!
-//! Each colour has its own multiplier, or one multiplier makes all products one after the other.
+//! Each colour has its own multiplier, or one multiplier makes all products in turn.
 
 use crate::dsl::{Designer, InputOperand, Signal, Step, step};
 use glint_base::fixed::{Format, Overflow, Rounding};
@@ -65,8 +65,8 @@ impl<'d> Colours<'d> {
         Self { designer, format, channels: vec![Channel { name: "intensity", operand, blocks }] }
     }
 
-    /// Adds outputs that one multiplier computes one after the other, and returns a microinstruction for each. An output is a
-    /// register with `f` times the operand, rounded by `rounding` and saturated to the operand's width. It is named
+    /// Adds outputs that one multiplier computes in turn, and returns a microinstruction for each. An output is a
+    /// register with `f` times the operand, rounded by `rounding` and saturated to the operand's width. The register is named
     /// `<colour>_intensity`, or `intensity_rounded` for the operand `amplitude`. `f` must not change until the last output is
     /// loaded.
     #[must_use]
@@ -100,8 +100,8 @@ impl<'d> Colours<'d> {
         self.outputs_of(f, rounding, false);
     }
 
-    /// Like [`Colours::outputs`], with a register behind each multiplier that loads on every clock. An output therefore shows the
-    /// product of the clock before.
+    /// Does the same as [`Colours::outputs`], but adds a register behind each multiplier that loads on every clock. An output
+    /// therefore shows the product of the clock before.
     #[track_caller]
     pub fn outputs_staged(&self, f: Signal<'d>, rounding: Rounding) {
         self.outputs_of(f, rounding, true);

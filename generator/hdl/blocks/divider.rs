@@ -1,8 +1,8 @@
 //! Builds an iterative divider, which computes one bit of the quotient a clock by trial subtraction (restoring division).
 //!
-//! The first remainder is the dividend. A step doubles the remainder and subtracts the divisor if the difference is not negative.
-//! Its bit of the quotient, from the top bit down, is 1 if it subtracted. The last remainder is exact, so every bit of the
-//! quotient is correct. Only a quotient of 1.0 becomes the largest fraction below 1.
+//! The first remainder is the dividend. A step doubles the remainder and subtracts the divisor if the difference is not
+//! negative. Each step gives one bit of the quotient, from the top bit down: 1 if the step subtracted. The last remainder is
+//! exact, so every bit of the quotient is correct. Only a quotient of 1.0 becomes the largest fraction below 1.
 
 use crate::dsl::{Counter, Designer, Mux, Register, Signal, StepSetting};
 use glint_base::codes;
@@ -11,8 +11,8 @@ use glint_base::fixed::{Format, Overflow, Rounding};
 /// Computes `dividend / divisor`, truncated to a fraction `u0.Q`. Neither operand may be negative, and the dividend must not
 /// exceed the divisor. For example, 1 / 3 with Q = 4 gives 5/16.
 ///
-/// A quotient of 1.0 becomes `1.0 − ulp` (all bits 1), and so does a division by 0. A device that must avoid the latter keeps
-/// the divisor above 0.
+/// A quotient of 1.0 becomes `1.0 − ulp` (all bits 1), and so does a division by 0. A device that must avoid a division by 0
+/// keeps the divisor above 0.
 ///
 /// A division takes a microinstruction that [loads](Self::load) the operands, and Q executions of a microinstruction that
 /// [steps](Self::step), which is one microinstruction in a loop:

@@ -1,6 +1,5 @@
-//! Builds the accumulator for the angles along a scan line, a row of neighbouring points that the device computes after one
-//! `start`. The register `angle` starts at the operand `zeta_start`, and the operand `delta_zeta`, which may be negative, is
-//! added to it every clock.
+//! Builds the accumulator for the angles along a scan line. The register `angle` starts at the operand `zeta_start`. Every
+//! clock adds the operand `delta_zeta`, which may be negative.
 //!
 //! [`Line`] makes the operands, the adder, the mux, the register and the counter of intervals, and writes the microprogram. The
 //! devices `quad-cosine` and `cosine-squared` use it.
@@ -42,7 +41,7 @@ pub struct LineBlocks {
     pub write: u16,
 }
 
-/// The accumulator of a scan line: the operands `delta_zeta`, `zeta_start` and `length`, and the register `angle`. Its outputs
+/// The accumulator of a scan line: the operands `delta_zeta`, `zeta_start` and `length`, and the register `angle`. The outputs
 /// `count`, `accumulate` and `write_angle` show the control lines.
 ///
 /// A line of l = `length` intervals has l + 1 points, one a clock. The angle is a signed number that wraps around, so its format

@@ -1,5 +1,5 @@
-//! Hardware blocks that several devices share, such as a divider, shifters and tables. Devices outside the library can use
-//! them too.
+//! Hardware blocks that several devices share, such as a divider, shifters and tables. Devices outside the library can also use
+//! these blocks.
 
 pub mod angle;
 pub mod colour;

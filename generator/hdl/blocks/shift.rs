@@ -34,15 +34,15 @@ pub struct Normalised<'d> {
 
 /// Shifts `x` to the left until its top bit is 1: 22 in 8 bits has 3 leading zeros and becomes 176.
 ///
-/// Each row of muxes gives one bit of the number, so the number needs no encoder. If `x` is 0, all bits of the number are 1. A
-/// signal of one bit is not shifted, and the number is always 0.
+/// Each row of muxes gives one bit of `zeros`, which therefore needs no encoder. If `x` is 0, all bits of `zeros` are 1. A
+/// signal of one bit is not shifted, and `zeros` is always 0.
 #[track_caller]
 pub fn normalise<'d>(d: &'d Designer, name: &str, x: Signal<'d>) -> Normalised<'d> {
     normalise_in_steps(d, name, x, 1)
 }
 
 /// Shifts `x` to the left by pairs of places until one of its two top bits is 1: 22 in 8 bits has one pair of leading zeros and
-/// becomes 88. If `x` is 0, all bits of the number are 1. A signal of one or two bits is not shifted, and the number is always 0.
+/// becomes 88. If `x` is 0, all bits of `zeros` are 1. A signal of one or two bits is not shifted, and `zeros` is always 0.
 #[track_caller]
 pub fn normalise_by_pairs<'d>(d: &'d Designer, name: &str, x: Signal<'d>) -> Normalised<'d> {
     normalise_in_steps(d, name, x, 2)
@@ -55,7 +55,7 @@ pub fn left_justified<'d>(d: &'d Designer, name: &str, x: Signal<'d>, least: u32
     shift_rows(d, name, x, least, None)
 }
 
-/// Shifts as [`left_justified`], and returns the number of places in units of `least` too.
+/// Shifts as [`left_justified`] does, and also returns the number of places in units of `least`.
 #[track_caller]
 fn normalise_in_steps<'d>(
     d: &'d Designer,

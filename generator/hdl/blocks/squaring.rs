@@ -6,13 +6,13 @@
 use crate::dsl::{Counter, Designer, Mux, Register, Signal, Step, StepSetting, loop_while, step};
 use glint_base::fixed::Format;
 
-/// The squarings that raise a base to a power of two. If there are several, the counter `remaining` has the number that still
-/// follow.
+/// The squarings that raise a base to a power of two. If there are several squarings, the counter `remaining` has the number of
+/// squarings that follow.
 pub struct Squarings<'d> {
     designer: &'d Designer,
     counter: Option<Counter<'d>>,
-    /// The mux for the start value of the counter, and its input for the squarings. It is `None` if the counter counts only
-    /// squarings, or if there is only one squaring.
+    /// The mux for the start value of the counter, and its input for the squarings. The field is `None` if the counter counts
+    /// only squarings, or if there is only one squaring.
     start: Option<(Mux<'d>, Signal<'d>)>,
 }
 
@@ -26,8 +26,8 @@ impl<'d> Squarings<'d> {
         Self { designer, counter, start: None }
     }
 
-    /// Makes 1 to 4 squarings whose counter also counts another loop before them, so that one counter serves both. `other` is the
-    /// start value for that loop; the returned settings load it.
+    /// Makes 1 to 4 squarings whose counter also counts an earlier loop. `other` is the start value for that loop; the returned
+    /// settings load `other`.
     #[track_caller]
     pub fn sharing(
         designer: &'d Designer,
@@ -47,8 +47,8 @@ impl<'d> Squarings<'d> {
         (squarings, counter, load_other)
     }
 
-    /// Loads the number of squarings after the first one into the counter, which a microinstruction before the second squaring
-    /// must do.
+    /// Returns the settings that load the number of squarings after the first one into the counter, for a microinstruction
+    /// before the second squaring.
     #[track_caller]
     pub fn load(&self) -> Vec<StepSetting> {
         let pick = self.start.map(|(mux, squarings)| mux.pick(squarings));

@@ -2,7 +2,7 @@
 //! For example, `shading` instantiates `dot-product`.
 //!
 //! The nets, registers and memories of the part join the surrounding design, with the name of the instance in front. The parts
-//! run one after the other. A part has no ports, sequencer or handshake of its own.
+//! run in turn. A part has no ports, sequencer or handshake of its own.
 
 use std::collections::HashMap;
 use std::panic::Location;
@@ -31,8 +31,8 @@ pub struct Instance<'d> {
 }
 
 impl<'d> Instance<'d> {
-    /// Returns the result of the part with the name `output`. A register stores it until the part computes again. If the part has
-    /// no such result, reports a mistake. Then, and if the part itself had mistakes, returns a constant 0 of one bit.
+    /// Returns the result `output` of the part. A register stores the result until the part computes again. Reports a mistake
+    /// if the part has no such result. In this case, and if the part has mistakes, returns a constant 0 of one bit.
     #[track_caller]
     pub fn out(&self, output: &str) -> Signal<'d> {
         let outputs = self.outputs.as_deref().unwrap_or_default();
@@ -54,8 +54,8 @@ impl<'d> Instance<'d> {
 
 impl Designer {
     /// Instantiates `describe` as a part called `name`, with a signal for each of its operands. The microinstruction before the
-    /// part's first one loads its operand registers. A description with parts calls [`Designer::dataflow`] instead of writing a
-    /// microprogram.
+    /// part's first one loads the part's operand registers. A description with parts calls [`Designer::dataflow`] instead of
+    /// writing a microprogram.
     ///
     /// Reports a mistake if the names in `operands` differ from the part's operands, or a signal does not fit its operand's
     /// format. It is also a mistake if another part has the same name, or parts are nested more than 8 deep. A part must raise
@@ -160,9 +160,9 @@ impl Designer {
         )
     }
 
-    /// Makes the microprogram from the parts. It executes them in the order of their instances, and then loads each output that
-    /// is no register yet into a register. All logic between the parts must be combinational. [`Designer::finish`] reports a
-    /// mistake for a register or a synchronous ROM outside the parts that loads on every clock.
+    /// Makes the microprogram from the parts. The microprogram executes the parts in the order of their instances, and then
+    /// loads each output that is no register yet into a register. All logic between the parts must be combinational.
+    /// [`Designer::finish`] reports a mistake for a register or a synchronous ROM outside the parts that loads on every clock.
     #[track_caller]
     pub fn dataflow(&self) {
         self.register_outputs();
@@ -220,7 +220,7 @@ fn delayed(inner: &mut Inner) -> Vec<Diagnostic> {
     found
 }
 
-/// Returns the reason why a design cannot be a part.
+/// Returns the reason why a design cannot be a part, or `None` if it can.
 fn unfit(design: &Design) -> Option<String> {
     let control = &design.control;
     let Some(valid) = control.fields.iter().position(|field| field.name == "valid_word") else {

@@ -31,8 +31,7 @@
 macro_rules! described {
     ($handle:ident, $net:ident) => {
         impl $handle<'_> {
-            /// Sets the number that this block has in the block diagram of the device's source, for example of seed 001.
-            /// Comments in the Verilog state it.
+            /// Sets the block's number in the source's block diagram, which comments in the Verilog state.
             #[must_use]
             pub fn block(self, number: u16) -> Self {
                 let _ = self.$net.block(number);
@@ -46,7 +45,7 @@ macro_rules! described {
                 self
             }
 
-            /// Like `doc`, for a comment that belongs to `topic`. A pipeline shows only comments of the topic
+            /// Sets a comment like `doc`, for the topic `topic`. A pipeline shows only comments of the topic
             /// [`Topic::Device`](crate::netlist::Topic::Device).
             #[must_use]
             pub fn doc_on(self, topic: crate::netlist::Topic, line: &str) -> Self {
@@ -169,8 +168,8 @@ pub(crate) struct Inner {
 impl Designer {
     /// Makes an empty design; `name` becomes the name of the top module, and must be a Verilog identifier.
     ///
-    /// The design has the handshake inputs `rst_n` and `start` at once. [`Designer::finish`] adds the outputs `valid`, `busy` and
-    /// `done`.
+    /// The design already has the handshake inputs `rst_n` and `start`. [`Designer::finish`] adds the outputs `valid`, `busy`
+    /// and `done`.
     #[track_caller]
     pub fn new(name: &str) -> Self {
         let inner = Inner {
@@ -221,8 +220,8 @@ impl Designer {
         self.inner.borrow_mut().design.about = about;
     }
 
-    /// States the functions among which the operand [`OPCODE`] selects. The emitted Verilog and C define a constant for each, and
-    /// the manifest lists them. They do not change the hardware.
+    /// States the functions among which the operand [`OPCODE`] selects. The emitted Verilog and C define a constant for each
+    /// function, and the manifest lists them. The functions do not change the hardware.
     pub fn functions(&self, functions: Vec<CoreFunction>) {
         self.inner.borrow_mut().design.functions = functions;
     }
@@ -278,11 +277,11 @@ impl Designer {
         }
     }
 
-    /// Adds a read-only memory. Its words are raw values of `format`; `address` selects the word that it reads.
+    /// Adds a read-only memory. The words are raw values of `format`; `address` selects the word that it reads.
     ///
     /// Reports a mistake if the address has fraction bits or can exceed the words, or if a word does not fit `format`. A
-    /// `synchronous` ROM reads on the rising edge, as block RAM does. Its output is the word at the address of the clock before,
-    /// and 0 at power-up.
+    /// `synchronous` ROM reads on the rising edge, as block RAM does. The output is the word at the address of the clock
+    /// before, and 0 at power-up.
     #[track_caller]
     pub fn rom(
         &self,
@@ -374,28 +373,28 @@ impl Designer {
         }
     }
 
-    /// Sets the numbers of two control lines in the source's block diagram. By the line `valid` a microinstruction raises
-    /// `valid`, and by the line `go_on` it lets the program continue.
+    /// Sets the numbers of two control lines in the source's block diagram. A microinstruction raises `valid` by the line
+    /// `valid`, and lets the program continue by the line `go_on`.
     pub fn sequencer_lines(&self, valid: u16, go_on: u16) {
         self.inner.borrow_mut().sequencer_lines = Some([valid, go_on]);
     }
 
     /// Requests a register behind every output that is combinational logic. A microinstruction that raises `valid` in the
-    /// description loads these registers instead, and an additional one after it raises `valid`. If `valid` follows a signal,
-    /// these registers load on every clock instead, and `valid` comes one clock later.
+    /// description loads these registers instead, and an additional microinstruction then raises `valid`. If `valid` follows a
+    /// signal, these registers load on every clock, and `valid` comes one clock later.
     pub fn register_outputs(&self) {
         self.inner.borrow_mut().registers_outputs = true;
     }
 
-    /// Forbids [`Designer::finish`] to insert registers into logic that depends on operands alone. Without this call it inserts
+    /// Forbids [`Designer::finish`] to insert registers into logic that depends on operands alone. Otherwise `finish` inserts
     /// registers where a value is first used some clocks after `start`.
     pub fn keep_operand_logic(&self) {
         self.inner.borrow_mut().registers_operand_logic = false;
     }
 
-    /// Adds a buffer in front of every operand register, so that no clock is lost between two computations. A user may write the
-    /// buffers at any time. `start`, which the device accepts in the last clock of a computation too, copies them into the
-    /// registers. Reports a mistake if an operand is already declared.
+    /// Adds a buffer in front of every operand register, so that no clock is lost between two computations. A user may write
+    /// the buffers at any time. `start`, which the device also accepts in the last clock of a computation, copies the buffers
+    /// into the registers. Reports a mistake if an operand is already declared.
     #[track_caller]
     pub fn buffer_operands(&self) {
         if self.with(|inner| inner.design.ports.iter().any(|it| it.role == Role::Strobe)) {

@@ -1,4 +1,4 @@
-//! Converts a signal to a narrower format, with stated rounding and overflow.
+//! Converts a signal to a narrower format, for example a product to its register's format, with stated rounding and overflow.
 
 use std::panic::Location;
 

@@ -25,7 +25,7 @@ pub struct OperandMux<'d> {
 described!(OperandMux, out);
 
 impl Designer {
-    /// Returns a mux whose inputs may have different formats. Reports a mistake unless it has one input for each choice of
+    /// Returns a mux whose inputs may have different formats. Reports a mistake unless the mux has one input for each choice of
     /// `select`.
     #[track_caller]
     pub fn bus<'d>(
@@ -99,7 +99,7 @@ impl Designer {
         }
     }
 
-    /// Multiplies `other` by the bits of `signed` below its sign. Returns the amount to subtract if the sign is set as well.
+    /// Multiplies `other` by the bits of `signed` below its sign. Also returns the amount to subtract if the sign is set.
     /// `ordered` puts the factors into the order of the multiplier.
     #[track_caller]
     fn unsigned_core<'d>(
@@ -143,8 +143,8 @@ impl<'d> OperandMux<'d> {
         StepSetting::pick_of(self.designer, self.field, &self.name, input, &self.inputs)
     }
 
-    /// Adds a register `<name>_held` behind the mux. It loads on every clock, and so contains the operand that the previous
-    /// microinstruction selected.
+    /// Adds a register `<name>_held` behind the mux. The register loads on every clock, and so contains the operand that the
+    /// previous microinstruction selected.
     ///
     /// The mux then takes time of one clock, and the multiplier has the next clock to itself. A microprogram selects the operands
     /// in one microinstruction, and loads the product in the next one under the same selection ([`hold`](super::hold)).

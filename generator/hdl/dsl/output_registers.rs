@@ -48,7 +48,7 @@ fn logic(design: &Design) -> Vec<NetId> {
     results.map(|port| port.net).filter(|&port| !is_register(port)).collect()
 }
 
-/// Inserts the register `<port>_reg` between a port and its driver. Without `enable` it loads on every clock.
+/// Inserts the register `<port>_reg` between a port and its driver. Without `enable`, the register loads on every clock.
 fn behind(d: &Designer, port: NetId, kind: RegisterKind, enable: Option<NetId>) {
     let net = d.net(port);
     let Driver::Op(Op::Relabel(source)) = net.driver else {
@@ -68,8 +68,8 @@ fn behind(d: &Designer, port: NetId, kind: RegisterKind, enable: Option<NetId>) 
     });
 }
 
-/// Lets every microinstruction that raises `valid` load the registers by `load` instead, and a new one behind it raise `valid`.
-/// Reports a mistake if such a microinstruction has a loop or a jump.
+/// Makes every microinstruction that raises `valid` load the registers by `load` instead, and inserts one behind it that raises
+/// `valid`. Reports a mistake if such a microinstruction has a loop or a jump.
 fn loaded(d: &Designer, steps: &mut Vec<Step>, load: &StepSetting) {
     let mut at = 0;
     while at < steps.len() {
@@ -111,8 +111,8 @@ impl Step {
         self
     }
 
-    /// Moves the settings that determine the next microinstruction into a new one, which keeps the selections, and returns it.
-    /// Drops `valid`.
+    /// Moves the settings that determine the next microinstruction into a new microinstruction, and returns the new one, which
+    /// keeps the selections. Drops `valid`.
     fn divided(&mut self) -> Self {
         // With `hold`, a microinstruction behind the new one may hold the selections too.
         let mut after = step(&format!("{}, in output registers", self.name), [hold()]);

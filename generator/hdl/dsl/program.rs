@@ -116,14 +116,15 @@ pub fn hold() -> StepSetting {
     StepSetting::sequence(SettingKind::Hold)
 }
 
-/// Raises `valid`, which means that the results are on the outputs. A microinstruction that loads a result register must leave
-/// this to the next one, unless every path to it has loaded the register before.
+/// Raises `valid`, which means that the results are on the outputs. A microinstruction that loads a result register must not
+/// raise `valid`, but the next one can. An exception is a microinstruction before which every path has loaded the register.
 #[track_caller]
 pub fn valid() -> StepSetting {
     StepSetting::sequence(SettingKind::Valid)
 }
 
-/// Continues with the next address. Every microinstruction except number 0, which waits for `start`, does so without a setting.
+/// Continues at the next address. Without this setting, every microinstruction except number 0, which waits for `start`,
+/// continues there.
 #[track_caller]
 pub fn next() -> StepSetting {
     StepSetting::sequence(SettingKind::Next)
@@ -151,8 +152,8 @@ pub fn jump_if(condition: Signal<'_>, to: &str) -> StepSetting {
     loop_while(condition, to)
 }
 
-/// Jumps ahead to the microinstruction that the operand `selector` selects by its bits: number 0 of `to`, number 1, and so on. For
-/// example, an opcode selects whether a device adds or subtracts:
+/// Jumps ahead to one of the microinstructions named in `to`: the bits of the operand `selector` are the index. For example, an
+/// opcode selects whether a device adds or subtracts:
 ///
 /// ```
 /// use glint_base::fixed::Format;
@@ -212,7 +213,7 @@ impl Step {
 }
 
 /// Makes a microinstruction: `step("load", [y.load()])` loads the register `y`. Muxes without a setting pass their first input,
-/// or with [`hold`] the previous one. Registers without a setting keep their value.
+/// or with [`hold`] the input of the previous microinstruction. Registers without a setting keep their value.
 #[track_caller]
 pub fn step(name: &str, settings: impl IntoIterator<Item = StepSetting>) -> Step {
     Step {
@@ -308,8 +309,8 @@ pub(crate) fn assemble(d: &Designer, program: &MicroprogramSource) {
     sequencer.build(d, microinstructions, program.location);
 }
 
-/// Reports each setting that belongs to another designer, and returns whether there are any. Its numbers of nets and fields would
-/// mean other nets and fields in this designer.
+/// Reports each setting that belongs to another designer, whose numbers of nets and fields mean other nets and fields here.
+/// Returns whether such a setting exists.
 fn foreign(d: &Designer, steps: &[Step]) -> bool {
     let own = origin(d);
     let settings = steps.iter().flat_map(|step| step.settings.iter().map(move |it| (step, it)));
@@ -334,8 +335,9 @@ fn foreign(d: &Designer, steps: &[Step]) -> bool {
     any
 }
 
-/// Returns the rule for the microinstruction after `step`. Reports a mistake if two settings contradict each other, or if a jump
-/// leads to an unknown name or has a condition of several bits. `step` must not wait for `start` if the operands have buffers.
+/// Returns the rule for the microinstruction after `step`. Reports a mistake if two settings contradict each other, or if a
+/// jump leads to an unknown name or has a condition of several bits. With operand buffers, it is a mistake if `step` waits for
+/// `start`.
 fn sequence(d: &Designer, steps: &[Step], step: &Step) -> Sequence {
     let mut found: Option<(Sequence, SourceLocation)> = None;
     let own = &step.name;

@@ -140,7 +140,7 @@ impl Designer {
         Select { designer: self, field }
     }
 
-    /// Replaces `select` by new lines with the same choices, and reports a mistake, if it belongs to another designer.
+    /// Returns `select`. If it belongs to another designer, reports a mistake and returns new lines with the same choices.
     #[track_caller]
     pub(crate) fn own_select<'d>(&'d self, select: Select<'d>) -> Select<'d> {
         if self.serial == select.designer.serial {
@@ -210,8 +210,7 @@ impl<'d> InputOperand<'d> {
         self.q
     }
 
-    /// Sets the number that the register has in the block diagram of the device's source, for example of seed 001. Comments in the
-    /// Verilog state it.
+    /// Sets the register's number in the source's block diagram, which comments in the Verilog state.
     #[must_use]
     pub fn block(self, number: u16) -> Self {
         let _ = self.q.block(number);
@@ -258,8 +257,8 @@ impl<'d> Register<'d> {
         self.q.designer().field_net(self.field)
     }
 
-    /// Connects the data input. The register's format must have the binary point of `data` and represent its range, or a mistake
-    /// is reported; [`Designer::narrow`] converts a signal first. A second connection is a mistake too.
+    /// Connects the data input. Reports a mistake unless the register's format has the binary point of `data` and can represent
+    /// the range of `data`; [`Designer::narrow`] converts a signal first. A second connection is a mistake too.
     #[track_caller]
     pub fn takes(self, data: Signal<'d>) {
         let d = self.q.designer();

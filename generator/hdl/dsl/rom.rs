@@ -17,8 +17,8 @@ impl<'d> Rom<'d> {
         self.designer.signal(data)
     }
 
-    /// Sets the number that the ROM has in the block diagram of the device's source, for example of seed 001. Comments in the
-    /// Verilog then call the ROM `ROM 18`, for example, instead of naming it.
+    /// Sets the ROM's number in the source's block diagram. For example, comments in the Verilog then say `ROM 18` instead of
+    /// the name.
     #[must_use]
     pub fn block(self, number: u16) -> Self {
         self.designer.with(|inner| inner.design.roms[self.id.index()].block = Some(number));

@@ -34,7 +34,7 @@ pub struct Dispatches {
 }
 
 impl Dispatches {
-    /// Returns the dispatches among the rules for the next microinstruction; `None` if there are none.
+    /// Returns the dispatches in a list of rules for the next microinstruction; `None` without a dispatch.
     pub fn of(sequences: &[Sequence]) -> Option<Self> {
         let mut found: Option<Self> = None;
         for sequence in sequences {
@@ -197,8 +197,8 @@ fn dispatch_rom(
     })
 }
 
-/// Returns the net that drives `valid`: the signal of [`Designer::valid_after`] behind its registers. A reset clears them, and
-/// so drops the results on their way.
+/// Returns the net that drives `valid`: the signal of [`Designer::valid_after`] behind its registers. A reset clears the
+/// registers, and so drops the results on their way.
 fn valid_line(d: &Designer) -> NetId {
     let Some((mut source, clocks)) = d.with(|inner| inner.valid) else {
         return d.run;

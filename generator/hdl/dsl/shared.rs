@@ -162,7 +162,7 @@ impl Designer {
         self.signal(net)
     }
 
-    /// Replaces a signal of another designer by a constant of the same format, and reports the mistake.
+    /// Returns `signal`. If it belongs to another designer, reports a mistake and returns a constant of the same format.
     #[track_caller]
     pub(crate) fn own(&self, signal: Signal<'_>) -> Signal<'_> {
         let other = signal.designer();
@@ -194,7 +194,7 @@ impl Designer {
     }
 
     /// Returns `source` as a net of exactly `format`, or reports a mistake if the binary points differ or the range does not
-    /// fit. The message says by `what` for which purpose.
+    /// fit. `what` names the purpose in the message.
     #[track_caller]
     pub(crate) fn fitted(&self, source: Signal<'_>, format: Format, what: &str) -> Option<NetId> {
         let (low, high) = source.range();

@@ -41,8 +41,7 @@ impl<'d> Signal<'d> {
         self.designer.with(|inner| inner.design.net(self.id).range)
     }
 
-    /// Sets the number that this block has in the block diagram of the device's source, for example of seed 001. Comments in the
-    /// Verilog state it.
+    /// Sets the block's number in the source's block diagram, which comments in the Verilog state.
     #[must_use]
     pub fn block(self, number: u16) -> Self {
         self.designer.with(|inner| inner.design.nets[self.id.index()].block = Some(number));
@@ -56,8 +55,7 @@ impl<'d> Signal<'d> {
         self
     }
 
-    /// Like [`Signal::doc`], for a comment that belongs to `topic`. A pipeline shows only comments of the topic
-    /// [`Topic::Device`].
+    /// Sets a comment of one line that belongs to `topic`. A pipeline shows only comments of the topic [`Topic::Device`].
     #[must_use]
     pub fn doc_on(self, topic: Topic, line: &str) -> Self {
         self.designer.with(|inner| inner.design.nets[self.id.index()].doc_topic = topic);
@@ -77,7 +75,7 @@ impl<'d> Signal<'d> {
         self
     }
 
-    /// Divides by 2^places by moving the binary point, without logic. For example, 2 places turn `u0.8` into `u-2.10`.
+    /// Divides by 2^places by moving the binary point, without logic: 2 places turn `u0.8` into `u-2.10`.
     #[must_use]
     #[track_caller]
     pub fn shift_right(self, places: i32) -> Self {
@@ -87,7 +85,7 @@ impl<'d> Signal<'d> {
         self.relabelled(format)
     }
 
-    /// Multiplies by 2^places by moving the binary point, without logic. For example, 2 places turn `u0.8` into `u2.6`.
+    /// Multiplies by 2^places by moving the binary point, without logic: 2 places turn `u0.8` into `u2.6`.
     #[must_use]
     #[track_caller]
     pub fn shift_left(self, places: i32) -> Self {
@@ -95,7 +93,7 @@ impl<'d> Signal<'d> {
     }
 
     /// Appends zeros up to `frac` fraction bits: `with_fraction(12)` turns `u0.8` into `u0.12`. Reports a mistake if the signal
-    /// has more.
+    /// has more fraction bits.
     #[must_use]
     #[track_caller]
     pub fn with_fraction(self, frac: i32) -> Self {
@@ -151,8 +149,8 @@ impl<'d> Signal<'d> {
         self.bits(at, Format::BIT)
     }
 
-    /// Appends the bits of `low` below this signal, and reads the result in `format`, as a shift register does with the bit that
-    /// enters. Reports a mistake unless `format` is as wide as both together.
+    /// Appends the bits of `low` below this signal, and reads the result in `format`, as a shift register does with the bit
+    /// that enters. Reports a mistake unless `format` is as wide as both signals together.
     #[must_use]
     #[track_caller]
     pub fn above(self, low: Signal<'d>, format: Format) -> Self {
@@ -204,7 +202,7 @@ impl<'d> Signal<'d> {
         self.designer.signal(id)
     }
 
-    /// Truncates or extends this signal to `format`. The name consists of its name and `suffix`.
+    /// Truncates or extends this signal to `format`. The new net has the signal's name, `_` and `suffix`.
     #[track_caller]
     pub(crate) fn resized_as(self, suffix: &str, format: Format, range: Interval) -> Self {
         let op = match format.width().cmp(&self.format().width()) {
@@ -392,35 +390,35 @@ impl Designer {
         self.signal(self.add_wiring(name, format, range, Driver::Op(Op::Concat(nets))))
     }
 
-    /// Reports a mistake unless `a` and `b` have one bit.
+    /// Returns `a` and `b`. Reports a mistake unless both have one bit.
     #[track_caller]
     pub fn and<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
         let (a, b) = (self.one_bit(a), self.one_bit(b));
         self.signal(self.add_named(name, Format::BIT, Driver::Op(Op::And(a, b))))
     }
 
-    /// Reports a mistake unless `a` and `b` have one bit.
+    /// Returns `a` or `b`. Reports a mistake unless both have one bit.
     #[track_caller]
     pub fn or<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
         let (a, b) = (self.one_bit(a), self.one_bit(b));
         self.signal(self.add_named(name, Format::BIT, Driver::Op(Op::Or(a, b))))
     }
 
-    /// Reports a mistake unless `a` and `b` have one bit.
+    /// Returns the exclusive or. Reports a mistake unless `a` and `b` have one bit.
     #[track_caller]
     pub fn xor<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
         let (a, b) = (self.one_bit(a), self.one_bit(b));
         self.signal(self.add_named(name, Format::BIT, Driver::Op(Op::Xor(a, b))))
     }
 
-    /// Compares the values, so binary points and signs may differ.
+    /// Returns whether the value of `a` is below the value of `b`. Binary points and signs may differ.
     #[track_caller]
     pub fn less<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
         let (a, b) = self.comparable(a, b);
         self.signal(self.add_named(name, Format::BIT, Driver::Op(Op::Less(a, b))))
     }
 
-    /// Compares the values, so binary points and signs may differ.
+    /// Returns whether the values are equal. Binary points and signs may differ.
     #[track_caller]
     pub fn equal<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
         let (a, b) = self.comparable(a, b);
@@ -455,7 +453,7 @@ impl Designer {
     /// Returns a mux that the microprogram controls by its own field, `<name>_select`.
     ///
     /// Reports a mistake if there is no input, or if the inputs have different binary points. [`Signal::with_fraction`] aligns
-    /// them, and [`Designer::bus`] takes any inputs.
+    /// binary points, and [`Designer::bus`] takes any inputs.
     #[track_caller]
     pub fn mux<'d>(&'d self, name: &str, inputs: impl IntoIterator<Item = Signal<'d>>) -> Mux<'d> {
         let inputs: Vec<_> = inputs.into_iter().collect();

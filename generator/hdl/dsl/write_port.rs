@@ -1,8 +1,8 @@
 //! Adds the write port of memories whose words can be replaced at run time, such as the table of a polynomial.
 //!
-//! The environment writes one address at a time, in all memories of the port. It raises `table_write` with an address and the words, and
-//! the memories load them in the first clock in which `table_ready` is 1. The core is ready only while it does not compute, so that a
-//! computation never reads a mixture of old and new words.
+//! The environment writes one address at a time, in all memories of the port. The environment raises `table_write` with an
+//! address and the words, and the memories load them in the first clock in which `table_ready` is 1. The core is ready only
+//! while it does not compute, so that a computation never reads a mixture of old and new words.
 
 use std::panic::Location;
 
@@ -14,8 +14,9 @@ use glint_base::codes;
 use glint_base::fixed::Format;
 
 impl Designer {
-    /// Lets the words of `memories` be replaced at run time. Each memory states the parts of its word, the highest bits first, as
-    /// names and formats: a part `c0` gets the input `table_c0`. Readers of the memories then expect every word.
+    /// Lets the words of `memories` be replaced at run time. Each memory states the parts of its word, the highest bits first,
+    /// as names and formats: a part `c0` gets the input `table_c0`. The interval of a memory's word becomes the whole range of
+    /// its format.
     ///
     /// Reports a mistake if the description already has a write port, or if the parts are not as wide as the word.
     #[track_caller]

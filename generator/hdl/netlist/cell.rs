@@ -2,8 +2,8 @@
 
 use super::NetId;
 
-/// A combinational cell, such as a sum or a mux. It drives one net. "Same width" means that the operands and the result have
-/// equal widths. Operands are nets of a design, or other values of type `N`.
+/// A combinational cell, such as a sum or a mux. The cell drives one net. "Same width" means that the operands and the result
+/// have equal widths. Operands are nets of a design, or other values of type `N`.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Op<N = NetId> {
     /// The bits of the operand, under another name or format; same width.

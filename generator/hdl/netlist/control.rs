@@ -5,8 +5,8 @@ use glint_base::diagnostic::SourceLocation;
 
 /// The control unit of a device: an address counter, a run flag and a ROM of microinstructions.
 ///
-/// An idle device has the address 0 and the run flag 0, which `start` sets. From then on the device executes one microinstruction
-/// a clock, whose [`Sequence`] determines its successor.
+/// An idle device has the address 0 and the run flag 0, which `start` sets. From then on the device executes one
+/// microinstruction a clock. The microinstruction's [`Sequence`] determines the next microinstruction.
 #[derive(Clone, Debug)]
 pub struct Control {
     /// The fields of the control word, the most significant first.
@@ -73,7 +73,7 @@ pub enum Sequence {
         condition: NetId,
         to: usize,
     },
-    /// The value of an operand register selects the next microinstruction, `to[value]`. All of them have higher addresses. For
+    /// The value of an operand register selects the next microinstruction, `to[value]`. All addresses in `to` are higher. For
     /// example, the opcode of a unit selects the microprogram of a function.
     Dispatch {
         /// The output of an operand register, which does not change during a computation.
@@ -86,7 +86,7 @@ pub enum Sequence {
 }
 
 impl Control {
-    /// Returns the control unit of a pipeline, which has none: its identifiers of ROM and registers are invalid.
+    /// Returns a placeholder for a pipeline, which has no control unit: its identifiers of ROM and registers are invalid.
     pub fn none() -> Self {
         Self {
             fields: Vec::new(),

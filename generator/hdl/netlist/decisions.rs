@@ -9,9 +9,8 @@ use std::collections::HashSet;
 use super::{Design, Driver, NetId, Role, Sequence};
 use glint_base::cone;
 
-/// Returns the addresses of the dispatches, and of the loops and jumps whose condition an operand or an undriven net may affect, in
-/// ascending order.
-/// For example, the condition may be that a value computed from an operand is not 0.
+/// Returns the addresses of the dispatches, and of the loops and jumps whose condition an operand or an undriven net may
+/// affect, in ascending order.
 pub fn decided_by_data(design: &Design) -> Vec<usize> {
     let microprogram = design.control.microprogram.iter().enumerate();
     let decided = microprogram.filter(|(_, microinstruction)| match &microinstruction.sequence {

@@ -6,8 +6,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::{Design, Driver, NetId, Op, Pipeline, RegId, WritePort};
 use glint_base::target::DelayMemory;
 
-/// Registers of a pipeline that carry values from one stage to a later stage, with no reader in between. All its values travel
-/// between the same two stages.
+/// The registers of a pipeline that carry values from one stage to a later stage, with no reader in between. All values of the
+/// line travel between the same two stages.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DelayLine {
     /// The stage that computes the values.
@@ -30,8 +30,8 @@ pub struct Delayed {
 }
 
 impl DelayLine {
-    /// Returns the number of words of a memory that replaces the delay line. One more register behind the memory stores its
-    /// output: five registers become a memory of four words.
+    /// Returns the number of words of a memory that replaces the delay line. One more register behind the memory stores the
+    /// memory's output: five registers become a memory of four words.
     pub fn words(&self) -> usize {
         self.values[0].passed().len()
     }
@@ -130,8 +130,8 @@ impl Design {
         lines.retain(|line| kept.contains(&(line.from, line.to)));
     }
 
-    /// Returns the register that follows register `at` in a delay line: its only reader, with the same enable. Neither may have a
-    /// reset or belong to the side channel or to a multiplier.
+    /// Returns the register that follows register `at` in a delay line: its only reader, with the same enable. Neither register
+    /// may have a reset or belong to the side channel or to a multiplier.
     fn next_of_line(
         &self,
         pipeline: &Pipeline,

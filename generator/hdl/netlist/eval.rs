@@ -1,7 +1,7 @@
 //! Evaluates a netlist: each cell as [`Op`] defines it, and a whole design clock by clock.
 //!
 //! This interpreter defines the meaning of a netlist, and is written to be read. The simulator ([`crate::sim`]) is written for
-//! speed. They share no code that evaluates cells, and tests compare both.
+//! speed. Interpreter and simulator share no code that evaluates cells, and tests compare them.
 
 use super::{Design, Driver, NetId, Op, RomId};
 use glint_base::fixed::{Format, mask};

@@ -6,7 +6,7 @@ pub fn pack(widths: &[u32], values: &[u64]) -> u64 {
     widths.iter().zip(values).fold(0, |word, (width, value)| word << width | value)
 }
 
-/// The inverse of [`pack`]: `0b011` with widths 2 and 1 gives 1 and 1.
+/// Returns the values of the fields in a control word: `0b011` with widths 2 and 1 gives 1 and 1.
 pub fn unpack(widths: &[u32], word: u64) -> Vec<u64> {
     let mut rest = word;
     let mut values: Vec<u64> = widths

@@ -139,10 +139,10 @@ pub struct NetlistRegister {
 /// The purpose of a register. Checks compare the architectural registers with the golden model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RegisterKind {
-    /// The write strobe loads it from an input port, or `start` from its buffer. It does not change during a computation. For
-    /// example, `cos_gamma_reg` of `rough`.
+    /// A register of an operand. The write strobe loads it from an input port, or `start` from its buffer. The register does
+    /// not change during a computation. For example, `cos_gamma_reg` of `rough`.
     Operand,
-    /// A buffer in front of an operand register accepts the next operand at any time.
+    /// A buffer in front of an operand register, which accepts the next operand at any time.
     Buffer,
     /// A register of the datapath that the description declares. The golden model predicts it on every clock.
     Architectural,
@@ -162,8 +162,8 @@ pub struct NetlistRom {
     pub data: NetId,
     /// Whether the ROM is read at the rising edge (block RAM) rather than without a clock (logic).
     pub synchronous: bool,
-    /// The read enable of a synchronous ROM, one bit. The ROM keeps its output while the enable is 0. Without one, it reads at
-    /// every rising edge.
+    /// The read enable of a synchronous ROM, one bit. The ROM keeps its output while the enable is 0. Without an enable, the
+    /// ROM reads at every rising edge.
     pub enable: Option<NetId>,
     /// The first read port of this ROM's memory, if this ROM is the second one; both must have the same words.
     pub shares: Option<RomId>,
@@ -193,7 +193,8 @@ pub struct Port {
 pub enum Role {
     /// Input `rst_n`, the reset: active low, synchronous.
     Reset,
-    /// Input `start`, which begins a computation if the device is not busy, or with operand buffers in its last clock too.
+    /// Input `start`, which begins a computation if the device is not busy, with operand buffers also in the last clock of a
+    /// computation.
     Start,
     /// Input for the value of an operand, which the write strobe loads.
     Operand {
@@ -392,7 +393,7 @@ impl Design {
         self.ports.iter().find(|port| wanted(port.role))
     }
 
-    /// Returns the nets on which net `id` depends within one clock. They are operands of its cell, the address of an asynchronous
+    /// Returns the nets on which net `id` depends within one clock: the operands of its cell, the address of an asynchronous
     /// ROM, or the control word of a field.
     pub fn combinational_inputs(&self, id: NetId) -> Vec<NetId> {
         match &self.net(id).driver {

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use super::{Design, Driver, Net, NetId, Op, RegId};
 use glint_base::target::DelayMemory;
 
-/// The facts about a design that accepts a point (a set of operands) every clock or every few clocks.
+/// The facts about a design that accepts a point every clock or every few clocks.
 #[derive(Clone, Debug, Default)]
 pub struct Pipeline {
     /// The FPGA target whose delays divide the computation into stages, such as `ecp5`.
@@ -52,7 +52,7 @@ pub struct Pipeline {
     pub checkpoints: Vec<Checkpoint>,
 }
 
-/// A multiplier that several products share. It computes one product in each slot, a clock modulo the interval.
+/// A multiplier that several products share. The multiplier computes one product in each slot, a clock modulo the interval.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unit {
     /// The name of the multiplier, and of the register behind it, in the Verilog.
@@ -67,7 +67,7 @@ pub struct Unit {
 /// bits.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stage {
-    /// The microinstructions of the sequential design that compute its values.
+    /// The microinstructions of the sequential design that compute the stage's values.
     pub microinstructions: Vec<String>,
     /// The delay of the longest path through the logic, in nanoseconds.
     pub logic_ns: f64,
@@ -75,7 +75,7 @@ pub struct Stage {
     pub slack_ns: f64,
     /// The number of bits in the registers at the end of the stage.
     pub register_bits: u32,
-    /// The number of bits that memories store in place of registers there.
+    /// The number of bits that memories store in place of registers at the end of the stage.
     pub delayed_bits: u32,
 }
 
@@ -93,7 +93,8 @@ pub struct Checkpoint {
 }
 
 impl Pipeline {
-    /// Returns the stage of a net: the first clock in which it has its value for a point that the pipeline accepts in clock 0.
+    /// Returns the stage of a net: the first clock in which the net has its value for a point that the pipeline accepts in
+    /// clock 0.
     pub fn clock_of(&self, net: NetId) -> usize {
         self.stage_of[net.index()]
     }
@@ -103,8 +104,8 @@ impl Pipeline {
     }
 
     /// Returns each multiplier's name and the product that it computes in each slot, the shared multipliers first. A multiplier
-    /// with a single product has its name; a product with a constant takes none. For example, with an interval of 3, `lerp` has
-    /// one multiplier, which is idle in two slots.
+    /// with a single product has the product's name; a product with a constant takes no multiplier. For example, with an
+    /// interval of 3, `lerp` has one multiplier, which is idle in two slots.
     pub fn multipliers(&self, design: &Design) -> Vec<(String, Vec<Option<String>>)> {
         let shared = self.units.iter().map(|unit| (unit.name.clone(), unit.serves.clone()));
         let mut multipliers: Vec<_> = shared.collect();
@@ -154,7 +155,7 @@ pub struct Multiplier {
 }
 
 impl Design {
-    /// Returns the multiplier whose output register is this register.
+    /// Returns the multiplier whose output register is `register`, or `None` for any other register.
     pub fn multiplier(&self, register: RegId) -> Option<Multiplier> {
         self.pipeline.as_ref().filter(|it| it.registered.contains(&register))?;
         let product = self.register(register).data?;

@@ -26,8 +26,8 @@ pub fn setting_of(
     }
 }
 
-/// Returns the nets on which `net` depends within the clock of `microinstruction`. If it determines the select of a mux, the mux
-/// depends only on the chosen input.
+/// Returns the nets on which `net` depends within the clock of `microinstruction`. If the microinstruction determines the
+/// select of a mux, the mux depends only on the chosen input.
 pub fn passed_on(design: &Design, microinstruction: &Microinstruction, net: NetId) -> Vec<NetId> {
     if let Driver::Op(Op::Mux { select, inputs }) = &design.net(net).driver
         && let Some(chosen) = setting_of(design, microinstruction, *select)

@@ -18,9 +18,9 @@ pub struct Left {
 /// Returns for each microinstruction an upper limit of the clocks from its execution to the clock with `done`. The caller must
 /// know that the register of each loop's condition counts down by one in each iteration.
 ///
-/// Returns `None` if a microinstruction waits for `start`, or the last one does not end the computation. It is also `None` if a
-/// loop has several microinstructions, or its condition depends on anything but one register. A jump forward has no such
-/// restriction.
+/// Returns `None` if a microinstruction waits for `start`, or if the last microinstruction does not end the computation.
+/// Returns `None` also for a loop with several microinstructions, or with a condition that depends on anything but one
+/// register. A jump forward has no such restriction.
 pub fn remaining(design: &Design) -> Option<Vec<Left>> {
     let microprogram = &design.control.microprogram;
     let mut left: Vec<Left> = Vec::with_capacity(microprogram.len());
@@ -55,8 +55,8 @@ pub fn remaining(design: &Design) -> Option<Vec<Left>> {
     Some(left)
 }
 
-/// Returns the latest clock in which `done` can be high, if the caller knows the same of the counters. Clock 0 accepts `start`.
-/// Returns `None` if [`remaining`] finds no limit, or if the design has no microprogram.
+/// Returns the latest clock in which `done` can be high, if each loop's counter counts down by one in each iteration. Clock 0
+/// accepts `start`. Returns `None` if [`remaining`] finds no limit, or if the design has no microprogram.
 pub fn latest_done(design: &Design) -> Option<u32> {
     // Microinstruction 0 is executed in clock 1.
     let first = *remaining(design)?.first()?;

@@ -25,8 +25,8 @@ pub struct HandshakeTiming {
 }
 
 impl HandshakeTiming {
-    /// Returns the number of clocks for each point without a pause. It counts from one result to the next if a computation has
-    /// several, and otherwise from one `start` to the next. `rough` gives 11.
+    /// Returns the number of clocks for each point without a pause: from one result to the next if a computation has several
+    /// results, and otherwise from one `start` to the next. `rough` gives 11.
     pub fn clocks_per_point(&self) -> Option<u32> {
         self.valid_to_valid.or(self.start_to_start)
     }

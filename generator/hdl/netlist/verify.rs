@@ -1,7 +1,7 @@
 //! Checks the structure of a [`Design`]: its names, drivers, widths, combinational loops and microprogram.
 //!
 //! The description language runs these checks on every design that a user describes; tests run them on generated pipelines. For
-//! example, they report a net without a driver. Only co-simulation with the golden model notices a wrong formula.
+//! example, the checks report a net without a driver. Only co-simulation with the golden model notices a wrong formula.
 
 use std::collections::HashMap;
 

@@ -36,7 +36,7 @@ impl WritePort {
     }
 }
 
-/// Joins bit patterns, each with its width, the highest bits first. For example, 0b10 in 2 bits and 0b1 in 3 bits give 0b10001.
+/// Joins bit patterns, each with its width, the highest bits first: 0b10 in 2 bits and 0b1 in 3 bits give 0b10001.
 pub fn joined(parts: impl Iterator<Item = (u64, u32)>) -> u64 {
     let mut word: u64 = 0;
     for (bits, width) in parts {

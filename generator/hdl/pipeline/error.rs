@@ -32,7 +32,7 @@ pub enum PipelineErrorKind {
     },
     /// The requested interval exceeds the number of clocks that the sequential core takes for a point.
     Interval {
-        /// This number of clocks.
+        /// The number of clocks that the sequential core takes for a point.
         most: usize,
     },
     /// The user requested a rate in points per second together with a number of stages. A rate needs a clock frequency.

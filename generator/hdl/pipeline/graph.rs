@@ -88,7 +88,7 @@ pub struct Graph {
     /// The number of a node is its index.
     pub nodes: Vec<Node>,
     known: HashMap<(Cell, u32, bool), NodeId>,
-    /// The microinstruction that is being unrolled, as a position in [`super::unroll::Unrolled::steps`]. New nodes get it.
+    /// The microinstruction that is being unrolled, as a position in [`super::unroll::Unrolled::steps`], which new nodes get.
     pub step: usize,
 }
 
@@ -110,14 +110,14 @@ impl Graph {
         }
     }
 
-    /// Returns all nodes on which `roots` depend, with them, each behind its operands.
+    /// Returns `roots` and all nodes on which they depend, each behind its operands.
     pub fn cone(&self, roots: impl IntoIterator<Item = NodeId>) -> Vec<NodeId> {
         let operands = |at: usize| self.nodes[at].cell.operands().into_iter().map(NodeId::index);
         let live = cone::needed(self.nodes.len(), roots.into_iter().map(NodeId::index), operands);
         (0..live.len()).filter(|&at| live[at]).map(|at| NodeId(at as u32)).collect()
     }
 
-    /// Narrows the interval of node `id` to its intersection with `range`, unless that is empty. Returns `id`.
+    /// Narrows the interval of node `id` to its intersection with `range`, unless the intersection is empty. Returns `id`.
     pub fn refine(&mut self, id: NodeId, range: Interval) -> NodeId {
         let node = &mut self.nodes[id.index()];
         // On a path that is never taken, the intersection can be empty.
@@ -141,8 +141,8 @@ impl Graph {
         self.insert(Cell::Constant(bits), format, (raw, raw), label)
     }
 
-    /// Like [`Graph::constant`], but the description's label replaces the label of an equal constant of the microprogram, such as
-    /// the value of a select line.
+    /// Returns the node of a constant of the description. `label` replaces the label of an equal constant of the
+    /// microprogram, such as the value of a select line.
     pub fn described_constant(&mut self, bits: u64, format: Format, label: &Label) -> NodeId {
         let id = self.constant(bits, format, label);
         let node = &mut self.nodes[id.index()];

@@ -1,4 +1,4 @@
-//! Chooses the interval of a pipeline: the number of clocks from one point (a set of operands) to the next.
+//! Chooses the interval of a pipeline.
 //!
 //! A user requests the interval itself, a rate in points per second, or a largest number of multipliers. For example, 25 million
 //! points a second at 100 MHz allow an interval of 4.
@@ -13,8 +13,9 @@ use crate::netlist::Design;
 pub enum IntervalGoal {
     /// The interval itself, in clocks.
     Clocks(usize),
-    /// The largest interval with at least this rate, in million points a second, at the requested clock. The clocks of the
-    /// sequential core for a point limit it. For example, 26 million points a second at 130 MHz allow an interval of 5 clocks.
+    /// The largest interval with at least this rate, in million points a second, at the requested clock. The interval does not
+    /// exceed the clocks of the sequential core for a point. For example, 26 million points a second at 130 MHz allow an
+    /// interval of 5 clocks.
     Rate(f64),
     /// The smallest interval that reaches the requested clock with at most this number of multipliers.
     Multipliers(usize),
@@ -24,7 +25,8 @@ pub enum IntervalGoal {
 /// computes a point. `problems` makes the scheduling problem for an interval.
 ///
 /// A rate gets the longest interval up to `most` that reaches the rate and the clock. A number of multipliers gets the shortest
-/// one that reaches the clock. If no interval reaches the clock, both get 1, and the scheduler reports the error.
+/// interval that reaches the clock with this number. If no interval reaches the clock, the result is 1, and the scheduler
+/// reports the error.
 ///
 /// # Errors
 /// Fails if the requested interval exceeds `most`, or the rate exceeds one point a clock or lacks a clock frequency. Also fails

@@ -1,4 +1,4 @@
-//! Turns a design with a microprogram into a pipeline, which accepts a point (a set of operands) every clock or every few clocks.
+//! Turns a design with a microprogram into a pipeline, which accepts a point every clock or every few clocks.
 //!
 //! `unroll` turns the design into a graph of values, which the passes in `passes` rewrite. `request` finds a schedule
 //! (`schedule`), which assigns every value to a stage. `stages` builds the pipeline, with a register wherever a value passes from
@@ -63,7 +63,7 @@ pub enum Delays {
 /// A user's request, for example a clock of 100 MHz on ECP5, a point every clock, no stalls.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
-    /// Its delays and multipliers determine the schedule.
+    /// The FPGA target, whose delays and multipliers determine the schedule.
     pub target: &'static Timing,
     pub goal: Goal,
     /// The number of clocks from one point to the next.
@@ -92,8 +92,8 @@ pub fn pass_results(
 ///
 /// # Errors
 /// Fails if the microprogram cannot be unrolled into a computation without loops. Also fails if a pipeline cannot have the
-/// requested clock, number of stages, interval, rate or number of multipliers. The latter errors state the nearest value that can
-/// be reached. Fails without such a value if a rate comes without a clock frequency, or if the solver finds no schedule.
+/// requested clock, number of stages, interval, rate or number of multipliers; the error states the nearest possible value.
+/// Fails without such a value if a rate comes without a clock frequency, or if the solver finds no schedule.
 pub fn pipeline(sequential: &Design, options: &Options) -> Result<Design, PipelineError> {
     let mut results = pass_results(sequential, options)?;
     let Some(PassResult { computation, .. }) = results.pop() else {

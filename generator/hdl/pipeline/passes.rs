@@ -17,7 +17,7 @@ const UNROLL: &str = "unroll";
 
 /// A rewrite of a computation that keeps its results.
 pub struct Pass {
-    /// The directory with the files that test the pass has the same name.
+    /// The name of the pass, and of the directory with its test files.
     pub name: &'static str,
     /// A sentence for `glint schedule --passes`.
     pub description: &'static str,
@@ -99,8 +99,8 @@ mod tests {
     /// The number of combinations of operand values that one test file may have.
     const MOST: u64 = 1 << 16;
 
-    /// Each file has a computation and the one that the pass must return. Both must have the same results for every combination
-    /// of operand values.
+    /// Each file has a computation and the one that the pass must return. Both computations must have the same results for
+    /// every combination of operand values.
     #[test]
     fn passes_make_what_their_files_say() {
         let place = Path::new(env!("CARGO_MANIFEST_DIR")).join("pipeline/passes");

@@ -25,8 +25,8 @@ pub fn ever(graph: &Graph, condition: NodeId, free: &[NodeId]) -> Option<bool> {
 }
 
 /// Counts the `conditions` that are 1, for each bit pattern of the one leaf on which all of them depend. `None` marks patterns
-/// outside its range. For example, the conditions `count > 0` and `count > 1` give 0, 1, 2 and 2 for a `count` of two bits.
-/// Leaves are as in [`ever`].
+/// outside the leaf's range. For example, the conditions `count > 0` and `count > 1` give 0, 1, 2 and 2 for a `count` of two
+/// bits. Leaves are as in [`ever`].
 ///
 /// Returns `None` if the conditions depend on no leaf or on several, or if the leaf has more than 6 bits.
 pub fn count(

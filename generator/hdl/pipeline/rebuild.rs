@@ -3,8 +3,8 @@
 use super::graph::{Cell, Graph, Node, NodeId, NodeOp};
 use super::unroll::Unrolled;
 
-/// Copies a computation. `replace` gets each combinational cell, with operands in the new graph, and the original node. It
-/// returns a substitute in the new graph, or `None` to copy the cell.
+/// Copies a computation. `replace` gets each combinational cell, with operands in the new graph, and the original node.
+/// `replace` returns a substitute in the new graph, or `None` to copy the cell.
 pub fn rebuilt(
     unrolled: &Unrolled,
     mut replace: impl FnMut(&mut Graph, &NodeOp, &Node) -> Option<NodeId>,

@@ -1,6 +1,6 @@
 //! Finds the interval and the schedule for the pipeline that a user requests.
 //!
-//! If a clock frequency or a number of stages cannot be reached, the error states the nearest value that can.
+//! If a clock frequency or a number of stages cannot be reached, the error states the nearest possible value.
 
 use super::error::{PipelineError, PipelineErrorKind};
 use super::graph::NodeId;
@@ -120,8 +120,8 @@ impl<'a> Request<'a> {
         self.error(kind, message, Some(limiting))
     }
 
-    /// Returns the highest clock frequency, in MHz, if products use the output registers of multipliers. Returns `None` if they
-    /// use them already, or if the target states no delay for them.
+    /// Returns the highest clock frequency, in MHz, if products use the output registers of multipliers. Returns `None` if
+    /// products use them already, or if the target states no delay for them.
     fn registered_clock(&self, interval: usize) -> Option<f64> {
         if self.options.registered || self.options.target.registered.is_none() {
             return None;
@@ -129,14 +129,15 @@ impl<'a> Request<'a> {
         self.problems(true, interval).fastest().map(|limit| schedule::megahertz(limit.period))
     }
 
-    /// The solver found no schedule, although a schedule always exists. `at` is the node at which its result is wrong, if known.
+    /// Returns the error that the solver found no schedule, although one always exists. `at` is the node at which the solver's
+    /// result is wrong, if known.
     fn unsolved(&self, why: &str, at: Option<NodeId>) -> PipelineError {
         let name = &self.sequential.name;
         let message = format!("`{name}` has no schedule: {why}; this is a bug in Glint");
         self.error(PipelineErrorKind::Unsolved, message, at)
     }
 
-    /// The error has the source line of `node`, or of the design's first net.
+    /// Returns an error with the source line of `node`, or of the design's first net.
     fn error(
         &self,
         kind: PipelineErrorKind,

@@ -64,14 +64,13 @@ pub struct ScheduleProblem<'a> {
     reset_by: Vec<Option<NodeId>>,
     /// For each node that a rising edge computes, its timing.
     clocked: Vec<Option<ClockedNode>>,
-    /// The smallest number of clocks from one point to the next.
     interval: usize,
     /// The products that share multipliers.
     kinds: Vec<ProductGroup>,
 }
 
-/// The timing of a node that gets its value at a rising edge. It is a word of a block memory, a product in the register of a
-/// multiplier, or a product of a shared multiplier.
+/// The timing of a node that gets its value at a rising edge. The node is a word of a block memory, a product in the register
+/// of a multiplier, or a product of a shared multiplier.
 #[derive(Clone, Copy, Debug)]
 struct ClockedNode {
     /// The time from the operands to the rising edge in nanoseconds, as far as it exceeds the path to an ordinary register.
@@ -83,8 +82,8 @@ struct ClockedNode {
     apart: usize,
 }
 
-/// Returns the clock frequency for a `period` in nanoseconds, in MHz. It is rounded down to one decimal, so that it can be
-/// reached: 7 ns give 142.8 MHz.
+/// Returns the clock frequency for a `period` in nanoseconds, in MHz. The frequency is rounded down to one decimal, so that it
+/// can be reached: 7 ns give 142.8 MHz.
 pub fn megahertz(period: f64) -> f64 {
     (10_000.0 / period).floor() / 10.0
 }
@@ -276,9 +275,9 @@ impl<'a> ScheduleProblem<'a> {
         }
     }
 
-    /// Returns the schedule for a clock period in nanoseconds. It has as few stages as possible, and then the fewest register
-    /// bits; some muxes count as bits too (`solve`). Products that share multipliers get their stages first. The schedule may
-    /// then have more stages or bits than necessary.
+    /// Returns the schedule for a clock period in nanoseconds. The schedule has as few stages as possible, and then the fewest
+    /// register bits; some muxes count as bits too (`solve`). Products that share multipliers get their stages first. The
+    /// schedule may then have more stages or bits than necessary.
     ///
     /// # Errors
     /// Fails if an operation takes longer than the period, or if the solver fails.
@@ -291,8 +290,8 @@ impl<'a> ScheduleProblem<'a> {
         self.solve(period, 0)
     }
 
-    /// Returns the schedule with the shortest clock period for this number of stages, or for more stages if no period allows so
-    /// few. The slowest operation limits the period. Fails if the solver fails.
+    /// Returns the schedule with the shortest clock period for this number of stages. If no period allows so few stages, the
+    /// schedule has more stages. The slowest operation limits the period. Fails if the solver fails.
     pub fn for_stages(&self, stages: usize) -> Result<Schedule, ScheduleRefusal> {
         let fastest = self.fastest_period();
         let all = self.delay.iter().chain(&self.setup).sum::<f64>();
@@ -326,7 +325,6 @@ impl<'a> ScheduleProblem<'a> {
         }
     }
 
-    /// Returns the smallest number of stages for a clock period in nanoseconds.
     fn least_stages(&self, period: f64) -> usize {
         let differences = self.differences(period);
         self.latency(&differences, &self.taken(&differences))
@@ -342,8 +340,8 @@ impl<'a> ScheduleProblem<'a> {
     }
 
     /// Returns the number of register rows between the nodes `from` and `user`, whose path takes longer than the `most`
-    /// nanoseconds of a stage. If even the wire from a block memory to a multiplier takes too long, it is 2. The two lie in
-    /// separate columns of the chip, so that one register is placed near each.
+    /// nanoseconds of a stage. The number is 2 if even the wire from a block memory to a multiplier takes too long. Memory and
+    /// multiplier lie in separate columns of the chip, and one register is placed near each.
     fn registers_between(&self, from: NodeId, user: NodeId, most: f64) -> usize {
         let product = matches!(self.graph.node(user).cell, Cell::Op(NodeOp::Mul(..)));
         let far = product && delay::is_block(self.target, self.graph, from);
@@ -433,7 +431,7 @@ impl<'a> ScheduleProblem<'a> {
     }
 
     /// Gives the products that share multipliers their stages, one after another. The product that can have the earliest stage
-    /// comes first, and among several the one that the most stages must follow.
+    /// comes first, and among several such products the one that the most stages must follow.
     fn taken(&self, differences: &[StageDifference]) -> Taken {
         let mut after = vec![0; self.graph.nodes.len()];
         for &(from, to, apart) in differences.iter().rev() {
@@ -469,8 +467,8 @@ impl<'a> ScheduleProblem<'a> {
         if matches!(self.graph.nodes[id].cell, Cell::Operand(_)) { 0 } else { latency - 1 }
     }
 
-    /// Checks the solver's stages against every constraint, because it computes with floating-point numbers. Fails with the first
-    /// violated constraint.
+    /// Checks the solver's stages against every constraint, because the solver computes with floating-point numbers. Fails with
+    /// the first violated constraint.
     fn verify(
         &self,
         differences: &[StageDifference],
@@ -675,7 +673,7 @@ impl<'a> ScheduleProblem<'a> {
         last
     }
 
-    /// Returns the multipliers that serve several products, with the product of each slot (clock modulo the interval).
+    /// Returns the multipliers that serve several products, with the product of each slot.
     pub fn units(&self, schedule: &Schedule) -> Vec<MultiplierUnit> {
         let mut units = Vec::new();
         for kind in &self.kinds {

@@ -7,8 +7,8 @@
 use super::graph::{Cell, Graph, Label, NodeId, NodeOp};
 use glint_base::fixed::Format;
 
-/// Returns a node with the value of node `id`. For a mux `over ? most : rest` with a constant `most`, bypasses the muxes of this
-/// kind in `rest` whose condition [`follows`] from the new one.
+/// Returns a node with the value of node `id`. For a mux `over ? most : rest` with a constant `most`, bypasses each mux of this
+/// kind in `rest` whose condition [`follows`] from `over`.
 pub fn settled(graph: &mut Graph, id: NodeId) -> NodeId {
     let node = graph.node(id).clone();
     let Some((over, rest, most)) = limit(graph, id) else { return id };
@@ -27,7 +27,7 @@ fn limit(graph: &Graph, id: NodeId) -> Option<(NodeId, NodeId, NodeId)> {
 }
 
 /// Rewrites the condition `id` if it is one bit of a mux `over ? most : rest` whose constant `most` has a 1 at this bit. The
-/// condition is 1 if `over` or the same bit of `rest` is, and so need not wait for the mux.
+/// condition is 1 if `over` or the same bit of `rest` is 1, and so need not wait for the mux.
 fn flag(graph: &mut Graph, id: NodeId) -> NodeId {
     let node = graph.node(id).clone();
     let Cell::Op(NodeOp::Slice { of, low }) = node.cell else { return id };
@@ -40,8 +40,8 @@ fn flag(graph: &mut Graph, id: NodeId) -> NodeId {
     either(graph, over, bit, &label)
 }
 
-/// Returns a node that is 1 if bit `a` or bit `b` is. If `b` is the bit directly below the bits that `a` tests, the node is one
-/// [`NodeOp::Any`] of all these bits.
+/// Returns a node that is 1 if bit `a` or bit `b` is 1. If `b` is the bit directly below the bits that `a` tests, the node is
+/// one [`NodeOp::Any`] of all these bits.
 fn either(graph: &mut Graph, a: NodeId, b: NodeId, label: &Label) -> NodeId {
     if let (Some((of, low, width)), Some((other, below, 1))) = (run(graph, a), run(graph, b))
         && of == other

@@ -10,7 +10,7 @@ use std::cmp::Reverse;
 use super::graph::{Cell, Graph, NodeId, NodeOp};
 use glint_base::target::{FAMILIES, Timing};
 
-/// Products that can share multipliers, each in its own slot (clock modulo the interval).
+/// Products that can share multipliers, each in its own slot.
 #[derive(Clone, Debug)]
 pub struct ProductGroup {
     /// The products, in the order of the computation.
@@ -93,7 +93,7 @@ fn has_room(graph: &Graph, target: &Timing, product: NodeId) -> bool {
     widths[1] < target.multiplier.0 && widths[0] < target.multiplier.1
 }
 
-/// Makes a group for signed and a group for unsigned multipliers. Of n products, `interval` share a multiplier.
+/// Makes a group for signed and a group for unsigned multipliers; `interval` products share a multiplier.
 fn group(signed: Vec<NodeId>, unsigned: Vec<NodeId>, interval: usize) -> [ProductGroup; 2] {
     [(signed, true), (unsigned, false)].map(|(products, signed)| {
         let units = products.len().div_ceil(interval);

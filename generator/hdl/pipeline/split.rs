@@ -1,9 +1,10 @@
 //! Splits products that are too wide for the multipliers of an FPGA target into sums of narrower products.
 //!
-//! A factor that is too wide is divided into as many upper bits as a multiplier takes, and the remaining lower bits. A few lower
-//! bits are multiplied row by row in look-up tables; more lower bits become a product of their own. In a square, the two partial
-//! products with the lower bits l become one product: `(u·2^r + l)² = u²·4^r + l·(u·2^(r+1) + l)`. A factor's highest bit may be
-//! 1 only if all its other bits are 0. The product is then either the other factor, shifted, or a product without this bit.
+//! A factor that is too wide is divided into as many upper bits as a multiplier takes, and the remaining lower bits. A few
+//! lower bits are multiplied row by row in look-up tables; more lower bits become a product of their own. In a square, the two
+//! partial products with the lower bits l become one product: `(u·2^r + l)² = u²·4^r + l·(u·2^(r+1) + l)`. If a factor is at
+//! most a power of two, its highest bit is 1 only if all other bits are 0. The product is then either the other factor,
+//! shifted, or a product without this bit.
 
 use super::graph::{Graph, Label, NodeId, NodeOp};
 use super::rebuild::rebuilt;
@@ -112,9 +113,9 @@ fn with_a_sign(graph: &Graph, [a, b]: [NodeId; 2]) -> Option<[NodeId; 2]> {
     (positive(factors[0]) && graph.width(factors[1]) > 1).then_some(factors)
 }
 
-/// Multiplies two signed factors, of which only `other` may be negative. The bits of `other` without the sign are multiplied
-/// first. If the sign is set, `positive` is then subtracted at the weight of the sign. This takes narrower multipliers than a
-/// signed product.
+/// Multiplies two signed factors; only `other` may be negative. The bits of `other` without the sign are multiplied first. If
+/// the sign is set, `positive` is then subtracted at the weight of the sign. This takes narrower multipliers than a signed
+/// product.
 fn below_the_sign(
     graph: &mut Graph,
     target: &Timing,
@@ -341,7 +342,7 @@ mod tests {
         device.value(design.find("product_out").expect("a result"))
     }
 
-    /// Also checks that no factor has more than 4 bits.
+    /// Returns the number of multipliers, and checks that no factor has more than 4 bits.
     fn multipliers(design: &Design) -> usize {
         let products = design.iter().filter_map(|(_, net)| match net.driver {
             Driver::Op(Op::Mul(a, b)) => Some([a, b]),

@@ -1,4 +1,4 @@
-//! Builds the pipelined design from a schedule.
+//! Builds the pipelined design from a schedule, which has the stage of each value.
 
 use std::collections::{BTreeSet, HashMap, HashSet};
 
@@ -136,7 +136,8 @@ struct StageBuilder<'a> {
 }
 
 impl StageBuilder<'_> {
-    /// Adds a net to `stage`. It has the source line of the sequential design's first net until `labelled` changes it.
+    /// Adds a net to `stage`. The net has the source line of the sequential design's first net until `labelled` changes the
+    /// line.
     fn net(&mut self, name: String, stage: usize, format: Format, driver: Driver) -> NetId {
         self.taken.insert(name.clone());
         self.pipeline.stage_of.push(stage);
@@ -326,8 +327,8 @@ impl StageBuilder<'_> {
         id
     }
 
-    /// Makes the counter of slots (clocks modulo the interval), and returns the net that is 1 in slot 0. An interval of 1 needs
-    /// neither.
+    /// Makes the counter of slots, and returns the net that is 1 in slot 0. Returns `None` for an
+    /// interval of 1, which needs no counter.
     fn slots(&mut self) -> Option<NetId> {
         let last = self.pipeline.interval.checked_sub(1).filter(|last| *last > 0)?;
         let bits = usize::BITS - last.leading_zeros();
@@ -361,8 +362,9 @@ impl StageBuilder<'_> {
         self.inner("slot_is", Format::BIT, Driver::Op(Op::Equal(slot, number)))
     }
 
-    /// Returns the enable of the registers behind `stage`, which store its values until the next point arrives there. It is 1
-    /// only in the slot in which a point leaves `stage`. With an interval of 1, it is `advance`, or `None` if points always move.
+    /// Returns the enable of the registers behind `stage`, which store the stage's values until its next point. The enable is 1
+    /// only in the slot in which a point leaves `stage`. With an interval of 1, the enable is `advance`, or `None` if points
+    /// always move.
     fn load(&mut self, stage: usize) -> Option<NetId> {
         let Some(slot) = self.pipeline.slot else { return self.advance };
         let number = stage % self.pipeline.interval;
@@ -378,8 +380,8 @@ impl StageBuilder<'_> {
         Some(load)
     }
 
-    /// Makes the shared multipliers, without the muxes of their factors. Returns each with the nets of its two operand registers.
-    /// `registered` says whether products use the registers inside the multipliers.
+    /// Makes the shared multipliers, without the muxes of their factors. Returns each multiplier with the nets of its two
+    /// operand registers. `registered` says whether products use the registers inside the multipliers.
     fn units(&mut self, registered: bool) -> Vec<(sharing::MultiplierUnit, [NetId; 2])> {
         let mut made = Vec::new();
         for (number, unit) in (1..).zip(self.problems.units(self.schedule)) {
@@ -467,8 +469,8 @@ impl StageBuilder<'_> {
         wide
     }
 
-    /// Makes the value of every node in its stage, and the registers that carry it to its last use. With an interval above 1,
-    /// such a register stores the value until the next point arrives.
+    /// Makes the value of every node in its stage, and the registers that carry the value to its last use. With an interval
+    /// above 1, such a register stores the value until the next point arrives.
     fn cells(&mut self) {
         let last = self.problems.last_use(self.schedule);
         for &id in self.problems.live() {
@@ -498,7 +500,7 @@ impl StageBuilder<'_> {
         }
     }
 
-    /// The product has the low bits of the shared multiplier's register.
+    /// Returns the net of a product that shares a multiplier: the low bits of the multiplier's register.
     fn shared_product(&mut self, id: NodeId, stage: usize) -> NetId {
         let (of, format) = (self.shared[&id], self.graph.node(id).format);
         let op = match self.design.width(of) == format.width() {
@@ -508,7 +510,6 @@ impl StageBuilder<'_> {
         self.of_node(id, stage, Driver::Op(op), self.graph.node(id).label.named)
     }
 
-    /// Makes the net of a node in a stage.
     fn of_node(&mut self, id: NodeId, stage: usize, driver: Driver, named: bool) -> NetId {
         let name = self.staged(&self.names[&id], stage);
         let net = self.net(name, stage, self.graph.node(id).format, driver);
@@ -621,8 +622,8 @@ impl StageBuilder<'_> {
         }
     }
 
-    /// Makes the output `table_ready`, which is 1 while no stage has a point and none is offered, and the net that loads a word, if the
-    /// design has a write port. `valid` has the valid bits of the stages.
+    /// Makes the output `table_ready` and the net that loads a word, if the design has a write port. `table_ready` is 1 while
+    /// no stage has a point and no point is offered. `valid` has the valid bits of the stages.
     fn table_ready(&mut self, valid: &[NetId], offered: NetId) {
         let Some(write) = self.net_with(Role::TableWrite) else { return };
         let stages = valid[1..].iter().copied();

@@ -111,7 +111,7 @@ fn a_loop_without_a_bound_cannot_be_unrolled() {
     );
 }
 
-/// A function adds 1 to the operand, and the other one doubles it. Each loads the register that the other one does not load.
+/// Has two functions: one adds 1 to the operand, and one doubles it. Each function loads its own register.
 fn two_functions() -> Design {
     let byte = Format::unsigned(8, 0);
     design(|d| {
@@ -281,7 +281,7 @@ fn sum_behind_products(comparisons: u32) -> Design {
     })
 }
 
-/// Registers stay as long as there are no more than look-up tables, and memories replace those beyond them.
+/// As many registers stay as there are look-up tables, and memories replace the rest.
 #[test]
 fn registers_stay_beside_look_up_tables() {
     let lines = |delays: Delays, comparisons: u32| {

@@ -1,10 +1,10 @@
-//! Unrolls a microprogram into a graph of values, by executing it symbolically with unknown operands.
+//! Unrolls a microprogram into a graph of values. For this, one computation is executed symbolically, with unknown operands,
+//! from the clock that accepts `start` to the clock with the results.
 //!
-//! The execution follows one computation from the clock that accepts `start` to the clock with the results. The fields of the
-//! control word are constants in each clock, so that muxes with a field as their select disappear. If a condition depends on an
-//! operand, the execution follows both branches, and muxes choose the register contents behind them. A loop is unrolled as often
-//! as it can run. If an operand selects among several microprograms (a dispatch), a computation is executed for each value of the
-//! operand, and muxes choose the results. The module fails if a computation takes more than 4096 clocks.
+//! The fields of the control word are constants in each clock, so that muxes with a field as their select disappear. If a
+//! condition depends on an operand, the execution follows both branches, and muxes choose the register contents behind them. A
+//! loop is unrolled as often as it can run. If an operand selects among several microprograms (a dispatch), a computation is
+//! executed for each value of the operand, and muxes choose the results.
 
 mod clock;
 mod cycle;
@@ -87,18 +87,18 @@ pub fn unroll(design: &Design) -> Result<Unrolled, Diagnostics> {
     run(design, Iterations::OneByOne).map_err(|diagnostic| Diagnostics(vec![diagnostic]))
 }
 
-/// Unrolls as [`unroll`] does, but with fewer muxes for loops whose number of iterations depends on an operand. They become
-/// blocks of 8, 4, 2 and 1 iterations, and one bit of the number enables each. Single iterations remain if a loop has at most
-/// four, they are not alike, or their number depends on several values or on more than 6 bits.
+/// Unrolls as [`unroll`] does, but with fewer muxes for loops whose number of iterations depends on an operand. Such a loop
+/// becomes blocks of 8, 4, 2 and 1 iterations, and one bit of the number enables each block. Single iterations remain if a loop
+/// has at most four, if they are not alike, or if their number depends on several values or on more than 6 bits.
 ///
 /// # Errors
-/// Fails as [`unroll`] does.
+/// Fails for the reasons that [`unroll`] lists.
 pub fn unroll_in_powers(design: &Design) -> Result<Unrolled, Diagnostics> {
     run(design, Iterations::InPowers).map_err(|diagnostic| Diagnostics(vec![diagnostic]))
 }
 
-/// Unrolls as [`unroll_in_powers`] does, but returns only the first mistake, and fails also if the microprogram dispatches,
-/// because all points of a pipeline pass the same stages.
+/// Unrolls as [`unroll_in_powers`] does, but returns only the first mistake. Fails also if the microprogram dispatches, because
+/// all points of a pipeline pass the same stages.
 pub(super) fn unroll_for_pipeline(design: &Design) -> Result<Unrolled, Diagnostic> {
     let executor = Executor::new(design, Iterations::InPowers);
     for (at, microinstruction) in design.control.microprogram.iter().enumerate() {
@@ -120,8 +120,8 @@ enum Iterations {
     InPowers,
 }
 
-/// Returns a diagnostic if a result depends on a value that an earlier computation has left in a register or a memory output. A
-/// microprogram that cannot be unrolled has none.
+/// Returns a diagnostic if a result depends on a value that an earlier computation has left in a register or a memory output.
+/// Returns `None` also for a microprogram that cannot be unrolled.
 pub fn carried(design: &Design) -> Option<Diagnostic> {
     let (executor, results) = executed(design, Iterations::InPowers).ok()?;
     executor.determined(&results, "carries a state from one point to the next").err()
@@ -135,8 +135,8 @@ fn run(design: &Design, iterations: Iterations) -> Result<Unrolled, Diagnostic> 
     Ok(executor.unrolled)
 }
 
-/// Executes the microprogram up to the clock with the results. Returns each result or status port with its node. Fails as
-/// [`unroll`] does, except that results may depend on an earlier computation.
+/// Executes the microprogram up to the clock with the results. Returns each result or status port with its node. Fails if the
+/// microprogram cannot be unrolled, but lets results depend on an earlier computation.
 fn executed(
     design: &Design,
     iterations: Iterations,
@@ -243,8 +243,8 @@ impl<'a> Executor<'a> {
     }
 
     /// Executes microinstructions from `at` on, up to the clock with the results, or until the microinstruction at `stop` comes
-    /// next. Returns the state at `stop`, or `None` if the results came first and are in `self.shown`. Fails as [`unroll`]
-    /// describes.
+    /// next. Returns the state at `stop`, or `None` if the results came first and are in `self.shown`. Fails for the reasons
+    /// that [`unroll`] lists.
     fn follow(&mut self, mut at: At, stop: Option<usize>) -> Result<Option<State>, Diagnostic> {
         let design = self.design;
         loop {
@@ -307,7 +307,8 @@ impl<'a> Executor<'a> {
     /// saves muxes for a counter, and does no harm, because an iteration counts only if all iterations before it took place.
     ///
     /// # Errors
-    /// Fails if the condition depends on more than 16 bits, if an iteration sets `valid`, or as [`Executor::follow`] does.
+    /// Fails if the condition depends on more than 16 bits, if an iteration sets `valid`, or if a microinstruction cannot be
+    /// unrolled.
     fn iterations(
         &mut self,
         mut state: State,
@@ -365,8 +366,8 @@ impl<'a> Executor<'a> {
     /// of this number enables each block. `counters` marks the registers that count iterations; their values in the returned
     /// state are wrong.
     ///
-    /// Returns `None` if an iteration depends on these registers, changes a memory's output or cannot be executed. It is also
-    /// `None` with fewer than four conditions, and if the number depends on several nodes or on more than 6 bits.
+    /// Returns `None` if an iteration depends on these registers, changes a memory's output or cannot be executed. Returns
+    /// `None` also with fewer than four conditions, or if the number depends on several nodes or on more than 6 bits.
     fn in_powers(
         &mut self,
         first: &State,
@@ -483,7 +484,7 @@ impl<'a> Executor<'a> {
         Ok((clock.edge(), condition))
     }
 
-    /// Merges two states by muxes: `yes` if `condition` is 1.
+    /// Merges two states by muxes: `yes` counts if `condition` is 1, otherwise `no`.
     fn either(&mut self, condition: NodeId, yes: &State, no: &State) -> State {
         let design = self.design;
         let graph = &mut self.unrolled.graph;

@@ -9,8 +9,8 @@ use std::collections::{BTreeMap, BTreeSet, HashSet};
 use super::first_use::needed;
 use crate::netlist::{Design, Driver, Net, NetId, Op, RegId, RegisterKind, Sequence};
 
-/// Inserts registers `<name>_held` into steady logic, at most two on a path. They make the longest path from an operand as short
-/// as the search finds, with the fewest bits among equally short paths.
+/// Inserts registers `<name>_held` into steady logic, at most two on a path. The registers make the longest path from an
+/// operand as short as the search finds, with the fewest bits among equally short paths.
 ///
 /// A device that waits for `start` in the middle of its microprogram is not changed, because its operands may change there.
 pub fn register_held(design: &mut Design) {
@@ -84,14 +84,14 @@ struct Steady<'a> {
     design: &'a Design,
     /// Each cell after the cells on which it depends within a clock.
     cells: Vec<OperandCell>,
-    /// Determine the clock in which each net is computed.
+    /// The thresholds that determine in which clock each net is computed.
     thresholds: Vec<Thresholds>,
     /// For each net, whether a register may follow it: the net is steady, and not mere wiring of an operand register.
     holds: Vec<bool>,
     /// Each register with the net that it loads and the thresholds of its load.
     registers: Vec<(RegId, NetId, Thresholds)>,
-    /// The estimated delays from the operand registers to the steady nets that may be computed later than in clock 0. They are in
-    /// hundredths of a nanosecond, ascending from 0.
+    /// The estimated delays from the operand registers to the steady nets that may be computed later than in clock 0. The
+    /// delays are in hundredths of a nanosecond, ascending from 0.
     places: Vec<u32>,
 }
 
@@ -173,9 +173,9 @@ impl<'a> Steady<'a> {
         Self { design, cells, thresholds, holds, registers, places }
     }
 
-    /// Returns the limits with the shortest longest path, and among several the fewest register bits. Tries all pairs if there
-    /// are few. Otherwise it tries evenly spread pairs, and then pairs between the neighbours of the best one, so that it may
-    /// miss a better pair.
+    /// Returns the limits with the shortest longest path, and among such limits with the fewest register bits. Tries all pairs
+    /// of limits if there are few. Otherwise tries evenly spread pairs, then pairs near the best one, and so may miss a better
+    /// pair.
     fn best(&self) -> CutPlaces {
         let mut windows = [(0, self.places.len() - 1); 2];
         loop {

@@ -9,8 +9,8 @@ use crate::sim::program::{
 
 const NARROW: u32 = u32::BITS;
 
-/// Gives every value of the compiler, which has a slot of 64 bits there, a slot in one of the two banks. Inserts conversions
-/// before instructions that work on both. Within a bank, slots are numbered in the order in which they are computed.
+/// Gives every value of the compiler, which has only slots of 64 bits, a slot in one of the two banks. Inserts conversions
+/// before instructions that work on both banks. Within a bank, slots are numbered in the order in which they are computed.
 pub(super) fn divide(
     compiler: &Compiler,
     reads: &[ReadEdge],
@@ -113,7 +113,7 @@ impl BankSplitter<'_> {
         }
     }
 
-    /// Returns the bank and the slot of the value in the compiler's slot `slot`, if it has one yet.
+    /// Returns the bank and the slot of the value in the compiler's slot `slot`, or `None` before the value has one.
     fn place(&self, slot: Slot) -> Option<ValueSlot> {
         let slot = slot as usize;
         if *self.is_wide.get(slot)? {
@@ -148,7 +148,7 @@ impl BankSplitter<'_> {
         to
     }
 
-    /// Adds a narrow slot with bits of a wide value: from bit `low` up, as many as `drop` says.
+    /// Adds a narrow slot with 64 − `drop` bits of a wide value, from bit `low` up.
     fn cut(&mut self, slot: Slot, low: u8, drop: u8, sources: Sources) -> Slot {
         let a = self.operand(slot, true, sources);
         let to = self.fresh(false, 0);

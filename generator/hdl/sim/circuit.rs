@@ -13,14 +13,14 @@ use crate::sim::machine::Machine;
 use crate::sim::program::CompiledDesign;
 use crate::sim::wire::{Direction, ProbeView, Wire};
 
-/// `LANES` independent instances of a design as one rust_hdl [`Block`]. rust_hdl updates it until nothing changes, and writes the
-/// waveform of lane 0.
+/// `LANES` independent instances of a design as one rust_hdl [`Block`]. rust_hdl updates the block until nothing changes, and
+/// writes the waveform of lane 0.
 ///
 /// The caller must change inputs together with the falling edge of [`Circuit::clock`]. Inputs that change together with the
-/// rising edge take effect only after it.
+/// rising edge take effect only after this edge.
 #[derive(Debug)]
 pub struct Circuit<const LANES: usize = 1> {
-    /// Registers change on its rising edge.
+    /// The clock; registers change on the rising edge.
     pub clock: Signal<In, Clock>,
     pub(super) machine: Machine<LANES>,
     inputs: Vec<[u64; LANES]>,
@@ -30,7 +30,7 @@ pub struct Circuit<const LANES: usize = 1> {
     changed: bool,
     connected: bool,
     ports: Vec<Observed>,
-    /// Control unit and datapath, or the handshake and the stages of a pipeline.
+    /// The scopes of a waveform: control unit and datapath, or the handshake and the stages of a pipeline.
     scopes: Vec<(String, Vec<Observed>)>,
     microprogram: MicroinstructionNames,
 }
@@ -46,7 +46,7 @@ struct Observed {
 }
 
 impl Observed {
-    /// The number comes from rust_hdl's counter.
+    /// Makes an observed net, with an id from rust_hdl's counter.
     fn new(design: &Design, net: NetId, direction: Direction) -> Self {
         Self {
             net,

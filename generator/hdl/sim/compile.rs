@@ -33,7 +33,7 @@ impl CompiledDesign {
 impl<'a> Compiler<'a> {
     /// Returns a slot with a field of the control word, the `width` bits from bit `low` of the net `word`. The field becomes a
     /// source of its own, so that a change of another field does not evaluate its readers again. If the control word is a
-    /// constant, or no source is left, it becomes an ordinary slice.
+    /// constant, or no source is left, the field becomes an ordinary slice.
     fn field(&mut self, word: NetId, low: u32, width: u32) -> Slot {
         let a = self.of_net[word.index()];
         if self.known_value(a).is_some() || self.next_field == Sources::BITS {
@@ -47,7 +47,7 @@ impl<'a> Compiler<'a> {
         to
     }
 
-    /// The nets on which the net depends within a clock must already have slots.
+    /// Compiles a net and returns its slot. The nets on which the net depends within a clock must already have slots.
     fn net(&mut self, id: NetId) -> Slot {
         let design = self.design;
         let width = design.width(id);
@@ -222,7 +222,8 @@ impl<'a> Compiler<'a> {
         }
     }
 
-    /// Returns the slot of an enable that is not always 1. `written` has the slots that the edge has already written.
+    /// Returns the slot of an enable, or `None` if the enable is absent or always 1. `written` has the slots that the edge has
+    /// already written.
     fn enable(&mut self, enable: Option<NetId>, written: &HashSet<Slot>) -> Option<Slot> {
         let slot = self.of_net[enable?.index()];
         if self.known_value(slot) == Some(1) {

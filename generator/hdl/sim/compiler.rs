@@ -8,12 +8,12 @@ use crate::sim::machine::execute;
 use crate::sim::program::{InputPort, Instruction, Slot, Sources, Span};
 use glint_base::fixed::mask;
 
-/// The number of sources for input ports. They have the first numbers, because they change at another clock edge than registers
-/// and ROMs.
+/// The number of sources for input ports. Ports have the first numbers, because they change at another clock edge than
+/// registers and ROMs.
 const INPUTS: u32 = 16;
 
 /// From this number on, each source is a field of the control word, numbered in the order of evaluation. Smaller numbers are
-/// input ports, registers and ROM outputs. If there are more of these than numbers, several share a number.
+/// input ports, registers and ROM outputs; if there are more such sources than numbers, several share a number.
 const FIRST_FIELD: u32 = 40;
 
 /// An instruction, and the data by which the compiler orders instructions.
@@ -134,8 +134,8 @@ impl<'a> Compiler<'a> {
         slot
     }
 
-    /// Returns the value of a slot, a place in the simulator's memory for the value of a net. Returns `None` if the value is
-    /// not constant. The compiler simplifies instructions with constant operands.
+    /// Returns the value of a slot, or `None` if the value is not constant. The compiler simplifies instructions with constant
+    /// operands.
     pub(super) fn known_value(&self, slot: Slot) -> Option<u64> {
         let constant = self.sources[slot as usize] == 0;
         constant.then(|| self.initial[slot as usize][0])

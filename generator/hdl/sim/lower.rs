@@ -112,7 +112,7 @@ impl Compiler<'_> {
         self.emit(&[a], |to| Instruction::Slice { to, a, low, drop })
     }
 
-    /// Returns the width of the narrowest net in a slot; the others extend it by zeros. Without a net, it is 64.
+    /// Returns the width of the narrowest net in a slot, which the slot's other nets extend by zeros; 64 without a net.
     fn held(&self, slot: Slot) -> u32 {
         let nets = self.of_net.iter().zip(&self.design.nets);
         let widths = nets.filter(|(own, _)| **own == slot).map(|(_, net)| net.format.width());
@@ -161,7 +161,8 @@ impl Compiler<'_> {
     }
 
     /// Returns `a` if `select` is 0, and `b` otherwise. If `select` tests bits of a slot for any 1, the same instruction makes
-    /// this test. If `b` places bits of that slot, it places them too. Chains of such muxes find the range of a value.
+    /// this test. If `b` places bits of the same slot, this instruction also places them. Chains of such muxes find the range
+    /// of a value.
     fn choose(&mut self, select: Slot, a: Slot, b: Slot) -> Slot {
         let Some((of, low, drop)) = self.any(select) else {
             return self.emit(&[select, a, b], |to| Instruction::Choose { to, select, a, b });

@@ -176,7 +176,7 @@ impl<const LANES: usize> Machine<LANES> {
     }
 
     /// Returns for each lane a bit pattern that is 0 exactly if every net has its value in `expected`. Only the bits that are 1
-    /// in `known` are compared, if it is given.
+    /// in `known`, if given, are compared.
     ///
     /// # Panics
     /// Panics if the compiler has optimised a net away, which it may do only if the net has no name.
@@ -235,7 +235,7 @@ impl<const LANES: usize> Machine<LANES> {
         differences
     }
 
-    /// Returns the bit pattern of a net in each lane. Panics as [`Machine::differences`] does.
+    /// Returns the bit pattern of a net in each lane. Panics for an unnamed net that the compiler has optimised away.
     pub fn lanes(&self, net: NetId) -> [u64; LANES] {
         match self.program.place(net) {
             ValueSlot::Narrow(slot) => self.narrow[slot as usize].map(u64::from),
@@ -243,8 +243,8 @@ impl<const LANES: usize> Machine<LANES> {
         }
     }
 
-    /// Returns the bit pattern of a net in one lane. Panics if `lane` is not less than `LANES`, and as [`Machine::differences`]
-    /// does.
+    /// Returns the bit pattern of a net in one lane. Panics if `lane` is not less than `LANES`, or for an unnamed net that the
+    /// compiler has optimised away.
     pub fn lane(&self, net: NetId, lane: usize) -> u64 {
         match self.program.place(net) {
             ValueSlot::Narrow(slot) => self.narrow[slot as usize][lane].into(),
@@ -258,7 +258,7 @@ impl<const LANES: usize> Machine<LANES> {
 enum VectorLevel {
     Base,
     Avx2,
-    /// Implies AVX2.
+    /// AVX-512 instructions; the processor then has AVX2 too.
     Avx512,
 }
 
@@ -342,7 +342,7 @@ fn clock<W: LaneWord, const LANES: usize>(
     news
 }
 
-/// Loads a register in the lanes whose `enable` is 1. Returns the source if [`changed`].
+/// Loads a register in the lanes whose `enable` is 1. Returns the result of [`changed`].
 #[inline(always)]
 fn load<W: LaneWord, const LANES: usize>(
     q: &mut [W; LANES],
@@ -377,7 +377,7 @@ fn enabled<W: LaneWord, const LANES: usize>(
     new
 }
 
-/// Stores a value. Returns the source if [`changed`].
+/// Stores a value. Returns the result of [`changed`].
 #[inline(always)]
 fn store<W: LaneWord, const LANES: usize>(
     slot: &mut [W; LANES],

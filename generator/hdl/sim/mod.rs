@@ -1,8 +1,8 @@
 //! The built-in simulator: runs many independent instances of a design clock by clock, and writes waveforms.
 //!
-//! The compiler turns a [`Design`] into a [`CompiledDesign`], a list of instructions in evaluation order. A [`Machine`] executes
-//! them for several instances at once, called lanes. A [`Circuit`] wraps the machine as one block of the simulation kernel
-//! rust_hdl, which writes waveforms, and a [`Simulator`] adds the clock.
+//! The compiler turns a [`Design`] into a [`CompiledDesign`], a list of instructions in evaluation order. A [`Machine`]
+//! executes the list for several instances at once, called lanes. A [`Circuit`] wraps the machine as one block of the
+//! simulation kernel rust_hdl, which writes waveforms, and a [`Simulator`] adds the clock.
 
 mod banks;
 mod circuit;
@@ -62,8 +62,8 @@ pub struct Simulator<const LANES: usize = 1> {
 }
 
 impl<const LANES: usize> Simulator<LANES> {
-    /// Makes a simulator at power-up: all inputs, registers and outputs of synchronous ROMs are 0. Fails as [`Circuit::new`]
-    /// does.
+    /// Makes a simulator at power-up: all inputs, registers and outputs of synchronous ROMs are 0. Fails if the design has
+    /// mistakes in its structure, or too many ROM words.
     pub fn new(design: &Design) -> Result<Self> {
         Ok(Self {
             circuit: Circuit::new(design)?,
@@ -95,12 +95,13 @@ impl<const LANES: usize> Simulator<LANES> {
         self.circuit.inputs_mut()
     }
 
-    /// Returns the bit pattern of a net in each lane, after the latest clock. Panics as [`Machine::lanes`] does.
+    /// Returns the bit pattern of a net in each lane, after the latest clock. Panics for an unnamed net that was optimised
+    /// away.
     pub fn lanes(&self, net: NetId) -> [u64; LANES] {
         self.circuit.machine.lanes(net)
     }
 
-    /// Returns the bit pattern of a net in one lane, after the latest clock. Panics as [`Machine::lane`] does.
+    /// Returns the bit pattern of a net in one lane, after the latest clock. Panics for an unnamed net that was optimised away.
     pub fn lane(&self, net: NetId, lane: usize) -> u64 {
         self.circuit.machine.lane(net, lane)
     }
@@ -125,9 +126,9 @@ impl<const LANES: usize> Simulator<LANES> {
         self.half(true)
     }
 
-    /// Runs one clock in which the input ports, by position, have the bit patterns `inputs`, without a copy. From the next clock
-    /// on, the inputs have their earlier values again. Fails as [`Simulator::clock`] does. Panics unless `inputs` has exactly one
-    /// entry for each input port.
+    /// Runs one clock in which the input ports, by position, have the bit patterns `inputs`, without a copy. From the next
+    /// clock on, the inputs have their earlier values again. Fails if the waveform cannot be written, or if signals do not
+    /// settle. Panics unless `inputs` has exactly one entry for each input port.
     #[inline]
     pub fn clock_with(&mut self, inputs: &mut Vec<[u64; LANES]>) -> Result<()> {
         assert_eq!(inputs.len(), self.inputs.len(), "one for each input port");
@@ -137,8 +138,8 @@ impl<const LANES: usize> Simulator<LANES> {
         clocked
     }
 
-    /// Evaluates all nets for inputs that were set since the last clock, without a rising edge. The next clock does not depend on
-    /// this call. Fails as [`Simulator::clock`] does.
+    /// Evaluates all nets for inputs that were set since the last clock, without a rising edge. The next clock does not depend
+    /// on this call. Fails if the waveform cannot be written, or if signals do not settle.
     pub fn settle(&mut self) -> Result<()> {
         self.half(false)
     }
@@ -185,7 +186,7 @@ impl Simulator {
         self.set_lanes(input, [bits]);
     }
 
-    /// Returns the bit pattern of a net after the latest clock. Panics as [`Machine::lane`] does.
+    /// Returns the bit pattern of a net after the latest clock. Panics for an unnamed net that was optimised away.
     #[inline]
     pub fn value(&self, net: NetId) -> u64 {
         self.lane(net, 0)

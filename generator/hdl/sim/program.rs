@@ -153,7 +153,7 @@ pub(super) struct StepGroup {
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct InputPort {
-    /// Among the input ports.
+    /// The position among the input ports.
     pub at: u32,
     pub slot: Slot,
     pub source: Sources,
@@ -171,7 +171,7 @@ pub(super) struct ReadEdge {
     pub words: Span,
 }
 
-/// A memory with a write port: at the edge, the word at `address` becomes the one at the port if `enable` is 1.
+/// A memory with a write port: at the edge, the word at the port replaces the word at `address` if `enable` is 1.
 #[derive(Clone, Debug)]
 pub(super) struct MemoryWrite {
     pub words: Span,
@@ -229,7 +229,7 @@ impl CompiledDesign {
         self.narrow.inputs.len() + self.wide.inputs.len()
     }
 
-    /// Panics as [`Machine::differences`](super::Machine::differences) does.
+    /// Returns the slot of a net. Panics for an unnamed net that was optimised away.
     pub(super) fn place(&self, net: NetId) -> ValueSlot {
         let place = self.places[net.index()];
         place.unwrap_or_else(|| panic!("{net:?} is unnamed and not simulated"))

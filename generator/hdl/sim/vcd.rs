@@ -12,8 +12,8 @@ use rust_hdl::core::vcd_probe::{VCDProbe, write_vcd_change, write_vcd_dump, writ
 
 /// Writes the waveform of a circuit step by step. Times are in picoseconds.
 ///
-/// rust_hdl panics if a write fails. The writer therefore gives it a buffer in memory, and copies the buffer to the file after
-/// each step. All methods fail if the file cannot be written.
+/// rust_hdl panics if a write fails. The writer therefore gives rust_hdl a buffer in memory, and copies the buffer to the file
+/// after each step. All methods fail if the file cannot be written.
 pub struct VcdWriter<W: Write> {
     /// `None` only while rust_hdl writes.
     probe: Option<VCDProbe<Page>>,

@@ -59,8 +59,8 @@ pub fn gtkwave(design: &Design) -> String {
     text
 }
 
-/// Returns the command file for Surfer: `surfer --command-file FILE.sucl FILE.vcd`. It lists the ports, and then the nets of
-/// each module or stage.
+/// Returns the command file for Surfer: `surfer --command-file FILE.sucl FILE.vcd`. The file lists the ports, and then the nets
+/// of each module or stage.
 pub fn surfer(design: &Design) -> String {
     let mut text = format!("variable_add {}.clk\n", design.name);
     for (scope, nets) in shown(design) {

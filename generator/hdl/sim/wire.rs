@@ -1,5 +1,5 @@
-//! Shows the ports and the named nets of a circuit to rust_hdl's probes, as atoms (rust_hdl's term for a signal). Their widths
-//! are known only at run time.
+//! Shows the ports and the named nets of a circuit to rust_hdl's probes, as atoms (rust_hdl's term for a signal). The widths of
+//! nets are known only at run time.
 //!
 //! A probe that visits the circuit gets an atom for each port and each named net, with its value in lane 0. A further atom shows
 //! the name of the executed microinstruction. New atoms are made at every visit. The id of a net's atom stays the same. rust_hdl

@@ -89,7 +89,7 @@ impl Bits {
         &self.0
     }
 
-    /// Returns the run of a word with exactly one.
+    /// Returns the run of a word that has exactly one run, or `None`.
     pub fn single(&self) -> Option<BitRun> {
         match self.0[..] {
             [piece] => Some(piece),

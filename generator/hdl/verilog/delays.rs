@@ -13,7 +13,7 @@ use crate::netlist::{DelayLine, NetId};
 const TITLE: &str =
     "Delay lines: a small memory delays values that no logic reads for several stages";
 
-/// The number of words of a delay line's memory, and the net that enables its steps; `None` if it steps on every clock.
+/// The number of words of a delay line's memory, and the net that enables the line's steps; `None` if every clock is a step.
 type Pace = (usize, Option<NetId>);
 
 /// Returns the Verilog section of the delay lines, with one instance for all lines of the same length and enable.

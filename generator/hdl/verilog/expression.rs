@@ -65,8 +65,8 @@ impl<'a> Expressions<'a> {
         }
     }
 
-    /// Returns the text that reads a net within a larger expression. It is a name, a selection, a concatenation, or a cell in
-    /// parentheses, such as `(a + b)`.
+    /// Returns the text that reads a net within a larger expression. The text is a name, a selection, a concatenation, or a
+    /// cell in parentheses, such as `(a + b)`.
     pub fn operand(&mut self, id: NetId) -> String {
         if let Some(constant) = self.constant(id) {
             return constant;
@@ -80,14 +80,14 @@ impl<'a> Expressions<'a> {
         }
     }
 
-    /// A unary operator needs an inverted operand in parentheses.
+    /// Returns the operand of a unary operator, in parentheses if the operand is inverted.
     fn primary(&mut self, id: NetId) -> String {
         let text = self.operand(id);
         if text.starts_with('~') { format!("({text})") } else { text }
     }
 
-    /// Returns the name of the localparam for a net that is a constant, possibly extended or relabelled, and collects it. Unnamed
-    /// constants that are clear as literals have none: 0, 1, and all ones from 8 bits on.
+    /// Returns the name of the localparam for a net that is a constant, possibly extended or relabelled, and collects the
+    /// localparam. Unnamed constants that are clear as literals have none: 0, 1, and all ones from 8 bits on.
     fn constant(&mut self, id: NetId) -> Option<String> {
         let design = self.plan.design;
         let Some(BitRun::Constant { value, width }) = self.plan.bits[id.index()].single() else {
@@ -153,8 +153,8 @@ impl<'a> Expressions<'a> {
         self.bits(&exact)
     }
 
-    /// Returns the net whose expression is written where the Verilog reads the net `id`: `id` itself, or the net whose bits it
-    /// passes on unchanged. Returns `None` if `id` is declared, a constant, or other wiring.
+    /// Returns the net whose expression is written where the Verilog reads the net `id`: `id` itself, or the net whose bits
+    /// `id` passes on unchanged. Returns `None` if `id` is declared, a constant, or other wiring.
     fn inline(&self, id: NetId) -> Option<NetId> {
         match self.plan.bits[id.index()].single() {
             Some(BitRun::Net { net, .. }) if self.plan.forms[net.index()] == NetForm::Inline => {

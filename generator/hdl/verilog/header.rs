@@ -126,7 +126,7 @@ fn formats(design: &Design) -> String {
     text
 }
 
-/// Leaves out strobes; name, format and role are in columns.
+/// Returns the list of ports without strobes, with name, format and role in columns.
 fn ports(design: &Design) -> Vec<String> {
     let name = |net: NetId| design.net(net).name.as_str();
     let width = design.ports.iter().map(|port| name(port.net).len()).max().unwrap_or(0);

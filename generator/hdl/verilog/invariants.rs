@@ -16,7 +16,7 @@ pub fn invariants(design: &Design, naming: &Naming, partition: Partition) -> Vec
     lines.into_iter().map(|line| format!("    {line}")).collect()
 }
 
-/// The assertions on the sequencer hold in every clock but the first, in which the design is reset.
+/// Returns the assertions on the sequencer. The assertions hold in every clock but the first, in which the design is reset.
 fn control(design: &Design) -> Vec<String> {
     let name = |register| design.net(design.register(register).q).name.as_str();
     let (address, run) = (name(design.control.address), name(design.control.run));
@@ -36,7 +36,7 @@ fn control(design: &Design) -> Vec<String> {
     lines
 }
 
-/// No operand register changes in the clock after one in which the device was busy (`idle` was 0).
+/// Returns the assertion that no operand register changes in the clock after one in which the device was busy (`idle` was 0).
 fn datapath(design: &Design, was_busy: &str) -> Vec<String> {
     let operands: Vec<&str> = design
         .registers

@@ -28,8 +28,8 @@ use interface::Interface;
 use naming::Naming;
 use plan::Plan;
 
-/// Returns the files for a design as pairs of file name and text. They are the Verilog modules (`.v`), and the contents of ROMs
-/// (`.mem`) for `$readmemh` and `$readmemb`.
+/// Returns the files for a design as pairs of file name and text. The files are the Verilog modules (`.v`), and the contents of
+/// ROMs (`.mem`) for `$readmemh` and `$readmemb`.
 ///
 /// # Errors
 /// Fails with the mistakes of [`Design::verify_structure`], or if the words of the control ROM are not as wide as all fields
@@ -77,8 +77,8 @@ pub fn modules(plan: &Plan, naming: &Naming, origin: &Origin) -> Vec<ModuleFile>
     files
 }
 
-/// Returns the contents of the memories with a write port, as pairs of the memory's name and the text of its memory file. Fails as
-/// [`memory::contents`] does.
+/// Returns the contents of the memories with a write port, as pairs of the memory's name and the text of its memory file. Fails
+/// if a word is wider than its memory.
 pub fn writable_memories(design: &Design) -> Result<Vec<(String, String)>> {
     let mut memories = Vec::new();
     for (id, rom) in (0..).map(RomId).zip(&design.roms) {
@@ -89,8 +89,9 @@ pub fn writable_memories(design: &Design) -> Result<Vec<(String, String)>> {
     Ok(memories)
 }
 
-/// Returns the memory files for the ROMs of a design as pairs of file name and text. There are none if the style of `naming` puts
-/// the words into the Verilog. The second read port of a memory has no file of its own. Fails as [`memory::contents`] does.
+/// Returns the memory files for the ROMs of a design as pairs of file name and text; none if the style of `naming` puts the
+/// words into the Verilog. The second read port of a memory has no file of its own. Fails for the reasons that
+/// [`memory::contents`] lists.
 pub fn memories(design: &Design, naming: &Naming) -> Result<Vec<(String, String)>> {
     let mut memories = Vec::new();
     for (id, file) in (0..).map(RomId).zip(&naming.files) {

@@ -1,4 +1,5 @@
-//! Writes the Verilog modules of the control unit and of the datapath. The module of a pipeline uses its sections too.
+//! Writes the Verilog modules of the control unit and of the datapath. The module of a pipeline also uses sections of this
+//! module.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -25,7 +26,7 @@ pub struct Builder<'a> {
     pub(super) expressions: Expressions<'a>,
     /// The choices of select fields that are labels of case statements, as field number and value.
     labels: BTreeSet<(usize, usize)>,
-    /// The previous assignment's comment is not repeated.
+    /// The comment of the previous assignment, which is not repeated.
     last_note: String,
 }
 
@@ -93,7 +94,7 @@ impl<'a> Builder<'a> {
         Row::ports(&rows)
     }
 
-    /// A net that a procedural block assigns is a `reg`.
+    /// Returns `reg` for a net that a procedural block assigns, and otherwise `wire`.
     fn kind(&self, net: NetId) -> &'static str {
         match &self.plan.design.net(net).driver {
             Driver::Register(register) if self.plan.delayed(*register).is_some() => "wire",
@@ -104,7 +105,8 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Returns the outputs of the registers that the Verilog declares: not inside multipliers, and of delay lines only the last.
+    /// Returns the outputs of the registers that the Verilog declares: none inside multipliers, and only the last of a delay
+    /// line.
     fn registers(&self) -> impl Iterator<Item = NetId> {
         let design = self.plan.design;
         let written = (0..).map(RegId).zip(&design.registers).filter(|(id, register)| {
@@ -401,8 +403,8 @@ impl<'a> Builder<'a> {
         lines
     }
 
-    /// Returns the lines of each `always` block, for the `wanted` registers. Those with the same enable share a block if all of
-    /// them have a reset or none has one; their reset values may differ.
+    /// Returns the lines of each `always` block, for the `wanted` registers. Registers with the same enable share a block if
+    /// all of them have a reset or none has one; their reset values may differ.
     pub(super) fn groups(&mut self, wanted: &dyn Fn(NetId) -> bool) -> Vec<Vec<String>> {
         /// The enable, and whether the reset sets the registers.
         type ResetGroup = (Option<NetId>, bool);
@@ -531,8 +533,8 @@ impl<'a> Builder<'a> {
     }
 }
 
-/// Returns an assignment for each word of a ROM, such as `rom[3] = 8'h1f;`. `place` returns its left side, from the number of the
-/// word and the width of this number in bits.
+/// Returns an assignment for each word of a ROM, such as `rom[3] = 8'h1f;`. `place` returns the left side with its `=`, from
+/// the number of the word and the width of this number in bits.
 fn words(
     design: &Design,
     id: RomId,
@@ -555,7 +557,8 @@ fn words(
     lines
 }
 
-/// Returns the parameters with the names of the ROMs' memory files, separated by commas. Words in the Verilog itself need none.
+/// Returns the parameters with the names of the ROMs' memory files, separated by commas. ROMs with words in the Verilog itself
+/// need none.
 pub fn parameters(naming: &Naming, roms: &[RomId]) -> Vec<String> {
     let mut texts = Vec::new();
     for rom in roms {

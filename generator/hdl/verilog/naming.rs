@@ -1,11 +1,11 @@
-//! Chooses the names that the Verilog has in addition to the names of nets.
+//! Chooses the names that the Verilog has besides the names of nets.
 
 use super::text::{Names, constant_name};
 use crate::netlist::{
     Control, Design, Driver, FieldKind, Net, NetId, NetlistRom, Op, Partition, RomId,
 };
 
-/// The names that the Verilog has in addition to the names of nets.
+/// The names that the Verilog has besides the names of nets.
 pub struct Naming {
     /// The control unit's instance in the top module.
     pub control_instance: String,
@@ -156,9 +156,9 @@ pub fn is_control_rom(design: &Design, rom: RomId) -> bool {
     design.control.rom == rom
 }
 
-/// Returns the comment behind the declaration of a net, such as `mux 8, s1.20: first operand`. It has the net's block number,
-/// format and description, as far as they exist. A field of the control word has its lines in place of a block number, such as
-/// `line 4`.
+/// Returns the comment behind the declaration of a net, such as `mux 8, s1.20: first operand`. The comment has the net's block
+/// number, format and description, as far as they exist. A field of the control word has its lines in place of a block number,
+/// such as `line 4`.
 pub fn remark(design: &Design, id: NetId) -> String {
     let net = design.net(id);
     // The declared width already states the format of an unsigned integer.

@@ -88,7 +88,7 @@ fn is_written_in(design: &Design, pipeline: &Pipeline, net: NetId, stage: usize)
     pipeline.clock_of(net) - usize::from(is_clocked) == stage
 }
 
-/// Returns the comment on a shared multiplier, such as `multiplier_1: in slots 0, 1 it loads the factors of base, -`. Its
+/// Returns the comment on a shared multiplier, such as `multiplier_1: in slots 0, 1 it loads the factors of base, -`. The
 /// operand registers load the factors of a product in the slot before the product.
 fn reservations(unit: &Unit) -> Vec<String> {
     let slots = unit.serves.len();
@@ -109,7 +109,7 @@ fn port_name(design: &Design, role: Role) -> &str {
     }
 }
 
-/// A shift register takes the place of the netlist's single valid bits.
+/// Writes the handshake. A shift register takes the place of the netlist's single valid bits.
 fn handshake(plan: &Plan, naming: &Naming, pipeline: &Pipeline) -> Vec<String> {
     let design = plan.design;
     let in_valid = port_name(design, Role::InValid);

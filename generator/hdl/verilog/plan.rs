@@ -1,10 +1,10 @@
-//! Decides how each net appears in the Verilog.
+//! Decides how each net appears in the Verilog; most nets are declared.
 //!
-//! Wiring (slices, extensions, concatenations) without a name from the description's author is written as [`Bits`] wherever it is
-//! used. So is a constant that is no port. Any other cell without such a name is written into the expression that uses it. It
-//! must be used once, as a whole and in the same module, and the expression must stay short. In a pipeline, some named wiring and
-//! cells are treated in the same way. Cells without a name that no written part reads are left out, and so are products and
-//! registers inside multipliers and delay lines. All other nets are declared.
+//! Constants that are no ports, and wiring (slices, extensions, concatenations) without a name from the description's author,
+//! are written as [`Bits`] wherever they are used. Any other cell without such a name is written into the expression that uses
+//! it. This must be a single use of the whole net in the same module, and the expression must stay short. In a pipeline, some
+//! named wiring and cells are treated likewise. Cells without a name that no written part reads are left out, and so are
+//! products and registers inside multipliers and delay lines.
 
 use std::collections::{BTreeMap, HashSet};
 
@@ -21,7 +21,7 @@ use glint_base::fixed::mask;
 /// How a net appears in the Verilog.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NetForm {
-    /// Its [`Bits`] are written wherever it is used.
+    /// The net's [`Bits`] are written wherever the net is used.
     Wiring,
     /// As a `wire`, `reg` or port.
     Declared,
@@ -63,7 +63,7 @@ pub struct Plan<'a> {
 }
 
 impl<'a> Plan<'a> {
-    /// Decides for each net. Fails with the mistakes of [`Design::verify_structure`].
+    /// Decides the form of each net. Fails with the mistakes of [`Design::verify_structure`].
     pub fn new(design: &'a Design) -> Result<Self> {
         let mistakes = design.verify_structure();
         ensure!(mistakes.is_empty(), Diagnostics(mistakes));
@@ -290,7 +290,7 @@ impl<'a> Plan<'a> {
         self.live = order.iter().copied().filter(|net| live[net.index()]).collect();
     }
 
-    /// Finds the cells that are written inside the one expression that uses them, because it stays short.
+    /// Finds the cells that are written inside the one expression that uses them, if this expression stays short.
     fn place_expressions(&mut self) {
         let mut uses: BTreeMap<NetId, Vec<(Reader, bool)>> = BTreeMap::new();
         for reader in self.readers() {
@@ -337,8 +337,8 @@ impl<'a> Plan<'a> {
         }
     }
 
-    /// Returns whether a pipeline's net is wiring of at most three pieces that need not be declared. It must have no comment,
-    /// unless the register behind it carries the same value and shows the comment.
+    /// Returns whether a pipeline's net is wiring of at most three pieces that need not be declared. The net must have no
+    /// comment, unless the register behind it carries the same value and shows the comment.
     fn is_plain(&self, id: NetId, bits: &Bits) -> bool {
         const MOST_PIECES: usize = 3;
         if self.design.pipeline.is_none() || self.is_port(id) || bits.pieces().len() > MOST_PIECES {
@@ -365,7 +365,7 @@ impl<'a> Plan<'a> {
             && self.design.multiplier(register).is_none()
     }
 
-    /// Finds the nets with the same name as an earlier net but for the stage.
+    /// Finds the nets whose names differ from the name of an earlier net only in the stage.
     fn find_repeats(&mut self) {
         let Some(pipeline) = &self.design.pipeline else { return };
         let mut passed: HashSet<NetId> = HashSet::new();
@@ -410,9 +410,9 @@ impl<'a> Plan<'a> {
         mentioned.max(1)
     }
 
-    /// Returns whether `op`, whose expression would have the size `mentioned`, may be written inside the expression of `reader`.
-    /// A product may be only the whole right-hand side: in a larger expression Verilog would truncate it to the width of its
-    /// operands.
+    /// Returns whether `op`, whose expression would have the size `mentioned`, may be written inside the expression of
+    /// `reader`. A product may be only the whole right-hand side: in a larger expression Verilog would truncate the product to
+    /// the width of its operands.
     fn reads_well(&self, op: &Op, reader: Reader, mentioned: usize) -> bool {
         const SMALL: usize = 3;
         let alone = match reader {

@@ -32,8 +32,8 @@ pub fn variables(design: &Design, with_signs: bool) -> Vec<String> {
     Row::declarations(&rows)
 }
 
-/// The declaration of one net or port, or of several nets whose declarations differ only in their names. Its parts are aligned in
-/// columns with the declarations around it.
+/// The declaration of one net or port, or of several nets whose declarations differ only in their names. The parts are aligned
+/// in columns with the declarations around it.
 pub struct Row {
     head: String,
     range: String,

@@ -49,13 +49,13 @@ fn head(
     lines
 }
 
-/// Puts lines under a comment with the title, with an empty line above. No lines stay no lines.
+/// Puts lines under a comment with the title, with an empty line above. Returns nothing for no lines.
 pub fn section(title: &str, lines: Vec<String>) -> Vec<String> {
     let title = format!("    // {title}");
     if lines.is_empty() { lines } else { [vec![String::new(), title], lines].concat() }
 }
 
-/// Puts lines between `begin` and `end`, with an empty line above. No lines stay no lines.
+/// Puts lines between `begin` and `end`, with an empty line above. Returns nothing for no lines.
 pub fn block(begin: &str, lines: Vec<String>, end: &str) -> Vec<String> {
     match lines.is_empty() {
         true => lines,

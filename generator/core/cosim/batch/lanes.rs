@@ -1,4 +1,4 @@
-//! Computes many points (sets of operands) with the built-in simulator.
+//! Computes many points with the built-in simulator.
 //!
 //! [`RustHdl`] has one simulator for each thread. Each of the 32 lanes of a simulator runs an instance of the design, which
 //! computes a point of its own.
@@ -16,7 +16,7 @@ use crate::cosim::instances::Instances;
 use glint_golden::Contract;
 use glint_rtl::netlist::{Design, NetId, Role};
 
-/// The number of clocks after which a computation counts as a computation that never ends.
+/// A computation that takes more clocks counts as endless.
 const LIMIT: u64 = 1 << 16;
 
 /// An [`Engine`] that simulates the design with rust_hdl.
@@ -28,7 +28,7 @@ impl RustHdl {
     /// Makes one simulator for each thread of rayon's pool, and resets the design in all of them.
     ///
     /// # Errors
-    /// Fails as [`glint_rtl::sim::Simulator::new`] does, or if design and contract do not have the same operands and outputs.
+    /// Fails if the design has mistakes in its structure, or if design and contract do not have the same operands and outputs.
     pub fn new(design: &Design, contract: &dyn Contract) -> Result<Self> {
         let latency = design.pipeline.as_ref().map(|pipeline| pipeline.stages.len() as u64);
         let in_ready = design.port(|role| role == Role::InReady).map(|port| port.net);
@@ -39,8 +39,8 @@ impl RustHdl {
         Ok(Self { teams })
     }
 
-    /// Writes words into the writable table of all instances, through its write port. For each address, `words` has the raw values of
-    /// the parts, in the order of the ports.
+    /// Writes words into the writable table of all instances, through its write port. For each address, `words` has one raw
+    /// value for each data port of the write port.
     ///
     /// # Errors
     /// Fails if the design has no write port, if a word has another number of parts, or if the core is not ready to load a word.
@@ -68,7 +68,7 @@ struct Team {
     instances: Instances<LANES>,
     /// The number of clocks from a point to its result, if the design is a pipeline; otherwise `None`.
     latency: Option<u64>,
-    /// The output `in_ready` of a pipeline, which is 1 if the pipeline takes a point. It is the same in all instances.
+    /// The output `in_ready` of a pipeline, which is 1 if the pipeline takes a point. The output is the same in all instances.
     in_ready: Option<NetId>,
 }
 

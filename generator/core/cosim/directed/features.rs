@@ -14,7 +14,7 @@ use glint_rtl::sim::Machine;
 /// class, because a fault in a computation with the result 0 seldom shows.
 pub const CLASSES: usize = 3;
 
-/// A net, or a few nets, with features that are recorded. Each variant has up to 64 features, one for each bit of a number.
+/// A net, or a few nets, with features that are recorded. Each variant has up to 64 features, one for each bit of a `u64`.
 enum Watched {
     /// The bits of a net that are 1, after an exclusive or with the mask. The mask is 0, or has a 1 for every bit of the net;
     /// then the features are the bits that are 0.

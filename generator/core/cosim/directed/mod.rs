@@ -8,7 +8,7 @@
 //!   one computation whose results change if the bit is inverted. If the pool has no such computation, the module searches near
 //!   the computations that read the word, and gives up after some rounds. For a device that computes a line of points, and
 //!   reads a word in each clock, the module chooses a line that reads the word. If all this takes too many clocks, only every
-//!   second word has such a computation, or every third, and so on.
+//!   n-th word has such a computation.
 //! - For a highlight device that computes lines: one line of the largest length in the contract's domain, but of at most 4095
 //!   intervals.
 //! - Every combination of the smallest and the largest values of the operands, but at most the first 128 combinations. Colours
@@ -47,15 +47,15 @@ const MOST_CLOCKS: u32 = 20_000;
 struct PoolComputation {
     operands: Vec<i64>,
     shown: OutputTrace,
-    /// The class of its brightest result; see [`class`].
+    /// The class of the computation's brightest result; see [`class`].
     class: usize,
     features: Vec<u32>,
     /// The ROM words that the computation reads, numbered through all ROMs, in ascending order.
     read: Vec<u32>,
 }
 
-/// A cache of chosen computations by design, without its name, and contract. A core and the pipeline that is made from it
-/// therefore share their computations.
+/// A cache of chosen computations. The key is the contract and the design without its name, so a sequential core and the
+/// pipeline that is made from it share their computations.
 #[derive(Default)]
 pub struct ComputationCache(Mutex<HashMap<String, Arc<Mutex<Option<Computations>>>>>);
 
@@ -69,11 +69,11 @@ pub struct Computations {
 }
 
 impl ComputationCache {
-    /// Returns the result of [`computations`] for a design, from the cache if it is there. The name of the design does not
-    /// matter. `contract_digest` must be different for different contracts.
+    /// Returns the result of [`computations`] for a design, whatever its name, from the cache if it is there. `contract_digest`
+    /// must be different for different contracts.
     ///
     /// # Errors
-    /// Fails as [`computations`] does. A failure is not cached.
+    /// Fails if the design cannot be simulated, or if a computation does not end. A failure is not cached.
     pub fn computations(
         &self,
         design: &Design,
@@ -220,7 +220,6 @@ fn choose(candidates: &[PoolComputation], words: usize, count: usize, chosen: &m
 
 /// The number of times that each feature must still be exercised, and the clocks of the chosen computations.
 struct FeatureCoverage {
-    /// How many more times each feature must be exercised.
     wanted: Vec<u8>,
     clocks: u32,
 }

@@ -5,22 +5,21 @@
 use crate::cosim::{PointSource, Random};
 use glint_golden::{Contract, Highlight};
 
-/// The number of random computations in [`Pool::drawn`], drawn in the same way as the points of the default test.
+/// The number of random computations in [`Pool::drawn`], which are drawn like the points of the default test.
 const DRAWN: usize = 1024;
 
-/// The number of random computations in [`Pool::readers`] of a device without lines. These computations are drawn in three ways,
-/// in turn. One third is drawn evenly, and reads words far from the peak of the highlight. One third is near the ends of the
-/// domains, at distances of every magnitude, since tables have a word for each octave of the distance. One third has operands
-/// from anywhere in their formats, moved to where the formula has a random value. In all three ways, the other operands are
-/// chosen so that the results are seldom 0.
+/// The number of random computations in [`Pool::readers`] of a device without lines, drawn in three ways in turn. The first way
+/// draws evenly, and reads words far from the peak of the highlight. The second draws near the ends of the domains, at
+/// distances of every magnitude, since tables have a word for each octave. The third draws from the whole formats, and moves
+/// operands to where the formula has a random value. All other operands are chosen so that results are seldom 0.
 const SHOWN: usize = 3840;
 
-/// An operand without fraction bits gets one point for each of its values, and points at the edges of the highlight, if it has
-/// at most this number of values.
+/// The largest number of values of an operand without fraction bits for which [`Pool::readers`] has points at each value, and
+/// at the edges of the highlight.
 const MOST_VALUES: u64 = 4096;
 
-/// Distances from the lowest value of the operands without fraction bits, which choose a table. A line through the highlight
-/// is drawn for each distance, and for each number of bits of the line's length.
+/// Distances from the lowest value of the operands without fraction bits. These operands choose a table. A line through the
+/// highlight is drawn for each distance and each number of bits of the line's length.
 const FIRST_VALUES: [i64; 6] = [0, 1, 2, 3, 7, 15];
 const LINE_BITS: std::ops::RangeInclusive<u32> = 8..=12;
 
@@ -33,14 +32,12 @@ const VALUE: f64 = 0.6;
 /// The largest number of corners. The ends of the operands' formats are used only if this number is not exceeded.
 const MOST_CORNERS: usize = 128;
 
-/// The length operand of a line in a corner.
 const CORNER_LENGTH: i64 = 2;
 
 /// The candidates from which the computations of a test bench are chosen.
 pub struct Pool {
-    /// Computations in which every operand that determines `f` is at an end of its domain, or, if there are few enough such
-    /// computations, at an end of its format. The length operand of a line is at most 2. There are at most 128 of these
-    /// computations.
+    /// At most 128 computations with every operand that determines `f` at an end of its domain or, if this limit allows it, of
+    /// its format. The length operand of a line is at most 2.
     pub corners: Vec<Vec<i64>>,
     /// Random computations, whose features are all recorded.
     pub drawn: Vec<Vec<i64>>,
@@ -133,7 +130,7 @@ fn near_ends(points: &PointSource<'_>, random: &mut Random, values: &mut [i64]) 
 }
 
 /// Draws the control operands from their whole formats, and moves them to where the formula has a random value from 0 to 1. A
-/// ROM word that operands of the domain read only far from the peak is then read near it, and shows more in the results.
+/// ROM word that the domain reads only far from the peak is then read near the peak, and shows more in the results.
 fn anywhere(points: &PointSource<'_>, random: &mut Random, values: &mut [i64]) {
     let control = points.operands().iter().filter(|operand| !operand.colour).count();
     for (value, operand) in values[..control].iter_mut().zip(points.operands()) {

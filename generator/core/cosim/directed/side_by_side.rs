@@ -15,7 +15,7 @@ use glint_rtl::sim::Machine;
 /// The number of computations that are simulated at once.
 pub const LANES: usize = 32;
 
-/// The number of clocks after which a computation counts as a computation that never ends.
+/// A computation that takes more clocks counts as endless.
 const LIMIT: u32 = 1 << 16;
 
 /// A set of lanes as a bit mask: bit i is 1 if lane i is in the set.
@@ -32,8 +32,8 @@ pub struct OutputTrace {
 }
 
 impl OutputTrace {
-    /// Returns the sum of the absolute differences of the bit patterns. Returns the largest `u64` if the traces differ in the
-    /// number of clocks or of results.
+    /// Returns the sum of the absolute differences between the bit patterns of `self` and `from`. Returns the largest `u64` if
+    /// the traces differ in the number of clocks or of results.
     pub fn differs(&self, from: &Self) -> u64 {
         if self.results.len() != from.results.len() || self.clocks != from.clocks {
             return u64::MAX;
@@ -78,8 +78,9 @@ impl SideBySide {
         Ok(Self { machine, ports, busy, inputs, copies: None })
     }
 
-    /// Gives each lane its own copy of the ROMs, so that [`SideBySide::run_with`] can invert other bits in each lane. `copies` is
-    /// the result of [`Memories::copied`], which added the copies to `design`. Without this call, `run_with` inverts no bits.
+    /// Gives each lane its own copy of the ROMs, so that [`SideBySide::run_with`] can invert different bits in each lane.
+    /// `copies` is the result of [`Memories::copied`], which added the copies to `design`. Without this call, `run_with`
+    /// inverts no bits.
     ///
     /// # Errors
     /// Fails if the design does not have the input port of the copies.
@@ -90,11 +91,11 @@ impl SideBySide {
         Ok(self)
     }
 
-    /// Runs computations as [`SideBySide::run`] does, but inverts the bits `faults[i]` of one ROM word in lane i. `word` is
-    /// the number of the word through all ROMs. The word is restored afterwards.
+    /// Runs computations as [`SideBySide::run`] does, but inverts the bits `faults[i]` of one ROM word in lane i. `word` is the
+    /// number of the word through all ROMs. The word is restored afterwards.
     ///
     /// # Errors
-    /// Fails as [`SideBySide::run`] does.
+    /// Fails if a computation does not end within 65536 clocks.
     pub fn run_with(
         &mut self,
         computations: &[&[i64]],
@@ -115,7 +116,7 @@ impl SideBySide {
     }
 
     /// Runs at most [`LANES`] computations to their ends, from raw operands in the order of `Contract::operands`, and returns
-    /// their outputs. The function calls `see` before each clock edge with the simulator and the set of busy lanes.
+    /// their outputs. Calls `see` before each clock edge with the simulator and the set of busy lanes.
     ///
     /// # Errors
     /// Fails if a computation does not end within 65536 clocks.

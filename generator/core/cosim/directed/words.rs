@@ -1,7 +1,7 @@
 //! Finds computations that detect faults in the words of a design's ROMs.
 //!
 //! A computation detects a fault if its results change when a bit in the upper half of a word is inverted. The search tries
-//! the candidates of the pool that read the word, and then computations with similar operands. It gives up after twelve
+//! the candidates of the pool that read the word, and then computations with similar operands. The search gives up after twelve
 //! rounds.
 
 use std::cmp::Reverse;
@@ -23,9 +23,8 @@ use glint_rtl::sim::{CompiledDesign, Machine};
 pub const LONGEST: u32 = 64;
 
 /// The approximate number of clocks that the chosen computations may take, at one computation for each word. If all words would
-/// take more, only every second word has computations, or every third, and so on, evenly over all memories. A word can need
-/// several computations. With two lights, for example, the bench of `shading` has 168 000 clocks, which Icarus Verilog
-/// simulates in five seconds.
+/// take more, only every n-th word has computations, evenly over all memories. A word can need several computations. With two
+/// lights, for example, the bench of `shading` has 168 000 clocks, which Icarus Verilog simulates in five seconds.
 const MOST_CLOCKS: u64 = 40_000;
 
 /// The number of rounds that try other computations for a word, if no candidate detects a fault in it. Operands stay in their
@@ -43,12 +42,12 @@ pub struct Chosen {
     pub chosen: BTreeSet<usize>,
     /// The raw operands of computations that the search has added.
     pub found: Vec<Vec<i64>>,
-    /// As [`Computations::word_stride`](super::Computations::word_stride).
+    /// Computations were chosen for every `word_stride`-th word that the candidates read.
     pub word_stride: usize,
 }
 
-/// Chooses among the `candidates` and further computations near them. The words with the numbers in `known` and the control
-/// ROM need no computation.
+/// Chooses computations that detect faults in ROM words, from the `candidates` and from further computations near them. The
+/// words with the numbers in `known` and the control ROM need no computation.
 ///
 /// # Errors
 /// Fails if the design cannot be simulated, if it does not belong to the contract, or if a computation does not end.
@@ -156,8 +155,8 @@ impl WordSearch<'_> {
     }
 
     /// Searches for computations that detect the bits in the mask `left` of a word. The search starts from `nearest`, which
-    /// detect the bit `probe`. It moves on to computations near them in which a fault of this bit changes the results more and
-    /// more.
+    /// detect the bit `probe`. The search moves on to computations near them in which a fault of this bit changes the results
+    /// more and more.
     ///
     /// Within the domain, some words are read only far from any highlight. The last rounds therefore take operands from their
     /// whole formats, where the golden model still predicts the device.
@@ -202,8 +201,8 @@ impl WordSearch<'_> {
         self.device.run_with(computations, word, &faults)
     }
 
-    /// Returns which bits in the mask `bits` of a word a computation detects, one at a time. `right` must be its output
-    /// without a fault.
+    /// Returns the bits in the mask `bits` of a word for which a computation detects a fault in this bit alone. `right` must be
+    /// the computation's output without a fault.
     fn noticed(
         &mut self,
         word: u32,

@@ -49,7 +49,7 @@ impl FromStr for AxisValues {
     }
 }
 
-/// Parses first value, last value and step. For example, `0..1000/10` gives (0, 1000, 10), and `5` gives (5, 5, 1).
+/// Parses first value, last value and step: `0..1000/10` gives (0, 1000, 10), and `5` gives (5, 5, 1).
 fn range(item: &str) -> Option<(i64, i64, usize)> {
     let Some((first, rest)) = item.split_once("..") else {
         let value = item.parse().ok()?;
@@ -64,7 +64,7 @@ fn range(item: &str) -> Option<(i64, i64, usize)> {
 }
 
 /// Returns the operand values that an exhaustive check visits. The values in `others` replace the contract's own values of the
-/// same operand. If they leave out a part of a range, `omits` in the returned sweep names the operand.
+/// same operand. In the returned sweep, `omits` names each operand whose range is no longer whole.
 ///
 /// # Errors
 /// Fails if an operand is named twice, if the contract's sweep does not have it, or if a value is outside the operand's domain.

@@ -2,9 +2,9 @@
 //! core, the signals are the outputs and all architectural registers; in a pipeline, the outputs and the checkpoints.
 //!
 //! This check is feasible only for devices whose operands have at most 26 bits in total; a device of full width is checked
-//! through a narrow configuration. The combinations are numbered and divided into blocks. Each lane of a simulator runs 512
-//! consecutive combinations from power-up on, and each computation begins with the register values of the previous computation.
-//! The result does not depend on the order of the blocks.
+//! through a narrow configuration. The combinations are divided into numbered blocks, and the result does not depend on the
+//! order of the blocks. Each lane of a simulator runs 512 consecutive combinations from power-up on, and each computation
+//! begins with the register values of the previous computation.
 
 use std::fmt;
 use std::io::Write;
@@ -29,7 +29,6 @@ pub const MOST_BITS: u32 = 26;
 /// The number of combinations that one lane runs from power-up on.
 const RUN: u64 = 512;
 
-/// The number of combinations in a block.
 const BLOCK: u64 = RUN * LANES as u64;
 
 /// The progress of a shard in the clock-by-clock comparison.
@@ -78,8 +77,8 @@ pub struct Clocks<'a> {
 }
 
 impl<'a> Clocks<'a> {
-    /// Fails if the model predicts a signal that the design does not have, or if the design has an architectural register or an
-    /// output that the model does not predict. Fails also if design and contract do not have the same operands and outputs.
+    /// Fails if model and design do not have the same signals, or if design and contract do not have the same operands and
+    /// outputs.
     pub fn new(
         design: &'a Design,
         model: Box<dyn Model>,
@@ -88,7 +87,7 @@ impl<'a> Clocks<'a> {
         Ok(Self { binding: Binding::new(design, model, contract)? })
     }
 
-    /// Fixes operands at raw values, so that the combinations cover only the other operands.
+    /// Fixes operands at raw values, so that the combinations vary only the operands that `held` does not name.
     #[must_use]
     pub fn holding(self, held: &[(String, i64)]) -> Self {
         Self { binding: self.binding.holding(held) }
@@ -106,7 +105,7 @@ impl<'a> Clocks<'a> {
         }
     }
 
-    /// Says what the check does not cover: why the combinations are not run, or which inputs only random tests cover.
+    /// Names the gaps of the check: why the combinations are not run, or which inputs only random tests cover.
     pub fn omits(&self) -> String {
         match self.count() {
             0 => format!(
@@ -136,7 +135,7 @@ impl<'a> Clocks<'a> {
     }
 
     /// Checks the blocks with the given numbers, which must ascend, on all threads of rayon's pool. Returns the number of the
-    /// first combination for which model and hardware differ. The function calls `progress` with the number of combinations in
+    /// first combination for which model and hardware differ. Calls `progress` with the number of combinations in
     /// each finished block.
     ///
     /// # Errors
@@ -173,7 +172,7 @@ impl<'a> Clocks<'a> {
     /// must begin with the first combination of the same lane, because registers keep values between computations.
     ///
     /// # Errors
-    /// Fails if there is no combination `place`, if nothing differs for it, or as [`Clocks::check`] fails.
+    /// Fails if there is no combination `place`, if nothing differs for it, or if the design cannot be simulated.
     pub fn difference(&self, place: u64) -> Result<Difference> {
         let mut alone = self.alone(place)?;
         alone.go_on(u64::MAX)?;

@@ -25,7 +25,7 @@ pub const MOST_SHARDS: u64 = 1_000_000;
 /// The largest number of missing shards that an error message names.
 const NAMED: usize = 10;
 
-/// The number of blocks for each thread between two calls of `look` in [`Job::run`]. They take some tenths of a second.
+/// The number of blocks for each thread between two calls of `look` in [`Job::run`]. These blocks take some tenths of a second.
 const CHUNK: u64 = 4;
 
 /// One part of a job that is divided among machines. For example, `2/4` is the second of four shards.
@@ -44,12 +44,12 @@ impl Shard {
         (1..=MOST_SHARDS).contains(&self.of) && (1..=self.of).contains(&self.number)
     }
 
-    /// Shard 1 of 4 has 3 of 10 blocks, for example, and shard 4 has 2.
+    /// Returns the number of the shard's blocks. For example, shard 1 of 4 has 3 of 10 blocks.
     fn count(self, blocks: u64) -> u64 {
         (blocks + self.of - self.number) / self.of
     }
 
-    /// Returns the number, among all blocks, of the shard's own block `at`. Both are counted from 0.
+    /// Returns the number, among all blocks, of the shard's own block `at`. Both numbers are counted from 0.
     fn block(self, at: u64) -> u64 {
         self.number - 1 + at * self.of
     }
@@ -84,8 +84,8 @@ impl FromStr for Shard {
     }
 }
 
-/// Returns the number of places in the blocks of a shard after its first `done` blocks. The function computes it without
-/// visiting the blocks, because a sweep of 2^48 combinations has 2^31 of them.
+/// Returns the number of places in the blocks of a shard after its first `done` blocks. The function does not visit the blocks,
+/// because a sweep of 2^48 combinations has 2^31 blocks.
 fn places_remaining(places: &Places<'_>, shard: Shard, done: u64) -> u64 {
     let blocks = places.blocks();
     let count = shard.count(blocks);
@@ -97,7 +97,7 @@ fn places_remaining(places: &Places<'_>, shard: Shard, done: u64) -> u64 {
     u64::try_from(all).unwrap_or(u64::MAX)
 }
 
-/// The progress of a shard in one of the two error measurements.
+/// The progress of a shard in the errors of `f`, or of the products with colours.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Progress {
     /// The number of finished blocks, which are the first blocks of the shard.
@@ -121,7 +121,7 @@ pub struct ShardState {
 }
 
 impl ShardState {
-    /// `digest` is [`crate::core::Core::fingerprint`].
+    /// Makes the state of a shard that has checked nothing. `digest` is [`crate::core::Core::fingerprint`].
     pub fn new(digest: &str, shard: Shard) -> Self {
         let nothing = Progress { done: 0, peak: Peak::NONE };
         Self {
@@ -167,7 +167,7 @@ impl<'a> Job<'a> {
         }
     }
 
-    /// Adds the comparison of model and hardware clock by clock. If there are too many combinations, it compares nothing.
+    /// Adds the comparison of model and hardware clock by clock, which is empty if there are too many combinations.
     #[must_use]
     pub fn with(mut self, clocks: Clocks<'a>) -> Self {
         self.clocks = Some(clocks);
@@ -183,7 +183,7 @@ impl<'a> Job<'a> {
         self.parts_remaining(state).into_iter().fold(0, u64::saturating_add)
     }
 
-    /// Does the same for each part: for `f`, for the colours, and clock by clock.
+    /// Returns the numbers of combinations to visit for `f`, for the colours, and clock by clock.
     fn parts_remaining(&self, state: &ShardState) -> [u64; 3] {
         let f = places_remaining(&self.f, state.shard, state.f.done);
         let colours = places_remaining(&self.colours, state.shard, state.colours.done);
@@ -278,10 +278,9 @@ impl<'a> Job<'a> {
         Ok(Duration::from_secs_f64(sum / threads.max(1) as f64))
     }
 
-    /// Checks the remaining blocks of combinations of the shard in `state`, which is one machine's part of the job, and updates
-    /// `state`. After every few blocks, the function calls `look` with the state, and returns `ControlFlow::Break` if `look`
-    /// does. It calls `progress` with the number of combinations in each finished block. The comparison clock by clock ends at
-    /// its first difference.
+    /// Checks the remaining blocks of the shard in `state`, and updates `state`. After every few blocks, the function calls
+    /// `look` with the state, and returns `ControlFlow::Break` if `look` does. Calls `progress` with the number of
+    /// combinations in each finished block. The comparison clock by clock ends at its first difference.
     ///
     /// # Errors
     /// Fails if the design cannot be simulated, if its signals do not settle in a clock, or if the golden model of a pipeline

@@ -21,13 +21,13 @@ fn checksum(state: &ShardState) -> Result<String> {
     Ok(digest(&serde_json::to_vec(state)?))
 }
 
-/// Fails if the state cannot be written as JSON.
+/// Returns the text of a file with the state and a checksum. Fails if the state cannot be written as JSON.
 pub fn to_text(state: &ShardState) -> Result<String> {
     let kept = SavedShard { state: state.clone(), checksum: checksum(state)? };
     Ok(serde_json::to_string_pretty(&kept)? + "\n")
 }
 
-/// Fails if the text is no such file of this version of Glint, or if its checksum is wrong, because the file was changed.
+/// Reads the state from the text of a file. Fails if this version of Glint did not write the text, or if the checksum is wrong.
 pub fn from_text(text: &str) -> Result<ShardState> {
     let kept: SavedShard =
         serde_json::from_str(text).context("the file was not written by this version of Glint")?;

@@ -1,14 +1,9 @@
-//! Checks the error bound of a contract for every operand combination that the contract lists for this check (its *sweep*),
-//! instead of a random sample.
+//! Checks the error bound of a contract for every operand combination that the contract lists for this check (its *sweep*).
 //!
-//! A highlight device multiplies each colour by a reflectance `f`, so the check has two parts. The first part measures the
-//! error of `f` for every combination of the sweep. The second part measures the rounding of every possible word `f` times
-//! every colour. The sum of both largest errors bounds the error of an output, and is compared with the contract. For any other
-//! device, the check measures the errors of the outputs themselves. [`Clocks`] also compares model and hardware clock by clock,
-//! if the operands have at most 26 bits in all.
-//!
-//! All combinations are numbered and divided into blocks. Machines may check the blocks in any order; the joined result is the
-//! same.
+//! For a highlight, the check measures the error of the reflectance `f` for every combination of the sweep, and the rounding of
+//! every possible word `f` times every colour. The sum of both largest errors bounds the error of an output, and is compared
+//! with the contract. For any other device, the check measures the errors of the outputs themselves. [`Clocks`] also compares
+//! model and hardware clock by clock, if the operands have at most 26 bits in all.
 
 pub mod axis;
 mod backing;

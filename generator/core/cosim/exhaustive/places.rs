@@ -26,7 +26,7 @@ pub struct Peak {
     pub place: u64,
 }
 
-/// JSON has no infinite number, and `null` in its place.
+/// Reads `null` as infinity, because JSON has no infinite number.
 fn or_infinite<'de, D: Deserializer<'de>>(number: D) -> Result<f64, D::Error> {
     Ok(Option::deserialize(number)?.unwrap_or(f64::INFINITY))
 }
@@ -126,7 +126,7 @@ impl<'a> Places<'a> {
         values
     }
 
-    /// Returns the operands of combination `number` as text. For example, `cos_gamma = 1044480, exponent = 20`.
+    /// Returns the operands of combination `number` as text: `cos_gamma = 1044480, exponent = 20`.
     pub fn words(&self, number: u64) -> String {
         let pairs = self.sweep.axes.iter().zip(self.place(number));
         let words: Vec<String> =
@@ -135,7 +135,7 @@ impl<'a> Places<'a> {
     }
 
     /// Returns the error for combination `number`: the absolute error of `f`, the error of an output in units, or the rounding
-    /// error of a product. It is infinite if the formula has no value for the operands.
+    /// error of a product. The error is infinite if the formula has no value for the operands.
     pub fn error(&self, number: u64) -> f64 {
         self.error_at(&self.place(number))
     }

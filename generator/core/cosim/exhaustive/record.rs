@@ -27,8 +27,8 @@ pub struct Record {
     pub f: RecordedPeak,
     /// The largest error of a colour multiplier, in output units.
     colour_units: f64,
-    /// The upper bound of the error of an output, in output units. It is the error of `f` for the largest colour plus the
-    /// largest rounding error of a product with a colour.
+    /// The upper bound of the error of an output, in output units. The bound is the error of `f` for the largest colour plus
+    /// the largest rounding error of a product with a colour.
     pub together: f64,
     /// Whether the errors at all recorded operands were within the contract's bound.
     pub holds: bool,
@@ -76,7 +76,7 @@ impl RecordedAxis {
 
 #[derive(Deserialize)]
 struct Report {
-    /// The results by configuration. Their entry `configuration` is a [`crate::core::Core::contract_digest`].
+    /// The results by configuration. The entry `configuration` of a result is a [`crate::core::Core::contract_digest`].
     configurations: Vec<serde_json::Value>,
 }
 
@@ -153,7 +153,7 @@ impl Record {
     /// Computes a part of the recorded check again. The part has about `places` (not 0) evenly spread operand combinations,
     /// the combination with the largest error, and all products with colours. Returns the number of combinations at which the
     /// function computed `f`. The second result has a sentence for each difference from the record, and for each error above
-    /// the contract's bound. The function calls `progress` with the number of evaluations in each finished block.
+    /// the contract's bound. Calls `progress` with the number of evaluations in each finished block.
     pub fn recheck(
         &self,
         contract: &dyn Contract,

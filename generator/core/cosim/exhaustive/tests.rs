@@ -11,8 +11,8 @@ use glint_golden::{Axis, Bound, Bounds, Operand, Output, Sweep, Term, Values};
 static OUTPUT: LazyLock<Output> =
     LazyLock::new(|| Output { name: "place".to_owned(), format: Format::unsigned(20, 1) });
 
-/// A contract with one output, which is never computed. Its "error" is the number of the place, and its largest value occurs
-/// at many places.
+/// A contract with one output, which is never computed. The contract's "error" is the number of the place, and its largest
+/// value occurs at many places.
 struct Counting;
 
 impl Contract for Counting {
@@ -55,7 +55,7 @@ fn places_are_numbered_last_axis_fastest() {
     assert_eq!(places.error(451_234), 451_234.0);
 }
 
-/// Three operands of 16 bits have 2^48 combinations. Four have 2^64, which no number of 64 bits counts, and which is not 0.
+/// Three operands of 16 bits have 2^48 combinations. Four have 2^64, which does not fit into 64 bits and must not become 0.
 #[test]
 fn many_combinations_are_counted_at_once() {
     for (operands, count) in [(3, 1 << 48), (4, u64::MAX), (5, u64::MAX)] {

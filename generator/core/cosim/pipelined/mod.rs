@@ -1,9 +1,8 @@
 //! Predicts the signals of a pipelined core at every clock, from the golden model of the sequential core.
 //!
-//! The model computes each point (one set of operands) on its own. This module tracks in which stage each point is, and predicts
-//! the handshake, the results and the side channel, which carries data of the user along with each point. The module also
-//! predicts *checkpoints*: nets in a stage of the pipeline that carry the same value as a register of the sequential core after
-//! some microinstruction. For the point in that stage, the net must have the value of that register in the model.
+//! The model computes each point on its own. This module tracks in which stage each point is, and predicts the handshake, the
+//! results and the side channel (user data along with each point). The module also predicts *checkpoints*: a net in a stage
+//! that must have the value of a register of the sequential core after some microinstruction, for the point in this stage.
 
 mod reference;
 #[cfg(test)]
@@ -62,8 +61,8 @@ impl Pipe {
     /// The nets are in the order in which differences are reported.
     ///
     /// # Errors
-    /// Fails if the model does not predict a result, a checkpoint's register, `word_address`, `busy` or `valid`, or if it does
-    /// not have the inputs of the operands and of the handshake.
+    /// Fails if the model lacks a result, a checkpoint's register, `word_address`, `busy`, `valid`, or an input of the operands
+    /// or of the handshake.
     pub(super) fn new(
         design: &Design,
         pipeline: &Pipeline,
@@ -110,8 +109,8 @@ impl Pipe {
         Ok((pipe, nets, results))
     }
 
-    /// Advances the points by one clock with the given inputs, and counts a result in `seen` if the receiver takes one. A
-    /// point that is taken gets the number `place`. `measure` measures the error of the result.
+    /// Advances the points by one clock with the given inputs, and counts a result in `seen` if the receiver takes one. A point
+    /// that enters in this clock gets the number `place`. `measure` measures the error of the result.
     pub(super) fn clock(
         &mut self,
         ports: &Ports,
@@ -160,13 +159,13 @@ impl Pipe {
         }
     }
 
-    /// Returns the number of the point in the stage of the compared net number `at`, and the clock in which the pipeline took
-    /// it.
+    /// Returns the number of the point in the stage of the compared net number `at`, and the clock in which this point was
+    /// taken.
     pub(super) fn point(&self, at: usize) -> Option<(u64, u64)> {
         self.stages.stage(self.columns[at].1).map(|point| (point.place, point.taken))
     }
 
-    /// Assumes that the receiver takes the results.
+    /// Returns whether the pipeline takes a point in the next clock if the receiver takes the results.
     pub(super) fn is_ready(&self) -> bool {
         self.stages.takes(true)
     }

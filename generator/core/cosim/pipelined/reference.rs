@@ -1,4 +1,4 @@
-//! Runs the golden model of the sequential core for one point (one set of operands).
+//! Runs the golden model of the sequential core for one point.
 //!
 //! The module returns the results, and the register values that a pipeline must show at its checkpoints.
 
@@ -9,7 +9,7 @@ use crate::cosim::ports::Ports;
 use glint_golden::Model;
 use glint_rtl::netlist::{Design, NetId, Pipeline};
 
-/// The number of clocks after which a computation counts as a computation that never ends.
+/// A computation that takes more clocks counts as endless.
 const MOST_CLOCKS: usize = 8192;
 
 /// The golden model of the sequential core, which computes one point at a time.
@@ -21,8 +21,8 @@ pub(super) struct Reference {
     results: Vec<usize>,
     /// For each checkpoint, the index of its register among the model's signals.
     registers: Vec<usize>,
-    /// For each microinstruction, its checkpoints: how often the microinstruction was executed before, and the checkpoint's
-    /// index.
+    /// For each microinstruction, its checkpoints: the number of earlier executions of the microinstruction, and the index of
+    /// the checkpoint.
     due: Vec<Vec<(usize, usize)>>,
     visits: Vec<usize>,
 }
@@ -31,7 +31,8 @@ pub(super) struct Reference {
 pub(super) struct Expected {
     /// The bit patterns of the first results that the computation shows.
     pub results: Vec<u64>,
-    /// For each checkpoint, the value of its register; `None` if the computation does not reach its microinstruction.
+    /// For each checkpoint, the value of its register; `None` if the computation does not reach the checkpoint's
+    /// microinstruction.
     pub registers: Vec<Option<u64>>,
 }
 
@@ -39,8 +40,8 @@ impl Reference {
     /// Finds the signals of the model that belong to the checkpoints and the results of a pipeline.
     ///
     /// # Errors
-    /// Fails if the model does not predict a result, a checkpoint's register, `word_address`, `busy` or `valid`, or if it does
-    /// not have the inputs of the operands and of the handshake.
+    /// Fails if the model lacks a result, a checkpoint's register, `word_address`, `busy`, `valid`, or an input of the operands
+    /// or of the handshake.
     pub(super) fn new(
         design: &Design,
         pipeline: &Pipeline,

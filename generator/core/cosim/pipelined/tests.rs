@@ -32,8 +32,8 @@ fn every_device_is_what_its_golden_model_says() {
     }
 }
 
-/// A point is taken only every few clocks. Such a pipeline has fewer multipliers, registers that hold values, and one clock in
-/// each interval in which it takes a point.
+/// Tests pipelines that take a point only every few clocks. Such a pipeline has fewer multipliers, registers that hold values,
+/// and one clock in each interval in which it takes a point.
 #[test]
 fn every_device_with_shared_multipliers_is_what_its_golden_model_says() {
     let interval = |clocks: u32| ("pipeline.interval", Value::Text(clocks.to_string()));

@@ -11,7 +11,6 @@ use crate::package::output_files::OutputFiles;
 use glint_base::fixed::Format;
 use glint_rtl::verilog::text::{ascii, constant_name};
 
-/// An instruction as a function in C.
 struct InstructionFunction {
     name: String,
     /// The lines of the comment above the function.
@@ -28,7 +27,7 @@ struct InstructionFunction {
     result: String,
 }
 
-/// Adds the header. It needs a compiler with the inline assembly of GCC.
+/// Adds the header. The header needs a compiler with the inline assembly of GCC.
 ///
 /// # Errors
 /// Fails if the template fails.
@@ -93,8 +92,8 @@ fn kind(format: Format) -> &'static str {
     if format.signed { "int32_t" } else { "uint32_t" }
 }
 
-/// Returns the C expression of a source register. The core ignores the bits above an operand, so that only an operand below another
-/// one loses them here.
+/// Returns the C expression of source register `word`. Only an operand below another operand is cut to its bits, because the
+/// core ignores the bits above the operands.
 fn source_word(
     all: &Instructions,
     operands: &[(String, &InstructionOperand)],

@@ -140,7 +140,7 @@ fn streamed(top: &Top) -> LitexStream<'_> {
     }
 }
 
-/// Makes the name of a Python class. For example, `cosine_power` gives `CosinePower`, and `_1` gives `Core1`.
+/// Makes the name of a Python class: `cosine_power` gives `CosinePower`, and `_1` gives `Core1`.
 fn camel(name: &str) -> String {
     let mut joined = String::new();
     for part in name.split('_') {

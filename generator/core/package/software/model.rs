@@ -1,8 +1,8 @@
 //! Generates the bit-exact model of a core in C: a header, the functions, and an example in Python that calls them.
 //!
-//! A function computes the raw results of one point, or of a line of points, from raw operands. The module `print` prints it
-//! from the unrolled microprogram, or for a line from one clock of the core. A core that waits for a second `start` within a
-//! computation has no model.
+//! A function computes the raw results of one point, or of a line of points, from raw operands. The module `print` prints this
+//! function from the unrolled microprogram, or for a line from one clock of the core. A core that waits for a second `start`
+//! within a computation has no model.
 
 use glint_base::fill;
 use std::collections::BTreeMap;
@@ -27,7 +27,7 @@ use glint_rtl::verilog::text::{Names, ascii, constant_name, statement};
 #[derive(Clone)]
 pub struct CField {
     pub name: String,
-    /// The prefix of the port's constants in C. For example, `ROUGH_COS_GAMMA`.
+    /// The prefix of the port's constants in C: `ROUGH_COS_GAMMA`.
     constant: String,
     /// The C type of the raw integer.
     pub kind: &'static str,
@@ -79,7 +79,7 @@ impl CField {
         }
     }
 
-    /// Returns 2^F for F fraction bits as a C double, exactly. For example, `u1.20` gives `1048576.0`.
+    /// Returns 2^F for F fraction bits as a C double, exactly: `u1.20` gives `1048576.0`.
     pub fn scale(&self) -> String {
         format!("{:?}", glint_base::fixed::exp2(self.format.frac))
     }
@@ -201,8 +201,8 @@ fn result_ports(design: &Design) -> impl Iterator<Item = &Port> {
     design.outputs().filter(|port| port.role == Role::Result)
 }
 
-/// Returns the lines of the C function that computes one point, and the ROMs that it reads. `tables` has the names of the
-/// arrays with their words. Fails if the microprogram cannot be unrolled.
+/// Returns the lines of the C function that computes one point, and the ROMs that it reads. `tables` has the names of the C
+/// arrays with the ROMs' words. Fails if the microprogram cannot be unrolled.
 fn of_point(design: &Design, tables: &[String]) -> Result<(Vec<String>, Vec<RomId>)> {
     let unrolled = unroll_in_powers(design)?;
     let mut body = match &unrolled.dispatched {
@@ -417,7 +417,7 @@ fn assigned(design: &Design, port: &Port, pattern: &str) -> String {
     format!("{} = {value};", field(&net.name))
 }
 
-/// A ROM that is read several times occurs several times.
+/// Returns the ROMs that the values `wanted` read. A ROM that is read several times occurs several times.
 fn roms(graph: &Graph, wanted: &[NodeId]) -> Vec<RomId> {
     let mut roms = Vec::new();
     for id in graph.cone(wanted.iter().copied()) {

@@ -122,8 +122,8 @@ impl<'a> Printer<'a> {
         lines
     }
 
-    /// Returns whether a value is constant or has its own variable. Its expression then stays the same after C statements have
-    /// assigned new values to registers and memories.
+    /// Returns whether a value is constant or has its own variable. The value's expression then stays the same after C
+    /// statements have assigned new values to registers and memories.
     pub fn is_settled(&self, id: NodeId) -> bool {
         self.locals.contains_key(&id) || self.graph.constant_of(id).is_some()
     }

@@ -83,7 +83,7 @@ impl<'f> RecomputedContract<'f> {
     }
 }
 
-/// `why` says why nothing recomputes the core `name`.
+/// `why` says why no program recomputes the core `name`.
 fn recomputation_error(name: &str, why: &str) -> ConfigError {
     let message = format!("no program can recompute `{name}`: {why}");
     ConfigError::new("package.recomputation", message, "remove package.recomputation")
@@ -98,7 +98,7 @@ pub fn check(name: &str, facts: &ContractFacts) -> Result<(), ConfigError> {
 /// Adds the program. `read` are the ROMs that the C model reads.
 ///
 /// # Errors
-/// Fails as [`check`] does.
+/// Fails if [`check`] refuses the contract, or if the core has no contract.
 pub fn file(job: &EmitJob, read: &[RomId], files: &mut OutputFiles) -> Result<()> {
     let (name, inputs) = (job.name(), job.inputs);
     let design = inputs.sequential.as_ref().unwrap_or(job.design);
@@ -159,7 +159,7 @@ fn field(name: &str, design: &Design, port: &str) -> Result<CField, ConfigError>
     })
 }
 
-/// Returns the number of nodes of a formula's tree. For example, `x * x + 1` has five.
+/// Returns the number of nodes of a formula's tree: `x * x + 1` has five.
 fn part_count(formula: &Expression) -> usize {
     formula.size() as usize
 }

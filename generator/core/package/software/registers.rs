@@ -55,12 +55,12 @@ struct OperandConversion {
 }
 
 impl OperandConversion {
-    /// The registers that hold the raw integer have 32 or 64 bits.
+    /// Returns the number of bits of the registers that hold the raw integer: 32 or 64.
     fn bits(&self) -> u32 {
         if self.format.width() <= 32 { 32 } else { 64 }
     }
 
-    /// Returns C expressions of 64 bits. The largest is at most 2^63 − 1.
+    /// Returns the smallest and the largest raw value as C expressions of 64 bits, the largest limited to 2^63 − 1.
     fn limits(&self) -> (String, String) {
         let least = match self.format.min_raw() {
             least if least == i64::MIN.into() => "(-9223372036854775807 - 1)".to_owned(),

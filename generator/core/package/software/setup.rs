@@ -1,8 +1,8 @@
 //! Generates the host's part of a device that computes a line of points, in C and in Python.
 //!
 //! The host starts such a device once for a whole line. The generated functions compute the operands of the line from the
-//! vectors or angles at its two ends. They use the formulas of `render::setup`, and tests compare the results. A device with
-//! other operands has no such functions.
+//! vectors or angles at its two ends. The functions use the formulas of `render::setup`, and tests compare the results. A
+//! device with other operands has no such functions.
 
 use anyhow::Result;
 use glint_base::fill;
@@ -32,7 +32,7 @@ struct LineSetup<'a> {
     full: f64,
     amplitude_scale: String,
     /// The largest absolute value of an angle along the line, in right angles, after its multiplication by √(n/2) for a device
-    /// without exponent. It leaves one right angle of the format for rounding errors that add up along the line.
+    /// without exponent. This limit leaves one right angle of the format for rounding errors that add up along the line.
     room: f64,
     order: Vec<String>,
 }
@@ -44,7 +44,7 @@ impl LineSetup<'_> {
     }
 }
 
-/// Adds the C and Python functions. Adds nothing if the device computes no lines, or if it has other operands than these.
+/// Adds the C and Python functions. Adds nothing if the device computes no lines, or if it has other operands than [`KNOWN`].
 ///
 /// # Errors
 /// Fails if a template fails.

@@ -1,7 +1,7 @@
 //! Generates `<name>_stream.h` and `<name>_stream.py`: functions that pack operands into the bytes of an AXI4-Stream, and
 //! unpack results.
 //!
-//! A program uses them on the memory of a DMA engine that feeds the core's stream wrapper.
+//! A program uses these functions on the memory of a DMA engine that feeds the core's stream wrapper.
 
 use anyhow::Result;
 use glint_base::fill;

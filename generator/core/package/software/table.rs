@@ -38,7 +38,7 @@ pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<()> {
         parts: Vec<String>,
         kind: &'a str,
         unsigned: &'a str,
-        // The registers of the parts, each with the number of the part and its lowest bit there.
+        // The constants of the registers, each with the number of its part and the lowest of its bits in this part.
         registers: Vec<(String, usize, u32)>,
     })?;
     files.add(FileKind::Software, format!("{name}_table.h"), header);
@@ -49,7 +49,8 @@ pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<()> {
     Ok(())
 }
 
-/// Returns the constant of each register that takes a part of a word, with the number of the part and its lowest bit in the register.
+/// Returns the constant of each register that takes bits of a part, the number of the part, and the lowest of these bits in the
+/// part.
 fn part_registers(map: &Map) -> Vec<(String, usize, u32)> {
     let mut registers = Vec::new();
     for (number, port) in map.table.iter().enumerate() {
@@ -67,7 +68,7 @@ pub fn image_file(core: &str, image: &str) -> String {
     format!("{core}_table_{image}.h")
 }
 
-/// Returns the header with the words of an image for the core `name`. `regenerate` is the command that makes it again.
+/// Returns the header with the words of an image for the core `name`. `regenerate` is the command that makes the header again.
 ///
 /// # Errors
 /// Fails if the template fails.

@@ -48,7 +48,7 @@ impl BusInterface {
 }
 
 impl IpXactComponent<'_> {
-    /// IP-XACT writes the digits behind `'h`. For example, 255 gives `ff`.
+    /// Returns the hexadecimal digits that IP-XACT has behind `'h`: 255 gives `ff`.
     fn hex(&self, number: impl std::fmt::LowerHex) -> String {
         format!("{number:x}")
     }

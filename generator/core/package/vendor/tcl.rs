@@ -14,7 +14,6 @@ const VIVADO_PART: &str = "xc7a35tcsg324-1";
 const QUARTUS_FAMILY: &str = "Cyclone V";
 const QUARTUS_DEVICE: &str = "5CEBA4F23C7";
 
-/// An interface of Platform Designer.
 struct PlatformInterface<'a> {
     name: &'static str,
     kind: &'static str,

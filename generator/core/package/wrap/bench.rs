@@ -21,12 +21,11 @@ use glint_base::fixed::mask;
 use glint_rtl::netlist::OPCODE;
 use glint_rtl::verilog::text::literal;
 
-/// The largest number of points (sets of operands) that a bench of a bus wrapper computes. Of more points it uses every
-/// second, or every third, and so on.
+/// The largest number of points that a bench of a bus wrapper computes. If there are more, the bench uses every n-th point.
 const ON_A_BUS: usize = 256;
 
-/// A bus register of an operand or of results. It has an address, the Verilog of the word to write or to expect, and a mask
-/// with 1 at the bits of the port.
+/// A bus register of an operand or of results. The register has an address, the Verilog of the word to write or to expect, and
+/// a mask with 1 at the bits of the port.
 struct BenchRegister {
     at: String,
     word: String,
@@ -141,7 +140,7 @@ fn add_python(job: &EmitJob, wrapper: &str, tests: &[&str], files: &mut OutputFi
     Ok(())
 }
 
-/// Returns a Verilog literal in bytes. For example, 8 gives `32'h20`.
+/// Returns the byte address of the word address `place` as a Verilog literal: 8 gives `32'h20`.
 fn address(place: u32) -> String {
     format!("32'h{:02x}", 4 * place)
 }

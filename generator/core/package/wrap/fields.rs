@@ -22,7 +22,7 @@ pub struct StreamField {
 }
 
 impl StreamField {
-    /// Returns the width with the padding of the last byte. For example, a cosine of 21 bits has 24.
+    /// Returns the width with the padding of the last byte: a cosine of 21 bits has 24.
     pub fn padded(&self) -> u32 {
         self.width.next_multiple_of(8)
     }
@@ -51,7 +51,7 @@ impl StreamField {
     }
 }
 
-/// Returns the fields in the order of the ports.
+/// Returns the fields of the operands in the order of the ports.
 pub fn operands(design: &Design) -> Vec<StreamField> {
     let ports = design.inputs().filter_map(|port| match port.role {
         Role::Operand { strobe } => Some((port, design.net(strobe).name.clone())),
@@ -61,7 +61,7 @@ pub fn operands(design: &Design) -> Vec<StreamField> {
     side_by_side(design, ports)
 }
 
-/// Returns the fields in the order of the ports. For example, three colours of 8 bits begin at bits 0, 8 and 16.
+/// Returns the fields of the results in the order of the ports: three colours of 8 bits begin at bits 0, 8 and 16.
 pub fn results(design: &Design) -> Vec<StreamField> {
     let ports = design.outputs().filter(|port| port.role == Role::Result);
     side_by_side(design, ports.map(|port| (port, String::new())))
@@ -97,12 +97,12 @@ pub struct Transfer {
 }
 
 impl Transfer {
-    /// Returns the layout of a transfer to the core, which carries the operands. Fails if the core has none.
+    /// Returns the layout of a transfer to the core, which carries the operands. Fails if the core has no operands.
     pub fn sent(job: &EmitJob) -> Result<Self> {
         Self::new(job, operands(job.design))
     }
 
-    /// Returns the layout of a transfer from the core, which carries the results. Fails if the core has none.
+    /// Returns the layout of a transfer from the core, which carries the results. Fails if the core has no results.
     pub fn received(job: &EmitJob) -> Result<Self> {
         Self::new(job, results(job.design))
     }

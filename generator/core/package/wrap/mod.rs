@@ -1,4 +1,5 @@
-//! Generates Verilog wrappers that connect a core to a system, by AXI4-Streams, by bus registers or by instructions, and their formal properties.
+//! Generates Verilog wrappers that connect a core to a system by AXI4-Streams, bus registers or instructions, and their formal
+//! properties.
 
 mod bench;
 pub(super) mod fields;
@@ -57,7 +58,6 @@ pub fn files(job: &EmitJob, files: &mut OutputFiles) -> Result<()> {
     }
 }
 
-/// The formal properties of a wrapper.
 struct WrapperProof {
     text: String,
     /// The modules that `text` defines in place of modules that the wrapper instantiates. For example, the proof of `rough_axis` has
@@ -94,9 +94,9 @@ fn add_proof(
     Ok(())
 }
 
-/// Returns the port connections of the core's instance, the clock first. `to` returns the net for a port. If it returns
-/// `None`, an input is connected to `1'b0`, and an output to the wire of [`core_wire`]. For example, `.busy(core_busy)`. The write
-/// port of a table is connected to nets with the names of its ports.
+/// Returns the port connections of the core's instance, the clock first. `to` returns the net for a port. If `to` returns
+/// `None`, an input is connected to `1'b0`, and an output to the wire of [`core_wire`]. For example, `.busy(core_busy)`. The
+/// write port of a table is connected to nets with the names of its ports.
 fn connected(
     design: &Design,
     clock: &str,
@@ -120,7 +120,7 @@ fn core_wire(design: &Design, port: &Port) -> String {
     format!("wire {} core_{};", range(net.format.width()), net.name).replace("  ", " ")
 }
 
-/// A module with the ports and the handshake of a core, which replaces it in a proof. Its results are arbitrary.
+/// A module with the ports and the handshake of a core, which replaces the core in a proof. The results are arbitrary.
 pub struct CoreStub {
     pub core: String,
     pub ports: Vec<String>,
@@ -150,8 +150,7 @@ impl CoreStub {
     }
 }
 
-/// Returns the part of a stub, which replaces the core in a proof, that lets the solver choose results and status bits in each
-/// clock.
+/// Returns the part of a stub that lets the solver choose results and status bits in each clock.
 fn stub_free(design: &Design) -> Vec<String> {
     let mut lines = Vec::new();
     for port in &design.ports {

@@ -26,7 +26,7 @@ struct ResultBits<'a> {
     width: u32,
 }
 
-/// Fails if the pipeline has no stall (`pipeline.stall` = "none"), or if it has no operands or no results.
+/// Adds the wrapper and its proof. Fails if the pipeline has no stall (`pipeline.stall` = "none"), no operands or no results.
 pub fn modules(job: &EmitJob, pipeline: &Pipeline, files: &mut OutputFiles) -> Result<()> {
     let (name, design) = (job.name(), job.design);
     ensure!(

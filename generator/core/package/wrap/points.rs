@@ -22,8 +22,8 @@ pub struct BenchPoint {
     pub results: Vec<Vec<u64>>,
 }
 
-/// Returns the computations in `vectors` that run to their end, in the order in which they end. A computation with which they
-/// would have more than 4096 results together is left out.
+/// Returns the computations in `vectors` that run to their end, in the order in which they end. A computation with which the
+/// list would have more than 4096 results is left out.
 ///
 /// # Errors
 /// Fails if the design lacks its handshake.
@@ -78,7 +78,7 @@ impl PortValues<'_> {
     }
 }
 
-/// Returns the finished computations of a core with a microprogram. Strobes write the operands one by one, and `start` takes
+/// Returns the finished computations of a sequential core. Strobes write the operands one by one, and `start` takes
 /// them. A computation is left out if a reset interrupts it, or if an operand has not been written since the latest reset.
 /// Returns `None` if the design lacks a signal of the handshake.
 fn computed<'a>(

@@ -24,7 +24,7 @@ pub struct ProcessorModule {
     pub table: Vec<String>,
     pub result_wires: Vec<String>,
     pub connections: Vec<String>,
-    /// The ports of the write port of the core's table.
+    /// The declarations of the ports that write the core's table.
     pub table_ports: Vec<String>,
     /// The declaration of a wire that says whether there is an instruction with the function id `taken`.
     pub known: Vec<String>,
@@ -152,7 +152,7 @@ fn source(instructions: &Instructions, name: &str, id: &str) -> String {
     format!("word_{}{}", operand.word, bits_from(operand.low, operand.format.width()))
 }
 
-/// Returns a part-select. All 32 bits of a word give an empty text.
+/// Returns the part-select of `width` bits from bit `low` on. All 32 bits of a word give an empty text.
 fn bits_from(low: u32, width: u32) -> String {
     match width {
         32 => String::new(),

@@ -1,6 +1,6 @@
 //! Generates `<name>_queue.v`, which computes several points at a time with a pipeline, and its formal properties.
 //!
-//! Bus registers start points one after the other, and the results wait in a queue until software has read them. For example, with
+//! Bus registers start points in turn, and the results wait in a queue until software has read them. For example, with
 //! room for four results, software starts four points, and then reads and starts in turn, so that it seldom waits for the pipeline.
 
 use anyhow::Result;
@@ -71,8 +71,8 @@ fn word_of(results: &[PipelinePort], prefix: &str) -> String {
     together(nets.collect())
 }
 
-/// Adds `<name>_queue.v`, the module around the pipeline, to `files`. Its queue holds up to `depth` results, a power of two,
-/// until software reads them. With test vectors in the job, also adds the formal properties of the module.
+/// Adds `<name>_queue.v`, the module around the pipeline, to `files`. The module's queue holds up to `depth` results, a power
+/// of two, until software reads them. With test vectors in the job, also adds the formal properties of the module.
 ///
 /// # Errors
 /// Fails if a template fails.

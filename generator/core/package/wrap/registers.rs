@@ -220,7 +220,7 @@ fn read(map: &Map, register: &BusRegister, queue: Option<u32>) -> Vec<String> {
     statement(12, &format!("assert (read_data == {value});"))
 }
 
-/// The expression is as wide as the field.
+/// Returns the Verilog expression of the value that a field must have, as wide as the field.
 fn source(map: &Map, register: &BusRegister, bits: &RegisterBits, queue: Option<u32>) -> String {
     if register.place < map::CONSTANTS {
         return literal(bits.reset, bits.width);

@@ -1,6 +1,6 @@
 //! Generates `<name>_single.v`, which computes one point at a time with a pipeline, and its formal properties.
 //!
-//! The module has the ports of a core with a microprogram: `start`, `busy`, `done`, a write strobe for each operand, and results that
+//! The module has the ports of a sequential core: `start`, `busy`, `done`, a write strobe for each operand, and results that
 //! stay until the next computation ends. Instructions of a processor can therefore start a pipeline as they start any other core.
 
 use anyhow::Result;

@@ -1,4 +1,4 @@
-//! Gives a pipeline the ports of a core with a microprogram, so that bus registers and instructions start every core in one way.
+//! Gives a pipeline the ports of a sequential core, so that bus registers and instructions start every core in one way.
 //!
 //! A pipeline gets a module around it: `<name>_single` computes one point at a time, and `<name>_queue` several, whose results wait
 //! until software has read them.
@@ -10,7 +10,7 @@ use glint_base::fixed::Format;
 use glint_rtl::netlist::{Design, Driver, Net, NetId, Pipeline, Port, Role};
 use glint_rtl::verilog::text::{literal, range};
 
-/// The ports that `<name>_queue` has and a core with a microprogram lacks.
+/// The ports that `<name>_queue` has and a sequential core lacks.
 pub const FULL: &str = "full";
 pub const OFFERING: &str = "offering";
 pub const WAITING: &str = "waiting";
@@ -24,7 +24,7 @@ const SIGNALS: [&str; 6] =
 const QUEUE_SIGNALS: [&str; 9] =
     [FULL, OFFERING, WAITING, TAKE, "claimed", "head", "results", "tail", "takes"];
 
-/// Returns the design that bus registers or instructions start: a core with a microprogram itself, and for a pipeline the ports of
+/// Returns the design that bus registers or instructions start: a sequential core itself, and for a pipeline the ports of
 /// the module around it, as a design without contents. `queue` is the number of results that can wait, or `None` for
 /// `<name>_single`.
 pub fn started(design: &Design, queue: Option<u32>) -> Cow<'_, Design> {
@@ -71,13 +71,13 @@ fn module_name(design: &Design, queue: Option<u32>) -> String {
     format!("{}_{suffix}", design.name)
 }
 
-/// Returns the number of bits of a count from 0 to `depth`. For example, 4 results need 3 bits.
+/// Returns the number of bits of a count from 0 to `depth`: 4 results need 3 bits.
 pub fn count_width(depth: u32) -> u32 {
     depth.ilog2() + 1
 }
 
 /// Returns a message about a port of a pipeline that has the name of a signal inside the module around it: an operand `offered`, or
-/// an operand `held_x` beside an operand `x`. Returns `None` for a core with a microprogram.
+/// an operand `held_x` beside an operand `x`. Returns `None` for a sequential core.
 pub fn colliding_port(design: &Design, queue: Option<u32>) -> Option<String> {
     design.pipeline.as_ref()?;
     let mut signals: Vec<String> = SIGNALS.iter().map(|&name| name.to_owned()).collect();
@@ -98,7 +98,6 @@ pub fn colliding_port(design: &Design, queue: Option<u32>) -> Option<String> {
     Some(format!("`{port}` is a signal of `{module}.v`, and a port cannot have its name"))
 }
 
-/// Adds a net for a port, and returns it.
 fn net(design: &mut Design, name: &str, width: u32) -> NetId {
     let reset = design.nets.iter().find(|net| net.format == Format::BIT && net.name == "rst_n");
     let reset = reset.expect("every core has a reset").clone();

@@ -1,4 +1,4 @@
-//! Generates `<name>_axis.v` for a core with a microprogram, a wrapper between two AXI4-Streams, and the formal properties of
+//! Generates `<name>_axis.v` for a sequential core, a wrapper between two AXI4-Streams, and the formal properties of
 //! this wrapper.
 
 use anyhow::{Context, Result};
@@ -50,7 +50,7 @@ impl LineStream {
     }
 }
 
-/// Adds the stream wrapper of a core with a microprogram, and its proof. A core of lines also gets a buffer for the results.
+/// Adds the stream wrapper of a sequential core, and its proof. A core of lines also gets a buffer for the results.
 ///
 /// # Errors
 /// Fails if the core lacks the handshake of a microprogram, operands or results.
@@ -190,8 +190,8 @@ fn inside(
     Ok(nets.into_iter().map(seen_inside).collect())
 }
 
-/// Returns `None` if the core computes single points. Fails if the operand with the length of a line is not among the
-/// operands.
+/// Returns the data for a core of lines, or `None` if the core computes single points. Fails if the operand with the length of
+/// a line is not among the operands.
 fn line(job: &EmitJob, operands: &Transfer) -> Result<Option<LineStream>> {
     let length = job.inputs.accuracy.as_ref().and_then(|accuracy| accuracy.length.as_ref());
     let Some(length) = length else {

@@ -51,7 +51,7 @@ pub fn select(width: u32, low: u32, high: u32) -> String {
     }
 }
 
-/// Returns Verilog literals of 32 bits, in the order of the addresses.
+/// Returns the contents of the constant registers as Verilog literals of 32 bits, in the order of the addresses.
 pub fn constants(map: &Map) -> Vec<String> {
     let mut constants = Vec::new();
     for register in &map.registers[..map::CONSTANTS as usize] {
@@ -61,8 +61,7 @@ pub fn constants(map: &Map) -> Vec<String> {
     constants
 }
 
-/// Leaves out the registers that never change.
-/// `queue` is the number of results of a pipeline that can wait, if there is a queue.
+/// Returns the words of all registers that can change. `queue` is the number of results that can wait, if there is a queue.
 pub fn words(design: &Design, map: &Map, queue: Option<u32>) -> Vec<Word> {
     let word_bits = map.address_bits() - 2;
     let start_pad = literal(0, 24 - word_bits);
@@ -98,7 +97,6 @@ pub fn words(design: &Design, map: &Map, queue: Option<u32>) -> Vec<Word> {
     words
 }
 
-/// Returns the word of the register `status`.
 fn status(queue: Option<u32>) -> String {
     match queue {
         None => "{30'd0, finished, under_way}".to_owned(),

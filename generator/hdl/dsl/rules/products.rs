@@ -23,9 +23,9 @@ struct Checker<'a> {
 }
 
 impl Checker<'_> {
-    /// Checks every register that microinstruction `at` loads. If its data depends on a shared product, microinstruction `at`
-    /// must select the operands of this product. With n registers behind the selecting mux, the microinstructions n clocks
-    /// earlier must select them.
+    /// Checks every register that microinstruction `at` loads. If the register's data depends on a shared product,
+    /// microinstruction `at` must select the product's operands. With n registers behind the selecting mux, the
+    /// microinstructions n clocks earlier must do so.
     fn selections(&mut self, at: usize) {
         let design = self.design;
         let microprogram = &design.control.microprogram;
@@ -70,7 +70,8 @@ impl Checker<'_> {
         }
     }
 
-    /// Microinstruction `at` loads `register` with the product `view`, but `under` selects the operands of another product.
+    /// Returns the mistake: microinstruction `at` loads `register` with the product `view`, but `under` selects the operands of
+    /// another product.
     fn wrong_product(
         &self,
         at: usize,

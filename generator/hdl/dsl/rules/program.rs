@@ -20,7 +20,7 @@ pub(super) fn check(design: &Design, picked: &HashSet<FieldId>) -> Vec<Diagnosti
     found
 }
 
-/// A design with a result must raise `valid`, unless `valid` follows a signal.
+/// Returns a mistake if a design with a result never raises `valid`.
 fn silent(design: &Design) -> Option<Diagnostic> {
     let control = &design.control;
     let result = design.port(|role| role == Role::Result)?;
@@ -116,7 +116,8 @@ fn comes_without_load(design: &Design, at: usize, register: RegId) -> bool {
     at == 0 || goes(0) && controlled(&design.control, 0, goes).contains(&at)
 }
 
-/// Returns the microinstructions that control can reach from `from`, itself included, if only those with `goes` continue.
+/// Returns `from` and the microinstructions that control can reach from it, if control passes only microinstructions for which
+/// `goes` is true.
 fn controlled(control: &Control, from: usize, goes: impl Fn(usize) -> bool) -> HashSet<usize> {
     reached([from], |now| if goes(now) { control.successors(now) } else { Vec::new() })
 }
@@ -131,7 +132,7 @@ fn cone(design: &Design, at: usize, net: NetId) -> HashSet<NetId> {
 }
 
 /// Finds loops that cannot end. In such a loop, no microinstruction changes a register on which the condition depends, and no
-/// other one leaves the loop or waits for `start`.
+/// other microinstruction leaves the loop or waits for `start`.
 fn endless(design: &Design) -> Vec<Diagnostic> {
     let control = &design.control;
     let mut found = Vec::new();

@@ -1,5 +1,5 @@
-//! Finds superfluous hardware in a description without mistakes. It is logic on which no output depends, a mux that always
-//! passes the same input, or a choice that no microinstruction makes.
+//! Finds superfluous hardware in a description without mistakes: logic on which no output depends, a mux that always passes the
+//! same input, or a choice that no microinstruction makes.
 
 use std::collections::HashSet;
 
@@ -17,8 +17,8 @@ pub(in crate::dsl) fn warnings(design: &Design, partly_used: &HashSet<FieldId>) 
     found
 }
 
-/// Finds registers, memories and named cells on which no output depends. It leaves out the ones that other unused
-/// logic reads, so that one mistake gives one warning.
+/// Finds registers, memories and named cells on which no output depends. Leaves out memories and cells that other unused logic
+/// reads, so that one mistake gives one warning.
 fn dead(design: &Design) -> Vec<Diagnostic> {
     let used = used(design);
     let mut dead: Vec<(NetId, &Net)> = Vec::new();

@@ -19,7 +19,7 @@ pub(super) struct State {
 pub(super) struct Clock<'e, 'a> {
     executor: &'e mut Executor<'a>,
     state: &'e State,
-    /// The executed microinstruction; `None` if it is unknown, and the registers of the sequencer have nodes instead of
+    /// The executed microinstruction. If it is unknown (`None`), the registers of the sequencer have nodes instead of
     /// constants.
     address: Option<usize>,
     /// Whether this clock accepts `start`.

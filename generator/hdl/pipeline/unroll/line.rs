@@ -117,8 +117,8 @@ impl LineUnroller<'_> {
     }
 
     /// Finds the smallest number of clocks, up to [`MOST_DELAY`], after which the first microinstruction of any path determines
-    /// `valid`, whatever registers other than operands contain. Returns it, and the addresses of the microinstructions that set
-    /// `valid`. Fails if a microinstruction sets `valid` on some paths only.
+    /// `valid`, whatever registers other than operands contain. Returns this number, and the addresses of the microinstructions
+    /// that set `valid`. Fails if a microinstruction sets `valid` on some paths only.
     fn delay(&mut self, any: &State) -> Result<(usize, Vec<usize>), Diagnostic> {
         let design = self.executor.design;
         let Some(valid) = design.port(|role| role == Role::Valid).map(|port| port.net) else {

@@ -72,7 +72,7 @@ impl Build {
         data
     }
 
-    /// Adds a field below those that already exist.
+    /// Adds a field below the existing fields.
     pub fn field(&mut self, name: &str, width: u32) -> NetId {
         let id = FieldId(self.design.control.fields.len() as u32);
         let format = Format::unsigned(width as i32, 0);
