@@ -1,8 +1,9 @@
-//! Defines the codes of mistakes in a hardware description. [`pages`] reads the explanation of each code from `diagnostics.md`.
+//! Defines the codes for the kinds of mistakes in a hardware description. [`pages`] reads each code's explanation from
+//! `diagnostics.md`.
 
 use std::fmt;
 
-/// The code of a kind of mistake: `Code(203)` prints as `G0203`. The first two digits are its group.
+/// The code of a kind of mistake. For example, `Code(203)` prints as `G0203`. The first two digits are the code's group.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Code(u16);
 
@@ -12,7 +13,7 @@ pub const FORMAT: Code = Code(101);
 pub const POINT: Code = Code(102);
 /// G0103: a format has too many bits, or its binary point is too far from its bits.
 pub const WIDE: Code = Code(103);
-/// G0104: the operands of an operation have wrong widths, or a mux has a wrong number of inputs.
+/// G0104: an operation's operands have wrong widths, or a mux has a wrong number of inputs.
 pub const WIDTH: Code = Code(104);
 /// G0105: an operation that takes only unsigned signals has a signed operand.
 pub const SIGN: Code = Code(105);

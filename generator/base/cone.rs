@@ -3,8 +3,8 @@
 use std::collections::HashSet;
 use std::hash::Hash;
 
-/// Marks the nodes on which any of the `roots` depends, with the roots themselves, among `count` nodes. A node must have a higher
-/// number than its operands, which `operands` returns. With y = a + b, the root y marks y, a and b.
+/// Marks the nodes on which any of the `roots` depends, and the roots themselves, among `count` nodes. A node must have a higher
+/// number than its operands, which `operands` returns. For example, with y = a + b, the root y marks y, a and b.
 pub fn needed<I: IntoIterator<Item = usize>>(
     count: usize,
     roots: impl IntoIterator<Item = usize>,
@@ -20,7 +20,8 @@ pub fn needed<I: IntoIterator<Item = usize>>(
     needed
 }
 
-/// Returns all nodes that zero or more steps reach from the nodes `from`. `steps` returns the nodes one step further.
+/// Returns all nodes that can be reached in zero or more steps from the nodes `from`. `steps` returns the nodes one step from a
+/// node.
 pub fn reached<T: Copy + Eq + Hash, I: IntoIterator<Item = T>>(
     from: impl IntoIterator<Item = T>,
     steps: impl Fn(T) -> I,

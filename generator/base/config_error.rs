@@ -3,9 +3,9 @@
 use std::fmt;
 use std::ops::Range;
 
-/// An error in the value of a configuration key, with a message and a remedy.
+/// An error in a configuration key's value, with a message and a remedy.
 ///
-/// The error names the key but knows no file. A caller that knows the file can add the line of the key.
+/// The error names the key but knows no file.
 ///
 /// ```
 /// # use glint_base::config_error::ConfigError;
@@ -16,19 +16,19 @@ use std::ops::Range;
 pub struct ConfigError {
     /// The dotted name of the key, for example `cosine.fraction`, or empty for an error of the whole file.
     pub key: String,
-    /// The range of bytes in the key's text that the error concerns, for example an operator in a formula, if not the whole
+    /// The range of bytes in the key's text that the error concerns, for example an operator in a formula. `None` means the whole
     /// value.
     pub place: Option<Range<usize>>,
     /// A message for the user, for example "`core` cannot run at 900 MHz".
     pub message: String,
-    /// How to remove the error: a sentence that lists the integers that the key accepts, for example.
+    /// A sentence that tells the user how to remove the error, for example with a list of the accepted integers.
     pub remedy: String,
     /// The nearest valid value of the key, if it is a number and the author of the check knows it.
     pub nearest: Option<f64>,
 }
 
 impl ConfigError {
-    /// The error concerns the whole value of the key, and has no nearest value.
+    /// Returns an error that concerns the whole value of the key, without a nearest value.
     pub fn new(
         key: impl Into<String>,
         message: impl Into<String>,

@@ -9,12 +9,12 @@ use crate::program::Program;
 /// A line of the Rust source of a hardware description.
 pub type SourceLocation = &'static Location<'static>;
 
-/// A mistake in a hardware description. It prints as `error[G0203]: …`, then ` --> ` with the place in the Rust source, and a
-/// line for each note.
+/// A mistake in a hardware description. The mistake prints as `error[G0203]: …`, then ` --> ` with the place in the Rust source,
+/// and a line for each note.
 #[derive(Clone, Debug)]
 pub struct Diagnostic {
     pub code: Code,
-    /// The text names the signals.
+    /// A sentence that names the signals, for example that nets form a loop.
     pub message: String,
     /// The line of the Rust source with the mistake.
     pub location: SourceLocation,

@@ -1,56 +1,56 @@
 //! Defines fixed-point formats and computes their rounding and overflow.
 //!
-//! A format is written `uI.F` or `sI.F`: I integer bits, F fraction bits and, in a signed format, one sign bit more. A
-//! *raw* value is the integer that the bits denote; the value is `raw · 2⁻ᶠ`, and one ulp is `2⁻ᶠ`. For example, raw 3 in
-//! `u1.2` is the value 0.75. Functions pass raw values as `i128`, and the bit pattern of a wire as `u64`.
+//! A format is written `uI.F` or `sI.F`: I integer bits, F fraction bits and, in a signed format, one sign bit more. The *raw*
+//! value is the integer that the bits denote. The value is `raw · 2⁻ᶠ`, and one ulp is `2⁻ᶠ`. For example, raw 3 in `u1.2` is the
+//! value 0.75. Functions pass raw values as `i128`, and the bit pattern of a wire as `u64`.
 
 use std::fmt;
 use std::str::FromStr;
 
-/// A net has at most this number of bits.
+/// The largest number of bits of a net.
 pub const MAX_WIDTH: u32 = 64;
 
-/// The largest absolute number of fraction bits: up to it, `f64` represents one ulp exactly.
+/// The largest absolute number of fraction bits, up to which `f64` represents one ulp exactly.
 pub const MAX_POINT: i32 = 1000;
 
-/// A fixed-point format, `uI.F` or `sI.F`. The width is I + F bits, and one bit more in a signed format.
+/// A fixed-point format, `uI.F` or `sI.F`. The width is I + F bits, plus the sign bit of a signed format.
 ///
-/// I and F may be negative as long as the width stays positive: `u-3.15` is a 12-bit fraction whose three leading bits are known
-/// to be zero.
+/// I and F may be negative as long as the width stays positive. For example, `u-3.15` is a 12-bit fraction whose three leading
+/// bits are known to be zero.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Format {
     /// Whether the format is in two's complement, with a sign bit above the integer bits.
     pub signed: bool,
-    /// The I of the format, without the sign bit.
+    /// The number of integer bits I, without the sign bit.
     pub int: i32,
-    /// The F of the format.
+    /// The number of fraction bits F.
     pub frac: i32,
 }
 
 /// Returns the integer nearest to `x`, ties upward: 2.5 gives 3, and −2.5 gives −2.
 ///
-/// `(x + 0.5).floor()` would be wrong: the sum is rounded, and 0.49999999999999994 would become 1.
+/// `(x + 0.5).floor()` would be wrong, because the sum is rounded. It would give 1 for 0.49999999999999994.
 pub fn nearest(x: f64) -> f64 {
     let below = x.floor();
     if x - below >= 0.5 { below + 1.0 } else { below }
 }
 
 impl Format {
-    /// Makes `uI.F`: `unsigned(1, 20)` is `u1.20`.
+    /// Returns the format `uI.F`. For example, `unsigned(1, 20)` is `u1.20`.
     pub const fn unsigned(int: i32, frac: i32) -> Self {
         Self { signed: false, int, frac }
     }
 
-    /// Makes `sI.F`: `signed(1, 20)` is `s1.20`.
+    /// Returns the format `sI.F`. For example, `signed(1, 20)` is `s1.20`.
     pub const fn signed(int: i32, frac: i32) -> Self {
         Self { signed: true, int, frac }
     }
 
-    /// A flag, an enable or a select line.
+    /// The format of a flag, an enable or a select line.
     pub const BIT: Self = Self::unsigned(1, 0);
 
-    /// Returns the smallest format with `frac` fraction bits for every raw value from `low` to `high`: 0 to 255 with 8 fraction
-    /// bits give `u0.8`, and −1 to 3 without fraction bits give `s2.0`.
+    /// Returns the smallest format with `frac` fraction bits for every raw value from `low` to `high`. For example, 0 to 255 with
+    /// 8 fraction bits give `u0.8`, and −1 to 3 without fraction bits give `s2.0`.
     pub fn holding(low: i128, high: i128, frac: i32) -> Self {
         let magnitude = |raw: i128| 128 - if raw < 0 { !raw } else { raw }.leading_zeros() as i32;
         let signed = low < 0;
@@ -60,20 +60,20 @@ impl Format {
         Self { signed, int: bits - frac, frac }
     }
 
-    /// Returns the number of bits, with the sign bit. Panics if it is negative, which neither the DSL nor the configuration ever
-    /// accepts.
+    /// Returns the number of bits, with the sign bit. Panics for a negative number, which neither the DSL nor the configuration
+    /// ever accepts.
     pub fn width(self) -> u32 {
         u32::try_from(self.int + self.frac + i32::from(self.signed)).expect("a positive width")
     }
 
-    /// Returns the smallest raw value: 0 for an unsigned format, and −4 for `s2.0`. If the format is too wide for any net, it is
-    /// limited to the range of an `i128`.
+    /// Returns the smallest raw value: 0 for an unsigned format, and −4 for `s2.0`. For a format that is too wide for any net,
+    /// returns the smallest `i128`.
     pub fn min_raw(self) -> i128 {
         if self.signed { i128::MIN >> 128u32.saturating_sub(self.width()) } else { 0 }
     }
 
-    /// Returns the largest raw value, such as 255 for `u0.8`. If the format is too wide for any net, it is limited to the range
-    /// of an `i128`.
+    /// Returns the largest raw value, such as 255 for `u0.8`. For a format that is too wide for any net, returns the largest
+    /// `i128`.
     pub fn max_raw(self) -> i128 {
         i128::MAX >> 127u32.saturating_sub(self.width().saturating_sub(u32::from(self.signed)))
     }
@@ -83,30 +83,30 @@ impl Format {
         (self.min_raw(), self.max_raw())
     }
 
-    /// Returns whether the format can represent `raw`: `u2.0` can represent 3, but not 4 or −1.
+    /// Returns whether the format can represent `raw`. For example, `u2.0` can represent 3, but not 4 or −1.
     pub fn holds(self, raw: i128) -> bool {
         (self.min_raw()..=self.max_raw()).contains(&raw)
     }
 
-    /// Returns the value `raw · 2⁻ᶠ`, exact if `raw` has at most 53 significant bits. Raw 3 in `u1.2` gives 0.75.
+    /// Returns the value `raw · 2⁻ᶠ`, exact if `raw` has at most 53 significant bits. For example, raw 3 in `u1.2` gives 0.75.
     pub fn to_f64(self, raw: i128) -> f64 {
         // Processors convert integers of 64 bits directly, with the same rounding.
         let value = i64::try_from(raw).map_or(raw as f64, |raw| raw as f64);
         value * exp2(-self.frac)
     }
 
-    /// Returns the raw value nearest to `x`, ties upward, if it is in the format.
+    /// Returns the raw value nearest to `x`, ties upward, or `None` if this value is outside the format.
     ///
-    /// For example, `u0.8` represents 0 to 255/256: 0.998 is rounded to 255/256, and 0.999 gives `None`, since its nearest
-    /// multiple of 1/256 is 1.0.
+    /// For example, `u0.8` represents 0 to 255/256. 0.998 is rounded to 255/256. 0.999 gives `None`, since its nearest multiple
+    /// of 1/256 is 1.0.
     pub fn nearest_raw(self, x: f64) -> Option<i128> {
         let raw = nearest(x * exp2(self.frac));
         let (low, high) = (self.min_raw() as f64, self.max_raw() as f64);
         (low..=high).contains(&raw).then(|| self.quantise(x))
     }
 
-    /// Returns the raw value nearest to `x`, ties upward, saturated to the format: in `u8.0` 2.5 gives 3, and 300.0 gives 255.
-    /// NaN gives the smallest raw value.
+    /// Returns the raw value nearest to `x`, ties upward, saturated to the format. For example, in `u8.0` 2.5 gives 3, and 300.0
+    /// gives 255. NaN gives the smallest raw value.
     pub fn quantise(self, x: f64) -> i128 {
         let scaled = nearest(x * exp2(self.frac));
         let (low, high) = (self.min_raw(), self.max_raw());
@@ -119,12 +119,13 @@ impl Format {
         }
     }
 
-    /// Wraps `raw` to the width: −1 in `s2.0` is `0b111`.
+    /// Returns the bit pattern of `raw`, wrapped to the width. For example, −1 in `s2.0` is `0b111`.
     pub fn bits(self, raw: i128) -> u64 {
         raw as u64 & mask(self.width())
     }
 
-    /// Returns the raw value of a bit pattern, without the bits above the width: `0b111` is −1 in `s2.0`, and 7 in `u3.0`.
+    /// Returns the raw value of a bit pattern, and ignores the bits above the width. For example, `0b111` is −1 in `s2.0`, and 7
+    /// in `u3.0`.
     pub fn raw(self, bits: u64) -> i128 {
         let width = self.width();
         let bits = bits & mask(width);
@@ -135,9 +136,9 @@ impl Format {
         }
     }
 
-    /// Converts `raw`, which has `from_frac` fraction bits. For example, raw 6 with two fraction bits is 1.5; in `u4.0` it
-    /// becomes 1 if truncated, and 2 if rounded to the nearest. A result outside the format saturates or wraps, as `overflow`
-    /// states.
+    /// Converts `raw`, which has `from_frac` fraction bits, to the format. For example, raw 6 with two fraction bits is 1.5. In
+    /// `u4.0` this becomes 1 if truncated, and 2 if rounded to the nearest. A result outside the format saturates or wraps, as
+    /// `overflow` states.
     pub fn narrow(self, raw: i128, from_frac: i32, rounding: Rounding, overflow: Overflow) -> i128 {
         let shifted = rounding.shift(raw, from_frac - self.frac);
         match overflow {
@@ -178,15 +179,16 @@ impl FromStr for Format {
 /// How a conversion treats fraction bits that it drops.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rounding {
-    /// Drops the fraction bits, which rounds toward minus infinity and costs no logic: 1.75 becomes 1, and −1.25 becomes −2.
+    /// Drops the fraction bits, which rounds toward minus infinity and costs no logic. For example, 1.75 becomes 1, and −1.25
+    /// becomes −2.
     Truncate,
-    /// Rounds to the nearest value, ties upward, which costs an incrementer: 1.5 becomes 2, and −1.5 becomes −1.
+    /// Rounds to the nearest value, ties upward, which costs an incrementer. For example, 1.5 becomes 2, and −1.5 becomes −1.
     Nearest,
 }
 
 impl Rounding {
-    /// Divides `raw` by `2^places` and rounds. A negative `places` multiplies exactly. −3 by one place gives −2 if truncated,
-    /// and −1 if rounded to the nearest. Panics if a multiplication gives more than 127 bits and a sign.
+    /// Divides `raw` by `2^places` and rounds. For example, −3 by one place gives −2 if truncated, and −1 if rounded to the
+    /// nearest. A negative `places` multiplies exactly. Panics if a multiplication gives more than 127 bits and a sign.
     pub fn shift(self, raw: i128, places: i32) -> i128 {
         match (self, places) {
             (_, ..=0) => shifted_left(raw, -places).expect("a value of at most 128 bits"),
@@ -197,7 +199,7 @@ impl Rounding {
     }
 }
 
-/// Returns `raw` times 2^`places`, or `None` if that has more than 127 bits and a sign. `places` must not be negative.
+/// Returns `raw` times 2^`places`, or `None` if the product has more than 127 bits and a sign. `places` must not be negative.
 pub fn shifted_left(raw: i128, places: i32) -> Option<i128> {
     if raw == 0 {
         return Some(0);
@@ -209,9 +211,9 @@ pub fn shifted_left(raw: i128, places: i32) -> Option<i128> {
 /// How a conversion treats a value that its format cannot represent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Overflow {
-    /// Drops the upper bits, which is arithmetic modulo 2^width: 260 in `u8.0` becomes 4.
+    /// Drops the upper bits, which is arithmetic modulo 2^width. For example, 260 in `u8.0` becomes 4.
     Wrap,
-    /// Takes the nearest value that the format can represent: 260 in `u8.0` becomes 255.
+    /// Takes the nearest value that the format can represent. For example, 260 in `u8.0` becomes 255.
     Saturate,
 }
 
@@ -220,11 +222,11 @@ pub const fn mask(width: u32) -> u64 {
     if width >= 64 { u64::MAX } else { (1 << width) - 1 }
 }
 
-/// Returns `2^exponent`, exact from −1074 to 1023; below, the result is 0, and above infinity.
+/// Returns `2^exponent`, exact from −1074 to 1023. A smaller `exponent` gives 0, and a larger one gives infinity.
 #[inline]
 pub fn exp2(exponent: i32) -> f64 {
     match exponent {
-        // A normal number: its fraction bits are all 0, so that only the exponent must be set.
+        // A normal number: its fraction bits are all 0, so only the exponent must be set.
         -1022..=1023 => f64::from_bits(((exponent + 1023) as u64) << 52),
         _ => libm::ldexp(1.0, exponent),
     }

@@ -2,8 +2,8 @@
 
 use crate::keywords::is_keyword;
 
-/// Checks that `name` can be the name of a net, a ROM or a module in Verilog. It has an ASCII letter or `_`,
-/// then ASCII letters, digits and `_`, and is no keyword. The error says why not: `wire` gives "it is a
+/// Checks that `name` can be the name of a net, a ROM or a module in Verilog. The name must have an ASCII letter or `_`, then
+/// ASCII letters, digits and `_`, and must be no keyword. The error says why not. For example, `wire` gives "the name is a
 /// keyword".
 pub fn check(name: &str) -> Result<(), &'static str> {
     let mut characters = name.chars();

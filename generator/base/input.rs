@@ -10,12 +10,12 @@ use serde::de::DeserializeOwned;
 /// The path of standard input.
 pub const STDIN: &str = "-";
 
-/// Returns the name by which written files mention the file `path`: without directories, so that it is the same on every machine.
-/// `configs/rough.toml` becomes `rough.toml`.
+/// Returns the name by which written files mention the file `path`. The name has no directories, so it is the same on every
+/// machine. For example, `configs/rough.toml` becomes `rough.toml`.
 ///
-/// A name with blanks or other signs of a shell is in single quotes, as a shell needs it: `'my core.toml'`. A name with a
-/// character that could end a comment or a string of an emitted file has no quotes. In such a name, every character except
-/// letters, digits and `._+-` becomes `%` with its bytes in hexadecimal, as in a URL.
+/// A name with blanks or other signs of a shell is in single quotes, such as `'my core.toml'`. A name with a character that could
+/// end a comment or a string of an emitted file has no quotes. In such a name, every character except letters, digits and `._+-`
+/// becomes `%` with its bytes in hexadecimal, as in a URL.
 pub fn label(path: &str) -> String {
     let name = path.rsplit('/').next().unwrap_or(path);
     let plain = |sign: char| sign.is_alphanumeric() || "._+-".contains(sign);
@@ -46,8 +46,8 @@ pub fn open(path: &Path) -> io::Result<Box<dyn Read>> {
     Ok(Box::new(File::open(path)?))
 }
 
-/// Returns the text of a file, or of standard input if the path is [`STDIN`]; `None` if the file does not exist. Fails as
-/// [`open`] does, and if the text is not UTF-8.
+/// Returns the text of a file, or of standard input if the path is [`STDIN`]. Returns `None` if the file does not exist. Fails
+/// for a directory, a pipe, a device, or text that is not UTF-8.
 pub fn text(path: &Path) -> Result<Option<String>> {
     let mut text = String::new();
     match open(path).and_then(|mut file| file.read_to_string(&mut text)) {
@@ -57,8 +57,8 @@ pub fn text(path: &Path) -> Result<Option<String>> {
     }
 }
 
-/// Returns the records in a directory, each with its path, in the order of their names: the `*.json` files that can be read as a
-/// `T`. Other files, and JSON of another structure, are ignored. A missing directory has no records.
+/// Returns the `*.json` files in `directory` that can be read as a `T`, each with its path, in the order of their names. Ignores
+/// other files, and JSON of another structure. The result is empty if `directory` is missing.
 ///
 /// # Errors
 /// Fails if the directory or a `*.json` file in it cannot be read, or if such a file is no JSON.

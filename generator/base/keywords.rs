@@ -1,4 +1,4 @@
-//! Tests whether a word is reserved in SystemVerilog, so that no signal can have it as its name.
+//! Tests whether a word is reserved in SystemVerilog and can therefore be no name of a signal.
 
 /// Returns whether IEEE 1800-2017 (annex B) reserves a word. The annex contains the reserved words of Verilog-2005.
 pub fn is_keyword(word: &str) -> bool {

@@ -1,5 +1,5 @@
-//! The basis of most other crates: among other things, fixed-point formats, intervals, diagnostics, key errors, FPGA targets,
-//! names, text and input.
+//! Provides the basis of most other crates, such as fixed-point formats, intervals, diagnostics, key errors, FPGA targets, names,
+//! text and input.
 
 pub mod codes;
 pub mod cone;

@@ -1,11 +1,12 @@
-//! The name of the running program, for messages that tell a user which command to type.
+//! Holds the name of the running program, for messages that tell a user which command to type.
 
 use std::fmt;
 use std::sync::OnceLock;
 
 static NAME: OnceLock<String> = OnceLock::new();
 
-/// Prints the name of the running program: `glint`, unless a program with its own devices has set another by [`run_as`].
+/// Prints the name of the running program. The name is `glint`, unless a program with its own devices has set a different one
+/// with [`run_as`].
 #[derive(Clone, Copy, Debug)]
 pub struct Program;
 
@@ -15,7 +16,7 @@ impl fmt::Display for Program {
     }
 }
 
-/// Only the first call has an effect.
+/// Sets the name of the running program for `Program`. Only the first call has an effect.
 pub fn run_as(name: &str) {
     NAME.get_or_init(|| name.to_owned());
 }

@@ -1,11 +1,11 @@
-//! Fills in a template of the crate `glint-templates` by the macro [`fill!`](crate::fill), and returns the text.
+//! Fills in a template of the crate `glint-templates` with the macro [`fill!`](crate::fill), and returns the text.
 
 use anyhow::Result;
 pub use askama;
 pub use askama::Template;
 pub use glint_templates::template;
 
-/// Returns the text of a filled template, with the final newline that Askama drops. Fails if a value cannot be printed.
+/// Returns a filled template's text, with the final newline that Askama drops. Fails if a value cannot be printed.
 pub fn render(template: &impl Template) -> Result<String> {
     let mut text = template.render()?;
     if !text.ends_with('\n') {
@@ -14,7 +14,7 @@ pub fn render(template: &impl Template) -> Result<String> {
     Ok(text)
 }
 
-/// Fills a template and returns its text, as `render` does. The arguments are the path of the template, and its fields with their
+/// Fills a template and returns its text with a final newline. The arguments are the template's path, and its fields with their
 /// types. A field takes the stated value, or without a value the variable of the same name.
 #[macro_export]
 macro_rules! fill {

@@ -1,6 +1,6 @@
 //! Formats numbers for sentences.
 
-/// Puts spaces between the thousands: 20530 becomes `20 530`.
+/// Formats `number` with spaces between the thousands. For example, 20530 becomes `20 530`.
 pub fn grouped(number: u64) -> String {
     let digits = number.to_string();
     let mut text = String::new();
@@ -13,13 +13,13 @@ pub fn grouped(number: u64) -> String {
     text
 }
 
-/// Returns a number with its noun: `1 net`, `12 nets` and `1 200 nets`.
+/// Returns a number with its noun, such as `1 net`, `12 nets` and `1 200 nets`.
 pub fn counted(number: usize, thing: &str) -> String {
     let plural = if number == 1 { "" } else { "s" };
     format!("{} {thing}{plural}", grouped(number as u64))
 }
 
-/// Rounds a limit up to `places` decimals, so that it is still a limit: 0.12 with one decimal becomes `0.2`.
+/// Rounds a limit up to `places` decimals, so the result is still a limit. For example, 0.12 with one decimal becomes `0.2`.
 pub fn rounded_up(limit: f64, places: usize) -> String {
     let text = format!("{limit:.places$}");
     match text.parse::<f64>() {

@@ -5,7 +5,7 @@ use glint_prove::tune::{ErrorUnit, Objective};
 use glint_show::figures::{TARGETS, Target};
 use glint_show::render::BuiltIn;
 
-/// The word, the value that it selects, and its meaning for `--help`.
+/// A word, the value that it selects, and its meaning for `--help`.
 type Choice<T> = (&'static str, T, &'static str);
 
 fn one_of<T: Copy + Send + Sync + 'static>(

@@ -1,6 +1,6 @@
 //! Writes a single file completely or not at all. Only a pipe or a device is written directly.
 //!
-//! A command opens the destination before it starts the work, so that a path that cannot be written is reported early. Missing
+//! A command opens the destination before it starts the work, so it reports early if a path cannot be written. Missing
 //! directories above the file are created, and removed again if the file is not written.
 
 use std::fs::{self, File, OpenOptions};
@@ -15,11 +15,11 @@ use glint_tools::transient::Directory;
 /// The name of the file while Glint writes it, in a temporary directory next to its place.
 const UNFINISHED: &str = "unfinished";
 
-/// A file that is written under another name in the same directory, and moved to its place when it is complete.
+/// A file that is written under a temporary name near its place, and moved to its place when it is complete.
 pub struct Destination {
     path: PathBuf,
     sink: Sink,
-    /// Dropped after the sink, which is inside the directories.
+    /// The created directories. They are dropped after the sink, which lies inside them.
     made: MadeDirectories,
 }
 
@@ -29,12 +29,12 @@ enum Sink {
 }
 
 impl Destination {
-    /// A command opens the destination before it does any work for the file. A path that is no regular file, such as a pipe,
-    /// is opened and written itself. If `path` is a symbolic link, the command replaces the file to which the link leads, and
-    /// not the link.
+    /// Opens the destination. A path that is no regular file, such as a pipe, is opened and written directly. If `path` is a
+    /// symbolic link, the file to which the link leads is replaced, and not the link.
     ///
     /// # Errors
-    /// Fails if `path` cannot be written, if a link leads nowhere, or if its directory cannot be made.
+    ///
+    /// Fails if `path` cannot be written, if a link leads nowhere, or if the directory cannot be made.
     pub fn open(path: &Path) -> Result<Self> {
         if fs::metadata(path).is_ok_and(|found| !found.is_file()) {
             let file = OpenOptions::new().write(true).open(path);
@@ -60,10 +60,11 @@ impl Destination {
         Ok(Self { path, sink, made })
     }
 
-    /// Opens the destination only if no file is there yet. With `force`, an existing file may be replaced.
+    /// Opens the destination only if no file exists there. With `force`, an existing file may be replaced.
     ///
     /// # Errors
-    /// Fails as [`Destination::open`] does, and without `force` also if the file exists.
+    ///
+    /// Fails if `path` cannot be written ([`Destination::open`]), and without `force` also if the file exists.
     pub fn fresh(path: &Path, force: bool) -> Result<Self> {
         if path.is_file() && !force {
             bail!(
@@ -74,9 +75,10 @@ impl Destination {
         Self::open(path)
     }
 
-    /// The caller must write to this file.
+    /// Returns the file that the caller must write.
     ///
     /// # Errors
+    ///
     /// Fails if the file cannot be opened.
     pub fn file(&self) -> Result<File> {
         let file = match &self.sink {
@@ -92,9 +94,10 @@ impl Destination {
         &self.path
     }
 
-    /// The caller must have written the whole file.
+    /// Moves the file to its place. The caller must have written the whole file.
     ///
     /// # Errors
+    ///
     /// Fails if the file cannot be moved; then nothing was changed.
     pub fn commit(mut self) -> Result<()> {
         if let Sink::Beside(staged) = &self.sink {
@@ -105,6 +108,10 @@ impl Destination {
         Ok(())
     }
 
+    /// Writes the file and moves it to its place.
+    ///
+    /// # Errors
+    ///
     /// Fails if the file cannot be written or moved; then the old file is unchanged. A pipe or a device may have received a
     /// part of the contents.
     pub fn write(self, contents: impl AsRef<[u8]>) -> Result<()> {

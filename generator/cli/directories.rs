@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 
-/// Directories that Glint created for a file. Unless the file is written in the end, they are removed again if nothing else is
-/// in them. For `made/for/it.txt` in an empty directory, these are `made` and `made/for`.
+/// Directories that Glint created for a file. If the file is not written in the end, they are removed again, unless they contain
+/// something else. For `made/for/it.txt` in an empty directory, these are `made` and `made/for`.
 #[derive(Default)]
 pub struct MadeDirectories {
     /// The paths of the directories, the outermost first.
@@ -14,9 +14,10 @@ pub struct MadeDirectories {
 }
 
 impl MadeDirectories {
-    /// Makes also the missing directories above `directory`.
+    /// Makes `directory` and the missing directories above it.
     ///
     /// # Errors
+    ///
     /// Fails if a directory cannot be made.
     pub fn make(directory: &Path) -> Result<Self> {
         let missing =
@@ -28,7 +29,7 @@ impl MadeDirectories {
         Ok(made)
     }
 
-    /// A caller calls this function once the file is written, so that the directories stay.
+    /// Lets the directories stay. A caller calls this function once the file is written.
     pub fn keep(&mut self) {
         self.paths.clear();
     }
@@ -43,9 +44,10 @@ impl Drop for MadeDirectories {
     }
 }
 
-/// Makes also the missing directories above `path`.
+/// Makes the directory `path` and the missing directories above it.
 ///
 /// # Errors
+///
 /// Fails if the directory cannot be made.
 pub fn create_directory(path: &Path) -> Result<()> {
     fs::create_dir_all(path)

@@ -9,8 +9,8 @@ use serde_json::{Value, json};
 use super::interrupt::Interrupted;
 use glint_config::Problems;
 
-/// An error that has its own exit code or its own form of printing. Any other error is printed as text with its causes, and
-/// has exit code 1.
+/// An error with an exit code or a form of printing of its own. Any other error is printed as text with its causes, and has exit
+/// code 1.
 #[derive(Debug)]
 pub enum Failure {
     /// A mistake on the command line that only the command can find, and not clap: exit code 2.
@@ -23,7 +23,7 @@ pub enum Failure {
 }
 
 impl Failure {
-    /// Finds the failure even if context was added to the error.
+    /// Returns the failure in `error`, even if context was added.
     fn of_error(error: &anyhow::Error) -> Option<&Self> {
         error.downcast_ref()
     }
@@ -48,7 +48,7 @@ macro_rules! wrong_usage {
 }
 pub(crate) use wrong_usage;
 
-/// The code is 2 for wrong usage, 130 after Ctrl-C, and 1 for most other errors, such as a file that cannot be read.
+/// Returns the exit code: 2 for wrong usage, 130 after Ctrl-C, and 1 for most other errors, such as a file that cannot be read.
 pub fn exit_code(error: &anyhow::Error) -> ExitCode {
     match Failure::of_error(error) {
         Some(Failure::WrongUsage(_)) => ExitCode::from(2),
@@ -72,7 +72,7 @@ pub fn print_problems(problems: Vec<Value>) {
     super::tables::print_json(&json!({ "ok": false, "problems": problems }));
 }
 
-/// Returns a problem without a location in a configuration file. It has the same keys as one with a location, but all except
+/// Returns a problem without a location in a configuration file. It has the keys of a problem with a location, but all except
 /// `message` are null.
 pub fn problem(message: &str) -> Value {
     json!({ "file": null, "line": null, "column": null, "key": null, "message": message, "remedy": null })
@@ -91,7 +91,7 @@ fn problems(error: &anyhow::Error) -> Vec<Value> {
     }
 }
 
-/// Problems of a configuration are printed with snippets of the file.
+/// Prints an error as text. Problems of a configuration have snippets of the file.
 fn print_text(error: &anyhow::Error) {
     match Failure::of_error(error) {
         Some(Failure::Several(errors)) => {
@@ -117,7 +117,7 @@ pub fn warn(message: &str) {
     print_line(&format!("warning: {message}"));
 }
 
-/// Ignores a failure to write, because it could not be reported anywhere.
+/// Prints a line. A failure to write is ignored, because it could not be reported anywhere.
 fn print_line(line: &str) {
     let _ = writeln!(std::io::stderr().lock(), "{line}");
 }

@@ -31,23 +31,24 @@ impl fmt::Display for Interrupted {
     }
 }
 
-/// While this value exists, the first signal only sets a flag, so that the command can save its work. The second signal ends
-/// the process. `cosim --exhaustive --resume FILE` saves its progress in this way.
+/// A value during whose life the first signal only sets a flag, so that the command can save its work. The second signal ends the
+/// process. For example, `cosim --exhaustive --resume FILE` saves its progress after the first signal.
 pub struct Deferred(());
 
 impl Deferred {
-    /// The caller drops the returned value when a signal may end the process at once again.
+    /// Begins to defer signals. When the caller drops the returned value, a signal ends the process at once again.
     pub fn begin() -> Self {
         DEFERRED.store(true, Ordering::SeqCst);
         Self(())
     }
 
-    /// If so, the command must save its work and end.
+    /// Returns whether a signal has arrived. The command must then save its work and end.
     pub fn noted(&self) -> bool {
         NOTED.load(Ordering::SeqCst) != 0
     }
 
-    /// Returns the error with which the command must end if a signal has arrived. `saved` describes the saved work.
+    /// Returns the error with which the command must end if a signal has arrived, and otherwise `None`. `saved` describes the
+    /// saved work.
     pub fn end(self, saved: impl FnOnce() -> String) -> Option<Interrupted> {
         match NOTED.load(Ordering::SeqCst) {
             0 => None,
@@ -62,10 +63,11 @@ impl Drop for Deferred {
     }
 }
 
-/// After this call, SIGINT, SIGTERM and SIGHUP end this process with all its child processes, and delete its temporary files.
-/// A signal that the process was told to ignore, as under `nohup`, stays ignored.
+/// Installs the signal handler. From then on, SIGINT, SIGTERM and SIGHUP end this process with all its child processes, and
+/// delete its temporary files. A signal that the process was told to ignore, as under `nohup`, stays ignored.
 ///
 /// # Errors
+///
 /// Fails if the system cannot install the handler.
 #[cfg(unix)]
 pub fn listen() -> std::io::Result<()> {

@@ -136,8 +136,8 @@ struct OutputOptions {
     quiet: bool,
 }
 
-/// Puts the name of the running program into the examples of the help texts. Fails with clap's error for wrong usage, and also
-/// for `--help` and `--version`.
+/// Parses `arguments`, with the name of the running program in the examples of the help texts. Fails with clap's error for wrong
+/// usage, and also for `--help` and `--version`.
 fn parse(arguments: &[OsString]) -> Result<Cli, clap::Error> {
     let examples = |command: clap::Command| match command.get_after_help() {
         None => command,
@@ -150,14 +150,14 @@ fn parse(arguments: &[OsString]) -> Result<Cli, clap::Error> {
     Cli::from_arg_matches(&command.try_get_matches_from_mut(arguments)?)
 }
 
-/// Accepts only finite numbers, such as `0.75` and `12e6`.
+/// Parses a finite number, such as `0.75` or `12e6`.
 fn number(text: &str) -> Result<f64, String> {
     let number = text.parse().ok().filter(|number: &f64| number.is_finite());
     number.ok_or_else(|| "expected a number, for example 0.75 or 12e6".to_owned())
 }
 
-/// Parses a whole number of at least 1 and at most 64 bits. Exponents are allowed: `1000000`, `1_000_000` and `1e6` are a
-/// million, and `1.5e3` is 1500.
+/// Parses a whole number of at least 1 and at most 64 bits. Exponents are allowed. For example, `1000000`, `1_000_000` and `1e6`
+/// are a million, and `1.5e3` is 1500.
 fn count(text: &str) -> Result<u64, String> {
     let wanted = || "expected a whole number of at least 1, for example 1000000 or 1e6".to_owned();
     let number = match text.split_once(['e', 'E']) {
@@ -186,8 +186,8 @@ pub fn run_as(program: &str, registry: &Registry) -> ExitCode {
     run_with(program, registry, std::env::args_os())
 }
 
-/// Runs a command line that is not the process's own, for example inside a Python interpreter. `arguments` begins with the
-/// program's name. Messages and written files call the program `program`.
+/// Runs the command line `arguments`, for example inside a Python interpreter. `arguments` begins with the program's name.
+/// Messages and written files call the program `program`.
 pub fn run_with(
     program: &str,
     registry: &Registry,

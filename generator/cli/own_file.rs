@@ -1,5 +1,5 @@
-//! Writes single files that Glint rewrites at each run, such as records. Each contains a digest of its own text ([`Seal`]), so
-//! that Glint refuses to overwrite a file that it did not write, or that somebody edited since.
+//! Writes single files that Glint rewrites at each run, such as records. Each file contains a digest of its own text ([`Seal`]),
+//! so Glint refuses to overwrite a file that it did not write, or that somebody has edited since.
 
 use std::path::{Path, PathBuf};
 
@@ -19,11 +19,12 @@ pub struct OwnFile {
 }
 
 impl OwnFile {
-    /// Creates `directory` if it is missing. A command calls this function before the work for the file, so that a path that
-    /// cannot be written is reported early. `seal` is the place of the digest in the file.
+    /// Opens the file `name` in `directory`, which is created if it is missing. A command calls this function before the work for
+    /// the file, so it reports early if a path cannot be written. `seal` is the place of the digest in the file.
     ///
     /// # Errors
-    /// Fails if Glint did not write the file that is there, or if somebody edited it since. Fails if the file cannot be written.
+    ///
+    /// Fails if the file cannot be written, if Glint did not write the existing file, or if somebody has edited it since.
     pub fn new(directory: &Path, name: &str, seal: Seal) -> Result<Self> {
         create_directory(directory)?;
         let path = directory.join(name);
@@ -34,16 +35,17 @@ impl OwnFile {
         Ok(Self { path, seal, destination })
     }
 
-    /// Prepares the record `<name>.json`, if there is a directory for records: `--out mutation` makes `mutation/rough.json`
-    /// the record of `rough`.
+    /// Opens the record `<name>.json`, or returns `None` without a directory for records. For example, `--out mutation` makes
+    /// `mutation/rough.json` the record of `rough`.
     ///
     /// # Errors
-    /// Fails as [`OwnFile::new`] does.
+    ///
+    /// Fails if the record cannot be written, if Glint did not write the existing record, or if somebody has edited it since.
     pub fn record(directory: Option<&Path>, name: &str) -> Result<Option<Self>> {
         directory.map(|it| Self::new(it, &format!("{name}.json"), Seal::Json)).transpose()
     }
 
-    /// Adds the line with the digest, and returns the path of the file.
+    /// Adds the line with the digest, and returns the file's path.
     ///
     /// # Errors
     /// Fails if the file cannot be written.
@@ -52,9 +54,10 @@ impl OwnFile {
         self.write_as_it_is(&text)
     }
 
-    /// Writes `value` with one member more for the digest, and returns the path of the file.
+    /// Writes `value` with a member for the digest added, and returns the file's path.
     ///
     /// # Errors
+    ///
     /// Fails if the value is no object, or if the file cannot be written.
     pub fn write_json(self, value: &impl Serialize) -> Result<String> {
         let value = serde_json::to_value(value).context("cannot write JSON")?;

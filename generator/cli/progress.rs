@@ -14,21 +14,21 @@ const WIDE: usize = 100;
 const LONGEST: usize = 30;
 const SHORTEST: usize = 5;
 
-/// The width of everything else in a line: the name of the work, brackets, percentage or counts, rate, remaining time, blanks.
+/// The width of the rest of a line: the name of the work, brackets, percentage or counts, rate, remaining time, blanks.
 const BESIDE: usize = 44;
 const BESIDE_WIDE: usize = 76;
 
 /// The width if the width of the terminal is unknown.
 const USUAL: u16 = 80;
 
-/// The time after which the first line about progress is printed if standard error is no terminal, for example a log file.
+/// The time to the first line about progress if standard error is no terminal but, for example, a log file.
 const FIRST: Duration = Duration::from_secs(10);
 
-/// The time between two such lines.
+/// The time between two lines about progress.
 const EVERY: Duration = Duration::from_secs(60);
 
-/// Returns a progress bar over `total` steps with the name `what`, which is hidden with `--json` or `--quiet`. If standard
-/// error is no terminal, lines of text replace the bar: the first after ten seconds, and then one every minute.
+/// Returns a progress bar with the name `what` over `total` steps. It is hidden with `--json` or `--quiet`. If standard error is
+/// no terminal, lines of text replace the bar: the first after ten seconds, and then one every minute.
 pub fn bar(output: OutputOptions, total: u64, what: &str) -> ProgressBar {
     let is_hidden = output.quiet || !output.is_for_people();
     let target = if is_hidden {
@@ -68,7 +68,7 @@ fn told(bar: &WeakProgressBar, what: &str) {
     }
 }
 
-/// The line fits into `width` characters.
+/// Gives the bar a form that fits into `width` characters.
 fn styled(bar: ProgressBar, width: usize, what: &str) -> ProgressBar {
     if let Ok(style) = ProgressStyle::with_template(&template(width)) {
         let rate = |state: &ProgressState, out: &mut dyn Write| {
@@ -94,8 +94,7 @@ fn template(width: usize) -> String {
     }
 }
 
-/// Formats a number with three digits, and with k, M or G for thousands, millions or billions: 1234.5678 is `1.23k`. A number
-/// below 1000 has no letter, and one of 10¹² or more has more digits.
+/// Formats a number with three digits, and with k, M or G for thousands, millions or billions. For example, 1234.5678 is `1.23k`.
 fn rounded(number: f64) -> String {
     let (size, unit) = match number {
         1e9.. => (1e9, "G"),
@@ -112,8 +111,8 @@ fn rounded(number: f64) -> String {
     format!("{scaled:.decimals$}{unit}")
 }
 
-/// Returns the remaining time at the average pace so far: 10 of 40 steps in 2 seconds leave `6 s`. Returns `None` before the
-/// first step and after the last one.
+/// Returns the remaining time at the average pace so far. For example, 10 of 40 steps in 2 seconds leave `6 s`. Returns `None`
+/// before the first step and after the last one.
 fn remaining(elapsed: Duration, done: u64, all: u64) -> Option<String> {
     if done == 0 || done >= all {
         return None;
@@ -205,7 +204,7 @@ mod tests {
             let paper = Box::new(Paper(u16::try_from(width).expect("narrow"), lines.clone()));
             let target = ProgressDrawTarget::term_like(paper);
             let bar = ProgressBar::with_draw_target(Some(123_456_789_012), target);
-            // The text is longer than the line, so that a line that is not cut shows its whole length.
+            // The text is longer than the line, so a line that is not cut shows its whole length.
             let bar = styled(bar, width, "Golden model against simulation, every operand");
             bar.set_position(98_765_432_109);
             bar.tick();

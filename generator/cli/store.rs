@@ -1,11 +1,9 @@
-//! Writes the generated files of a configuration to disk, and deletes files that an earlier run wrote and that are no longer
-//! needed. If this would replace a file that Glint did not write, or that somebody edited since, the write fails and changes
-//! nothing, unless the user gives `--force`.
+//! Writes the generated files of a configuration to disk, and deletes the outdated files of an earlier run. Without
+//! `--force`, a write fails and changes nothing if it would replace a file that Glint did not write, or that somebody edited.
 //!
-//! Glint recognises its files by the digests in the manifest. The manifest has no digest of itself: a manifest that can be read
-//! counts as Glint's, even if somebody edited it. All files are first written to a temporary directory in the output directory,
-//! and then moved to their places one by one. A file that Glint neither wrote nor needs to write, such as an editor's swap
-//! file, is left alone. With `--force`, a directory in the place of a file is deleted with its contents.
+//! Glint recognises its files by the digests in the manifest. The manifest has no digest of itself, so an edited manifest still
+//! counts as Glint's. All files are first written to a temporary directory in the output directory, and then moved to their
+//! places one by one.
 
 mod staging;
 mod survey;
@@ -43,13 +41,13 @@ impl fmt::Display for Written {
     }
 }
 
-/// Also deletes the files of an earlier run that the configuration `name` no longer needs. A file of the user stays, unless it
-/// has the path of a file that must be written.
+/// Writes `files` below `out`, and deletes the files of an earlier run that the configuration `name` no longer needs. A file of
+/// the user stays, unless it has the path of a file that must be written.
 ///
 /// # Errors
-/// Without `force`, fails if somebody edited a file that Glint wrote, or if a file that Glint did not write is in the way. With
-/// `force`, these files are replaced, and other files of the user still stay. Fails if a directory cannot be written. After an
-/// error without `force`, the user's files are unchanged.
+///
+/// Without `force`, fails if somebody edited a file that Glint wrote, or if a file that Glint did not write is in the way. The
+/// user's files are then unchanged. Fails if a directory cannot be written.
 pub fn write(out: &Path, name: &str, files: &[OutputFile], force: bool) -> Result<Written> {
     // If two runs write into one directory, the second run waits. Until the first run has written its manifest, the second run
     // would take the new files for files of the user.
@@ -72,28 +70,29 @@ pub fn write(out: &Path, name: &str, files: &[OutputFile], force: bool) -> Resul
     Ok(Written::Replaced)
 }
 
-/// Waits until no other run of Glint writes below the directory. The lock ends when the result is dropped. Returns `None` on a
-/// system that locks no directories.
+/// Waits until no other run of Glint writes below `directory`, and locks it until the caller drops the result. Returns `None` on
+/// a system that locks no directories.
 fn locked(directory: &Path) -> Option<fs::File> {
     let opened = fs::File::open(directory).ok()?;
     opened.lock().ok()?;
     Some(opened)
 }
 
-/// Returns the paths of the files below `out` that differ from `files` or are missing. The list also has the files that Glint
-/// wrote earlier and no longer needs.
+/// Returns the paths of the files below `out` that differ from `files`, are missing, or are outdated files of Glint.
 ///
 /// # Errors
+///
 /// Fails if a file cannot be read.
 pub fn differences(out: &Path, name: &str, files: &[OutputFile]) -> Result<Vec<String>> {
     Ok(Survey::new(out, name, files)?.different)
 }
 
-/// Writes a single file that contains the digest of its own text.
+/// Writes `text`, which contains its own digest, to the file at `path`.
 ///
 /// # Errors
-/// Without `force`, fails if Glint did not write the file that is there, or if somebody edited it since. Fails if the file
-/// cannot be written. After a failure, the old file is still there.
+///
+/// Without `force`, fails if Glint did not write the existing file, or if somebody edited the file. Fails if the file cannot be
+/// written. After a failure, the old file is still there.
 pub fn write_sealed(path: &Path, text: &str, seal: Seal, force: bool) -> Result<Written> {
     if may_write(path, seal, force)?.is_some_and(|found| found == text.as_bytes()) {
         return Ok(Written::Unchanged);
@@ -103,7 +102,7 @@ pub fn write_sealed(path: &Path, text: &str, seal: Seal, force: bool) -> Result<
     Ok(Written::Replaced)
 }
 
-/// Returns the contents of the file that [`write_sealed`] would replace, or `None` if there is no file.
+/// Returns the contents of the file that [`write_sealed`] would replace, or `None` without a file.
 ///
 /// # Errors
 /// Without `force`, fails if Glint did not write the file, or if somebody edited the file since. Fails if the file cannot be
@@ -122,7 +121,7 @@ pub fn may_write(path: &Path, seal: Seal, force: bool) -> Result<Option<Vec<u8>>
     Ok(found)
 }
 
-/// Checks that a command without `--force` may replace the file at `path`, if there is one.
+/// Checks that a command without `--force` may replace the file at `path`.
 ///
 /// # Errors
 /// Fails if Glint did not write the file, if somebody edited the file since, or if the file cannot be read.
@@ -147,9 +146,10 @@ fn contents(path: &Path) -> Result<Option<Vec<u8>>> {
     }
 }
 
-/// A file that is missing below `out` differs from `file` too.
+/// Returns whether the file below `out` is missing or has other contents than `file`.
 ///
 /// # Errors
+///
 /// Fails if the file cannot be read.
 pub fn differs(out: &Path, file: &OutputFile) -> Result<bool> {
     let path = out.join(&file.path);

@@ -15,16 +15,14 @@ struct TerminalColumn<'a> {
     heading: &'a str,
     /// Whether the column has numbers, which are aligned to the right and never broken into lines.
     number: bool,
-    /// The order in which columns are left out if the table is too wide: the largest number first. A column with 0 is never
-    /// left out.
+    /// The order in which columns are left out of a table that is too wide, the largest number first. A column with 0 always
+    /// stays.
     dispensable: u8,
 }
 
 impl<'a> TerminalColumn<'a> {
-    /// Parses headings, which are separated by bars: `device | points:2` is a column of words and a column of numbers.
-    ///
-    /// A heading with a colon belongs to a column of numbers. Any other column has words, which may be broken into lines. A
-    /// digit after a colon or a semicolon states the order in which the column may be left out.
+    /// Parses `headings`, which are separated by bars. For example, `device | points:2` is a column of words and a column of
+    /// numbers.
     fn all(headings: &'a str) -> Vec<Self> {
         let mut columns = Vec::new();
         for marked in headings.split(" | ") {
@@ -40,15 +38,15 @@ impl<'a> TerminalColumn<'a> {
 }
 
 /// Prints rows no wider than the terminal. `headings` has the form `device | points: | clocks:2 | remark;1`. A colon marks a
-/// column of numbers, and a digit marks a column that the table may leave out if it is too wide. The column with the largest
-/// digit is left out first. If the table is still too wide, the cells of a row are printed below each other.
+/// column of numbers. A digit marks a column that may be left out of a table that is too wide, the largest digit first. If the
+/// table is still too wide, a row's cells are printed below each other.
 pub fn print(headings: &str, rows: impl IntoIterator<Item = Vec<String>>) {
     let rows: Vec<Vec<String>> = rows.into_iter().collect();
     print_line(&text(&TerminalColumn::all(headings), &rows, width()));
 }
 
-/// Returns the largest width of a line in characters: the value of the environment variable `COLUMNS`, or else the width of
-/// the terminal. Without either, a line may have any width.
+/// Returns the largest width of a line in characters: the environment variable `COLUMNS`, or else the terminal's width. Returns
+/// `None`, for any width, if neither is known.
 fn width() -> Option<usize> {
     let width = match std::env::var("COLUMNS").unwrap_or_default().parse() {
         Ok(width) => width,
@@ -88,8 +86,8 @@ fn text(columns: &[TerminalColumn<'_>], rows: &[Vec<String>], room: Option<usize
     }
 }
 
-/// Returns the widths of the columns `shown` in a table of at most `room` characters a line. Numbers and words stay unbroken.
-/// Returns `None` if the table would be wider.
+/// Returns the widths of the columns `shown` in a table of at most `room` characters a line. Returns `None` if a number or a word
+/// would have to be broken.
 fn fit(
     columns: &[TerminalColumn<'_>],
     rows: &[Vec<String>],
@@ -161,8 +159,8 @@ fn drawn(
     table.to_string()
 }
 
-/// Lays out a table for a narrow terminal. Each row becomes its first cell, and below it a line for each other cell with the
-/// heading. Lines are broken at `room` characters, or not at all if it is `None`.
+/// Lays out a table for a narrow terminal. Each row becomes its first cell, followed by one line with heading and text for each
+/// further cell. Lines are broken at `room` characters, or not at all without `room`.
 fn stacked(columns: &[TerminalColumn<'_>], rows: &[Vec<String>], room: Option<usize>) -> String {
     let mut lines = Vec::new();
     for row in rows {
@@ -217,8 +215,7 @@ pub fn print_csv(rows: impl IntoIterator<Item = Vec<String>>) -> Result<()> {
 
 static FAILURE: OnceLock<io::Error> = OnceLock::new();
 
-/// Prints a line to standard output. An error is kept for [`finish`], but a pipe that its reader, such as `head`, has closed
-/// is no error.
+/// Prints a line to standard output. An error is kept for [`finish`], unless the pipe's reader, such as `head`, has closed it.
 pub fn print_line(line: &str) {
     if let Err(error) = writeln!(io::stdout().lock(), "{line}")
         && error.kind() != ErrorKind::BrokenPipe
@@ -227,13 +224,13 @@ pub fn print_line(line: &str) {
     }
 }
 
-/// Formats its arguments, and prints the line as [`print_line`] does.
+/// Formats its arguments, and prints the line with [`print_line`].
 macro_rules! say {
     ($($text:tt)*) => { $crate::tables::print_line(&format!($($text)*)) };
 }
 pub(crate) use say;
 
-/// Reports the first failure to write to standard output. The program calls this function after it has printed everything.
+/// Reports the first failure to write to standard output.
 ///
 /// # Errors
 /// Fails if a line could not be written, for example because the disk is full.

@@ -6,10 +6,9 @@ use super::shared::shared_keys;
 use super::values::Config;
 
 impl Schema {
-    /// Returns a sentence for each mistake in the schema itself. A name is a mistake if it repeats, is a key of every device, or
-    /// names both a table and a value. It must consist of plain lower-case words. A default is a mistake if it is outside its
-    /// range. A condition is a mistake if its key is not declared before, or can never have its value. If the schema has no such
-    /// mistake, the device's `check` must accept the defaults. The reader of configurations relies on a schema without mistakes.
+    /// Returns a sentence for each mistake in the schema. A name must be plain lower-case words, must be unique, and must not
+    /// name both a table and a value. A default must be inside its range. A condition's key must be declared before, and must be
+    /// able to have the value. If the schema has no such mistake, the device's `check` must accept the defaults.
     pub fn mistakes(&self) -> Vec<String> {
         let mut mistakes = Vec::new();
         for (index, key) in self.keys.iter().enumerate() {
@@ -33,7 +32,7 @@ impl Schema {
                 mistakes.push(format!("default of `{name}`: {}", violation.error.message));
             }
             if let Some(Condition { key: other, value, .. }) = key.condition {
-                // The other key must be declared earlier, so that chains of conditions end.
+                // The other key must be declared earlier, so chains of conditions end.
                 match self.keys[..index].iter().find(|key| key.name == other) {
                     None => mistakes.push(format!(
                         "`{name}` depends on `{other}`, which is not declared before it"
@@ -58,8 +57,8 @@ impl Schema {
 }
 
 impl Key {
-    /// Returns whether the key accepts a value that [`super::Value::bare`] displays as `bare`. Keys of numbers with fractions,
-    /// lists, texts and tables cannot be the subject of a condition.
+    /// Returns whether the key accepts a value that [`super::Value::bare`] displays as `bare`. Only choices, flags and integers
+    /// can be a condition's subject.
     fn can_be(&self, bare: &str) -> bool {
         match &self.kind {
             KeyKind::Choice(options) => options.contains(&bare),

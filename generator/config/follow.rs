@@ -1,9 +1,9 @@
 //! Adjusts the defaults of keys that the user left out.
 //!
-//! If the user's values and a default are invalid together, the default moves to the value with which the fewest conditions
-//! fail. The nearest of several such values wins. For example, `exponent.bits = 8` lowers the default of `domain.exponent_max`
-//! from 1000 to 255. Only integers and lists of integers are adjusted. Keys of all other types keep their defaults, and so do
-//! keys with a [`Key::drawn`] range and the keys that every device shares.
+//! If the user's values and a default are invalid together, the default moves to the nearest value with which the fewest
+//! conditions fail. For example, `exponent.bits = 8` lowers the default of `domain.exponent_max` from 1000 to 255. Only integers
+//! and lists of integers are adjusted. Keys with a [`Key::drawn`] range and the keys that every device shares keep their
+//! defaults.
 
 use std::collections::BTreeSet;
 
@@ -11,9 +11,8 @@ use super::problems::Problems;
 use super::schema::{Key, KeyKind, Schema};
 use super::values::{Config, Value};
 
-/// Adjusts defaults. Each step moves one key that is not in `given` to the value with which the device's fewest conditions
-/// fail. A key moves at most once. The function stops if no condition fails, or if no move of a single key helps. Conditions
-/// can therefore still fail in the result.
+/// Adjusts defaults. Each step moves one key that is not in `given` to the value with which the device's fewest conditions fail.
+/// A key moves at most once. The function stops if no condition fails, or if no move of a single key helps.
 pub fn follow(schema: &Schema, config: &Config, given: &BTreeSet<&str>) -> Config {
     let mut config = config.clone();
     let mut left = complaints(schema, &config);
@@ -34,7 +33,7 @@ pub fn follow(schema: &Schema, config: &Config, given: &BTreeSet<&str>) -> Confi
     config
 }
 
-/// Finds the value of `key` with which the fewest conditions fail, and of several the nearest to the default. Returns the
+/// Finds the value of `key` with which the fewest conditions fail, and among several the nearest to the default. Returns the
 /// number of failing conditions, the key, and the configuration. Returns `None` if `limit` or more conditions fail with every
 /// value.
 fn best<'k>(
@@ -58,15 +57,15 @@ fn best<'k>(
     best
 }
 
-/// Returns the key of each condition that fails, in the order of the report.
+/// Returns the key of each condition that fails, in the report's order.
 fn complaints(schema: &Schema, config: &Config) -> Vec<String> {
     let mut problems = Problems::default();
     (schema.check)(config, &mut problems);
     problems.iter().map(|problem| problem.error.key.clone()).collect()
 }
 
-/// Returns the other values of a key for an integer, or the lists of [`lists`] for a list of integers. The nearest to the
-/// default comes first, and the smaller of two equally near ones. Keys of other types have none.
+/// Returns the values of an integer key without the default, or the lists of [`lists`] for a list of integers. The nearest to the
+/// default comes first, and the smaller of two equally near ones. The result is empty for keys of other types.
 fn neighbours(key: &Key) -> Vec<Value> {
     match (&key.kind, &key.default) {
         (KeyKind::Integer { min, max }, Value::Integer(default)) => {
@@ -82,9 +81,9 @@ fn neighbours(key: &Key) -> Vec<Value> {
     }
 }
 
-/// Returns lists that are similar to `default`, the nearest first. A list has the first entries of `default`, with large
-/// entries lowered to a limit, or all of its entries with the last one repeated. The distance is the sum of the differences of
-/// the entries; a missing entry counts as 0.
+/// Returns lists that are similar to `default`, the nearest first. A list has the first entries of `default` with a limit on
+/// large entries, or all entries with the last one repeated. The distance is the sum of the differences of the entries. A missing
+/// entry counts as 0.
 fn lists(
     default: &[i64],
     (min, max): (i64, i64),

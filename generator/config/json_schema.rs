@@ -5,9 +5,8 @@ use serde_json::{Map, Value as Json, json};
 use super::schema::{Key, KeyKind, Schema};
 use super::values::Value;
 
-/// Returns a JSON Schema (draft 7) for configurations of any of these devices: names, types, ranges, defaults and the meaning of
-/// each key. The description of a key mentions the condition under which it applies. Only Glint itself makes the checks of a
-/// device between its keys.
+/// Returns a JSON Schema (draft 7) for configurations of the devices in `schemas`, with the type, range, default and description
+/// of each key. A description mentions the condition under which the key applies. Only Glint checks conditions between keys.
 pub fn json_schema(schemas: &[Schema]) -> Json {
     let names: Vec<&str> = schemas.iter().map(|schema| schema.device).collect();
     // Not `oneOf`: if a file is wrong, editors then say only that no alternative fits. With `if` and `then` they name the wrong
@@ -60,7 +59,7 @@ fn of_device(schema: &Schema) -> Json {
     device
 }
 
-/// The table allows only the keys that the caller adds.
+/// Returns a table schema without keys. The table allows only the keys that the caller adds.
 fn table() -> Json {
     json!({ "type": "object", "additionalProperties": false, "properties": {} })
 }
@@ -113,8 +112,8 @@ fn of_key(key: &Key) -> Json {
     entry
 }
 
-/// Returns the schema of an entry: a table with these fields, or only the value of the field `shorthand`.
-/// A table within an entry, such as `functions.rcp.operands`.
+/// Returns the schema of a table of entries within an entry, such as `functions.rcp.operands`. An entry is a table with `fields`,
+/// or only the value of the field `shorthand`.
 fn entries_of(key: &Key, fields: &[Key], shorthand: Option<&str>) -> Json {
     json!({
         "type": "object",
@@ -148,7 +147,7 @@ fn record(fields: &[Key], shorthand: Option<&str>) -> Json {
     }
 }
 
-/// Returns an option as a file writes it: an integer without quotes if the key takes integers, and otherwise a text.
+/// Returns `option` as a configuration file writes it: an integer without quotes if the key takes integers, and otherwise a text.
 fn choice(key: &Key, option: &str) -> Json {
     match option.parse::<i64>() {
         Ok(number) if key.kind.takes_integers() => json!(number),

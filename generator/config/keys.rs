@@ -1,5 +1,4 @@
-//! Declares configuration keys as the fields of a struct, which the hardware description and the golden model of a device both
-//! read.
+//! Declares configuration keys as a struct's fields, which the hardware description and the golden model of a device both read.
 
 use super::schema::Key;
 use super::values::{Config, TableEntries};
@@ -7,8 +6,8 @@ use glint_base::fixed::Rounding;
 
 /// A type of fields in a struct that [`keys!`](macro@crate::keys) declares.
 pub trait Setting: Sized {
-    /// Reads the value of the field from a configuration. `keys` are the configuration keys of the field, at least one. Panics if
-    /// the configuration does not have the keys, or if they have another type.
+    /// Reads the field's value from `config`. `keys` are the configuration keys of the field, at least one. Panics if `config`
+    /// lacks the keys, or has values of another type.
     fn read(config: &Config, keys: &[Key]) -> Self;
 }
 
@@ -43,14 +42,14 @@ macro_rules! keys {
         $visible struct $Keys { $($(#[$doc])* $visible $field: $type),* }
 
         impl $Keys {
-            /// The keys, in the order in which a written file shows them.
+            /// Returns the keys, in the order in which a written file shows them.
             $visible fn keys() -> Vec<$crate::Key> {
                 let mut keys = Vec::new();
                 $(keys.extend(Vec::<$crate::Key>::from($key));)*
                 keys
             }
 
-            /// The values of a configuration.
+            /// Reads a configuration's values.
             $visible fn of(config: &$crate::Config) -> Self {
                 Self { $($field: $crate::Setting::read(config, &Vec::from($key))),* }
             }
@@ -100,7 +99,7 @@ impl From<Key> for Vec<Key> {
 }
 
 impl Key {
-    /// Makes a key whose value is `"truncate"` or `"nearest"`.
+    /// Returns a key with the choices `"truncate"` and `"nearest"`.
     pub fn rounding(name: &'static str, default: &'static str, doc: &'static str) -> Self {
         Self::choice(name, default, &["truncate", "nearest"], doc)
     }
@@ -121,7 +120,7 @@ impl Setting for i64 {
     }
 }
 
-/// The range of the key must exclude negative values.
+/// The key's range must exclude negative values.
 impl Setting for u32 {
     fn read(config: &Config, keys: &[Key]) -> Self {
         u32::try_from(config.integer(keys[0].name)).expect("no negative number")
@@ -147,7 +146,7 @@ impl Setting for f64 {
     }
 }
 
-/// A text, or the word of a choice.
+/// A text, or a choice's word.
 impl Setting for String {
     fn read(config: &Config, keys: &[Key]) -> Self {
         config.text(keys[0].name).to_owned()

@@ -1,9 +1,8 @@
-//! Reads configurations, which are TOML files with the choices for one device, such as the width of an operand.
+//! Reads configurations, which are TOML files with the choices for one device, such as an operand's width.
 //!
-//! A device declares its keys as a [`Schema`]; this crate knows no device. [`read()`] and [`parse()`] turn a file into a
-//! [`Config`], whose values need no further checks, or into [`Problems`]. These list the mistakes of the file, each with a
-//! remedy and its location. [`brief`] and [`commented`] write files from which a user can start, and [`sample()`] draws
-//! random valid configurations for tests.
+//! A device declares its keys as a [`Schema`]. [`read()`] and [`parse()`] turn a file into a checked [`Config`], or into
+//! [`Problems`]. [`Problems`] lists the file's mistakes, each with a remedy and its location. [`brief`] and [`commented`] write
+//! files from which a user can start, and [`sample()`] draws random valid configurations for tests.
 
 mod audit;
 mod follow;

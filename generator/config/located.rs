@@ -1,4 +1,4 @@
-//! Turns errors that are found after a configuration was read into problems with locations in its file.
+//! Adds locations in the configuration file to errors that are found after the configuration was read.
 
 use glint_base::config_error::ConfigError;
 
@@ -9,8 +9,8 @@ use super::validate::of_default;
 use super::values::Config;
 
 impl ConfigSource {
-    /// Returns the problem of a configuration from this file that the device of `schema` refuses with `error`. If the file does
-    /// not set the key of the error, the message says that the key has its default.
+    /// Returns the problem that the device of `schema` found in a configuration from this file. If the file does not set the key
+    /// of `error`, the message says that the key has its default.
     pub fn refusal(&self, schema: &Schema, config: &Config, error: ConfigError) -> Problems {
         let defaulted = schema.key(&error.key).filter(|key| !self.gives(key.name));
         let message = match defaulted {
@@ -20,7 +20,7 @@ impl ConfigSource {
         self.problems(ConfigError { message, ..error })
     }
 
-    /// Locates an error of a key in this file. Fails with the error itself if it is no [`ConfigError`].
+    /// Locates an error of a key in this file. Fails with `error` itself if it is no [`ConfigError`].
     pub fn located(&self, error: anyhow::Error) -> Result<Problems, anyhow::Error> {
         error.downcast::<ConfigError>().map(|error| self.problems(error))
     }

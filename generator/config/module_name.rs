@@ -4,11 +4,11 @@ use super::problems::quoted;
 use glint_base::config_error::ConfigError;
 use glint_base::keywords::is_keyword;
 
-/// The limit is in characters. Derived modules and files append endings to the name.
+/// The largest length of a name in characters. Derived modules and files append endings to the name.
 const LONGEST: usize = 60;
 
-/// Returns an error unless the name has 1 to 60 ASCII letters, digits and `_`, does not begin with a digit, and is no keyword of
-/// Verilog or SystemVerilog. The remedy has a similar valid name.
+/// Returns an error unless `name` has 1 to 60 ASCII letters, digits and `_`, does not begin with a digit, and is no keyword of
+/// Verilog or SystemVerilog. The remedy suggests a similar valid name.
 pub(super) fn error(name: &str) -> Option<ConfigError> {
     let message = complaint(name)?;
     let remedy = format!(
@@ -43,10 +43,10 @@ fn complaint(name: &str) -> Option<String> {
     }
 }
 
-/// Returns a valid module name that is similar to a name or path: `cores/my-core.toml` gives `my_core`, and `2fast` gives
-/// `glint_2fast`. The function takes the part between the last slash and the first dot, and keeps at most 54 characters. It
-/// writes a single `_` for other characters than ASCII letters and digits. If this is still not valid, it adds `glint_` in
-/// front; an empty part gives `glint_device`.
+/// Returns a valid module name that is similar to a name or path. For example, `cores/my-core.toml` gives `my_core`, and `2fast`
+/// gives `glint_2fast`. The function takes at most 54 characters between the last slash and the first dot. A single `_` replaces
+/// characters that are no ASCII letters or digits. If the result is not valid, the function adds `glint_` in front, or returns
+/// `glint_device` for an empty part.
 fn legalised(name: &str) -> String {
     let file = name.rsplit(['/', '\\']).find(|part| !part.is_empty()).unwrap_or("");
     let stem = file.split('.').find(|part| !part.is_empty()).unwrap_or("");

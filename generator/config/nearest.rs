@@ -2,9 +2,9 @@
 
 /// Returns the candidate that is most similar to `word`. At most a third of the letters of the longer word may differ, or one
 /// letter in shorter words. Otherwise returns the first candidate that begins with `word`, if `word` has more than two bytes.
-/// A `word` of more than 100 bytes has no candidate.
+/// Returns `None` for a `word` of more than 100 bytes.
 ///
-/// The comparison ignores case and the difference between `-` and `_`. Of equally similar candidates, it takes the first.
+/// The comparison ignores case and the difference between `-` and `_`. The first of equally similar candidates wins.
 pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let fold = |text: &str| text.to_lowercase().replace('-', "_");
     // A longer word is no misspelling, and the time of the comparison grows with the square of the length.
@@ -22,7 +22,7 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
     slip.or_else(|| candidates.iter().find(begins)).copied()
 }
 
-/// Joins words: `a`, `b` and `c` become `a, b and c`.
+/// Joins words for a sentence. For example, `a`, `b` and `c` become `a, b and c`.
 pub fn listed<S: AsRef<str>>(words: &[S]) -> String {
     match words {
         [] => String::new(),

@@ -3,7 +3,7 @@
 
 use super::schema::{Key, KeyKind};
 
-/// A key and its value as TOML, or an empty value if any value can be meant.
+/// A key that a user may mean, and its value as TOML. The value is empty if any value can be meant.
 #[derive(Clone, Copy)]
 pub(super) struct MeantSetting {
     pub(super) key: &'static str,
@@ -16,7 +16,7 @@ const CFU: MeantSetting = MeantSetting::to("interface.processor", "\"cfu\"");
 const PCPI: MeantSetting = MeantSetting::to("interface.processor", "\"pcpi\"");
 const STREAM: MeantSetting = MeantSetting::to("interface.stream", "true");
 
-/// Words, [`folded`], for the keys that every device has.
+/// Alternative words, in [`folded`] form, for the keys that every device has.
 const SETTINGS: [(&[&str], &[MeantSetting]); 24] = [
     (&["axilite", "axi4lite", "axil"], &[AXI_LITE]),
     (&["wishbone", "wb"], &[WISHBONE]),
@@ -47,7 +47,7 @@ const SETTINGS: [(&[&str], &[MeantSetting]); 24] = [
     (&["bram", "lutram"], &[MeantSetting::of("package.rom_style")]),
 ];
 
-/// Words for the last part of a key in the same table, or for a field of an entry.
+/// Alternative words for the last part of a key in the same table, or for a field of an entry.
 const LAST_PARTS: [(&[&str], &str); 8] = [
     (&["width", "size"], "bits"),
     (&["min", "low", "lower"], "from"),
@@ -59,7 +59,7 @@ const LAST_PARTS: [(&[&str], &str); 8] = [
     (&["inclusive"], "to_included"),
 ];
 
-/// Words for the choices of a key, after the last part of the key's name.
+/// Alternative words for a key's choices. The first entry is the last part of the key's name.
 const CHOICES: [(&str, &[&str], &str); 20] = [
     ("architecture", &["serial", "iterative", "multicycle", "microprogrammed"], "sequential"),
     ("architecture", &["unrolled"], "pipelined"),
@@ -113,7 +113,7 @@ fn folded(word: &str) -> String {
     word.to_lowercase().replace(['-', '_'], "")
 }
 
-/// Returns the settings that a user may mean by the name of a key, without the table before it.
+/// Returns the settings that a user may mean by `name`, the name of a key without its table.
 pub(super) fn settings(name: &str) -> &'static [MeantSetting] {
     let name = folded(name);
     let found = SETTINGS.iter().find(|(words, _)| words.contains(&name.as_str()));
@@ -130,8 +130,8 @@ pub(super) fn last_part<'a>(
     names.find(|name| name == meant)
 }
 
-/// Returns the choice of `key` that a user means by `word`, as TOML, or the setting of another key in the same table:
-/// `interface.registers = "axis"` means `` `interface.stream = true` ``.
+/// Returns the choice of `key` that a user means by `word`, as TOML, or the setting of another key in the same table. For
+/// example, `interface.registers = "axis"` means `` `interface.stream = true` ``.
 pub(super) fn choice(key: &Key, word: &str) -> Option<String> {
     let KeyKind::Choice(options) = key.kind else { return None };
     let (table, leaf) = key.name.rsplit_once('.').unwrap_or(("", key.name));

@@ -21,19 +21,20 @@ use super::values::{Config, TableEntries, TableEntry, Value};
 use glint_base::config_error::ConfigError;
 use glint_base::program::Program;
 
-/// Parses a configuration from the text of a TOML file. `schemas` must contain the schemas of all devices.
+/// Parses a configuration from `text`, the text of a TOML file. `schemas` must contain the schemas of all devices.
 ///
 /// Messages show `file_name`. Its stem (with `_` for `-`) is the module name unless the text states a `name`, which a text from
-/// standard input must do. Defaults of keys that the text does not set are adjusted to the values that it sets.
+/// standard input must do. Defaults of keys that the text does not set are adjusted to the values in the text.
 ///
 /// # Errors
+///
 /// Fails with all problems of the text at once, at most 200. Conditions between keys are checked only if the text is valid TOML
 /// and names a device, because otherwise some keys of the file are unknown.
 pub fn parse(file_name: &str, text: &str, schemas: &[Schema]) -> Result<Config, Problems> {
     parse_located(file_name, text, schemas).map(|(config, _)| config)
 }
 
-/// Parses a text as [`parse`] does. Also returns the location of each key in the text, for errors that are found later.
+/// Parses a text like [`parse`]. Also returns the location of each key in the text, for errors that are found later.
 pub fn parse_located(
     file_name: &str,
     text: &str,
@@ -63,7 +64,7 @@ pub fn parse_located(
 
 struct TomlReader<'t> {
     text: &'t str,
-    /// The file names other files relative to this directory.
+    /// The directory to which paths of further files in the text are relative.
     directory: &'t Path,
     newlines: Vec<usize>,
     problems: Problems,
@@ -105,7 +106,7 @@ impl TomlReader<'_> {
         self.newlines.partition_point(|newline| *newline < offset)
     }
 
-    /// Counts the lines below a heading with a syntax error as broken too, because the table of their keys is unknown.
+    /// Marks the lines below a heading with a syntax error as broken, because the table of their keys is unknown.
     fn spoil_below_broken_headings(&mut self) {
         let mut spoilt = false;
         for (number, line) in self.text.lines().enumerate() {
@@ -141,8 +142,8 @@ impl TomlReader<'_> {
         }
     }
 
-    /// Returns the schema of the device that the file names, or else of the most similar one. Reports a missing or wrong name,
-    /// but after a syntax error no missing one.
+    /// Returns the schema of the device that the file names, or else of the most similar one. Reports a missing or wrong name.
+    /// After a syntax error, a missing name is not reported.
     fn device<'s>(&mut self, document: &DeTable, schemas: &'s [Schema]) -> Option<&'s Schema> {
         let devices: Vec<&str> = schemas.iter().map(|schema| schema.device).collect();
         let remedy = format!("devices: {}", devices.join(", "));
@@ -222,7 +223,7 @@ impl TomlReader<'_> {
         }
     }
 
-    /// `prefix` is the name of the table followed by a dot, or empty.
+    /// Reads all keys of `table` into `draft`. `prefix` is the name of the table followed by a dot, or empty.
     fn table<'s>(
         &mut self,
         table: &DeTable,
@@ -242,7 +243,7 @@ impl TomlReader<'_> {
             if self.broken.contains(&self.line(key.span().start)) {
                 continue;
             }
-            // The parser's span of a table is the heading of the table, or one of its keys.
+            // The parser's span of a table is the table's heading, or one of its keys.
             let span = match value.get_ref() {
                 DeValue::Table(_) => key.span(),
                 _ => value.span(),
@@ -306,7 +307,7 @@ impl TomlReader<'_> {
         }
     }
 
-    /// Reads a table whose entries the user names, in the order of the file.
+    /// Reads a table whose entries the user names, in the file's order.
     fn records<'s>(
         &mut self,
         key: &'s Key,
@@ -365,7 +366,7 @@ impl TomlReader<'_> {
         draft.give(key, is_good.then_some(value));
     }
 
-    /// Returns the fields of an entry, or reports a wrong or unknown field.
+    /// Returns an entry's fields, or reports a wrong or unknown field.
     fn record(
         &mut self,
         table: &EntriesOf<'_>,
@@ -409,9 +410,9 @@ impl TomlReader<'_> {
         is_good.then_some(given)
     }
 
-    /// Returns the fields of an entry that another configuration has: `file = "fog.toml"`. The fields are the tables of this file
-    /// with the same names; its other keys do not count. Reports a mistake if the file cannot be read, if it configures another
-    /// device than [`DEVICE_OF_FILES`], if it has a wrong field, or if the entry has further fields.
+    /// Returns the fields of an entry that refers to another configuration, such as `file = "fog.toml"`. The fields are the
+    /// tables of that file with the same names. Reports a mistake if the file cannot be read, configures another device than
+    /// [`DEVICE_OF_FILES`], or has a wrong field. The entry must not have further fields.
     fn record_of_file(
         &mut self,
         table: &EntriesOf<'_>,
@@ -437,7 +438,7 @@ impl TomlReader<'_> {
         }
     }
 
-    /// Returns the fields as [`Self::record_of_file`] does, or a message and a remedy.
+    /// Returns the fields for [`Self::record_of_file`], or a message and a remedy.
     fn fields_of_file(
         &self,
         table: &EntriesOf<'_>,
@@ -486,7 +487,7 @@ impl TomlReader<'_> {
         }
     }
 
-    /// Returns the value of a field, or reports that it is wrong.
+    /// Returns a field's value, or reports that it is wrong.
     fn field(
         &mut self,
         table: &EntriesOf<'_>,
@@ -512,14 +513,14 @@ impl TomlReader<'_> {
         };
         for violation in violations {
             let Violation { error, .. } = field.named_within(violation, &within);
-            // Fields have no default, so the remedy states the default of the key as an example.
+            // Fields have no default, so the remedy states the key's default as an example.
             let remedy = error.remedy.replace("(default ", "(for example ");
             self.report(&within, value.span(), error.message, remedy);
         }
         None
     }
 
-    /// Returns the entries of a table that is itself a field of an entry, or reports a wrong field.
+    /// Returns the entries of a table that is a field of an entry, or reports a wrong field.
     fn entries_within(&mut self, table: &EntriesOf<'_>, entries: &DeTable) -> Option<Value> {
         let mut in_order: Vec<_> = entries.iter().collect();
         in_order.sort_by_key(|(name, _)| name.span().start);
@@ -572,7 +573,6 @@ impl TomlReader<'_> {
         self.report(&name, span, message, unknown.remedy);
     }
 
-    /// Adds a problem, unless the first line of `span` has a syntax error.
     fn report(&mut self, key: &str, span: Range<usize>, message: String, remedy: String) {
         self.report_error(span, ConfigError::new(key, message, remedy));
     }
@@ -585,27 +585,28 @@ impl TomlReader<'_> {
     }
 }
 
-/// A table whose entries the user names: its full name, such as `functions.rcp.operands`, and the fields of an entry.
+/// A table whose entries the user names. `name` is its full name, such as `functions.rcp.operands`, and `fields` are an entry's
+/// fields.
 struct EntriesOf<'k> {
     name: &'k str,
     fields: &'k [Key],
-    /// See [`KeyKind::Table`].
+    /// The field whose value may replace a whole entry.
     shorthand: Option<&'static str>,
 }
 
 /// The field of an entry that is another configuration.
 const FILE: &str = "file";
 
-/// The device that such a configuration must have.
+/// The device that a configuration named by `FILE` must have.
 const DEVICE_OF_FILES: &str = "expression";
 
 impl<'k> EntriesOf<'k> {
-    /// Returns whether each field is itself a table, so that an entry can be another configuration.
+    /// Returns whether each field is itself a table, so an entry can be another configuration.
     fn has_only_tables(&self) -> bool {
         self.fields.iter().all(|field| matches!(field.kind, KeyKind::Table { .. }))
     }
 
-    /// Returns `None` if the key is not for a table.
+    /// Returns the table with the full name `name`, or `None` if `key` is not for a table.
     fn key(key: &'k Key, name: &'k str) -> Option<Self> {
         match &key.kind {
             KeyKind::Table { fields, shorthand, .. } => {
@@ -616,7 +617,7 @@ impl<'k> EntriesOf<'k> {
     }
 }
 
-/// Converts a value to the type of its key. Fails with all mistakes if its type or its range is wrong.
+/// Converts a value to the type of `key`. Fails with all mistakes if the type or the range is wrong.
 fn converted(key: &Key, value: &Spanned<DeValue>) -> Result<Value, Vec<Violation>> {
     let wrong_type = || vec![key.wrong_type(&described(value))];
     let too_large = || vec![key.violation(out_of_range(key.name, written(value)))];
@@ -667,13 +668,13 @@ fn converted(key: &Key, value: &Spanned<DeValue>) -> Result<Value, Vec<Violation
     if violations.is_empty() { Ok(converted) } else { Err(violations) }
 }
 
-/// Returns a signed integer of at most 64 bits.
+/// Returns the value as a signed integer, or `None` if it has more than 64 bits or is no integer.
 fn integer(value: &Spanned<DeValue>) -> Option<i64> {
     let integer = value.get_ref().as_integer()?;
     i64::from_str_radix(integer.as_str(), integer.radix()).ok()
 }
 
-/// Returns a number as the file writes it, without underscores, or an empty text.
+/// Returns a number as the file writes it, without underscores. The text is empty for a value that is no number.
 fn written(value: &Spanned<DeValue>) -> String {
     match value.get_ref() {
         DeValue::Integer(integer) => integer.to_string(),

@@ -1,17 +1,18 @@
-//! Reads samples, the measured points of a curve, from a text file, such as a CSV file, that a configuration of the device
-//! `function` names.
+//! Reads samples, the measured points of a curve, from a text file that a configuration of the device `function` names, such as a
+//! CSV file.
 
 use std::path::Path;
 use std::{fs, io};
 
-/// Reads the points of a file in the form `x,y x,y`: the lines `x,y`, `0,0` and `1; -0.5 # low` give `0,0 1,-0.5`.
+/// Reads the points of a file in the form `x,y x,y`. For example, the lines `x,y`, `0,0` and `1; -0.5 # low` give `0,0 1,-0.5`.
 ///
 /// A line must have two numbers, with or without quotes, that are separated by a comma, a semicolon, blanks or a tab. Lines
 /// without a number before the first point are headings, `#` begins a comment, and empty lines are skipped.
 ///
 /// # Errors
-/// Fails with a message and a remedy if the file is no regular file, cannot be read or is not UTF-8. Also fails if a line is not
-/// two finite numbers, or the file has no points.
+///
+/// Fails with a message and a remedy if the file is no regular file, cannot be read or is not UTF-8. Fails if a line is not two
+/// finite numbers, or the file has no points.
 pub(super) fn read(path: &Path) -> Result<String, (String, String)> {
     let name = path.display();
     let text = text(path).map_err(|error| {
@@ -49,8 +50,8 @@ pub(super) fn read(path: &Path) -> Result<String, (String, String)> {
     Ok(points.join(" "))
 }
 
-/// Returns whether a line has two cells, and at least one is a number with a decimal comma, as spreadsheets write numbers in
-/// many languages: `0,5;1,25`.
+/// Returns whether a line has two cells, at least one with a decimal comma, as in `0,5;1,25`. Spreadsheets write such numbers in
+/// many languages.
 fn has_decimal_commas(line: &str) -> bool {
     let cells = line.split(|c: char| c == ';' || c.is_whitespace()).filter(|cell| !cell.is_empty());
     let is_decimal = |cell: &str| {
@@ -61,8 +62,8 @@ fn has_decimal_commas(line: &str) -> bool {
     is_decimal.len() == 2 && is_decimal.contains(&true)
 }
 
-/// Reads a file in UTF-8, and converts the line ends of any system to newlines. The path must name a regular file, because a
-/// pipe may never end.
+/// Reads a file in UTF-8, and converts all line ends to newlines. The path must name a regular file, because a pipe may never
+/// end.
 pub(super) fn text(path: &Path) -> io::Result<String> {
     let refused = |message: String| Err(io::Error::new(io::ErrorKind::InvalidInput, message));
     if !fs::metadata(path)?.is_file() {

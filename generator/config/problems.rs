@@ -1,5 +1,4 @@
-//! Collects the mistakes of a configuration file, each with a remedy, and with its location if it has one. A missing key has
-//! none.
+//! Collects a configuration file's mistakes, each with a remedy and, except for missing keys, with its location.
 
 use std::fmt;
 use std::ops::Range;
@@ -11,28 +10,28 @@ use glint_base::config_error::ConfigError;
 
 use super::source::ConfigSource;
 
-/// The mistakes of one configuration file, in the order of their locations: at most 200, while further ones are only counted.
-/// `Display` shows each mistake with its lines of the file in plain text.
+/// The mistakes of one configuration file, in the order of their locations. The list has at most 200; further mistakes are only
+/// counted. `Display` shows each mistake with its lines of the file in plain text.
 #[derive(Clone, Debug, Default)]
 pub struct Problems {
     source: ConfigSource,
     list: Vec<Problem>,
-    /// The number of mistakes beyond the limit of the list.
+    /// The number of mistakes beyond the list's limit.
     further: usize,
-    /// Whether the file has other mistakes, which are not in this list.
+    /// Whether the file has mistakes that are not in this list.
     refused: bool,
 }
 
 pub(super) const STANDARD_INPUT: &str = "standard input";
 
-/// A file that is no configuration at all could have very many problems.
+/// The largest length of the list. A file that is no configuration at all could have very many problems.
 const LIMIT: usize = 200;
 
 /// A mistake of a key, with its location in the file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Problem {
     pub error: ConfigError,
-    /// The range of bytes in the file. `None` if the file does not contain what is wrong.
+    /// The range of bytes in the file, or `None` for a mistake without a location, such as a missing key.
     span: Option<Range<usize>>,
 }
 
@@ -50,14 +49,13 @@ impl Problems {
         &self.source
     }
 
-    /// Adds a mistake of a key. The report shows the location of the key, or only the name of the file if the file does not set
-    /// the key.
+    /// Adds a mistake of a key. The report shows the key's location, or only the file's name if the file does not set the key.
     pub fn push(&mut self, key: &str, message: impl Into<String>, remedy: impl Into<String>) {
         self.push_error(ConfigError::new(key, message, remedy));
     }
 
-    /// Adds the mistake `error` of a key. If it concerns some bytes of the key's text, the report marks them. The file must
-    /// contain the text literally, in quotes and without escapes. Otherwise it marks the whole value.
+    /// Adds the mistake `error` of a key. If `error` concerns some bytes of the key's text, the report marks these bytes. The
+    /// file must contain the text literally, in quotes and without escapes. Otherwise the report marks the whole value.
     pub fn push_error(&mut self, error: ConfigError) {
         let span = self.source.span_of(&error);
         self.insert(Problem { error, span });
@@ -79,8 +77,8 @@ impl Problems {
         self.source.gives(key)
     }
 
-    /// Returns a list for the same file and with the same locations, but without problems, which a check can fill for a trial.
-    /// [`Problems::is_refused`] gives the same result for both lists.
+    /// Returns an empty list for a trial check of the same file, with the same locations. [`Problems::is_refused`] gives the same
+    /// result for the new list.
     pub(super) fn cleared(&self) -> Self {
         Problems { list: Vec::new(), further: 0, refused: self.is_refused(), ..self.clone() }
     }
@@ -112,7 +110,7 @@ impl Problems {
         self.list.is_empty()
     }
 
-    /// Returns the number of mistakes, including the ones that are only counted.
+    /// Returns the number of mistakes, including the mistakes that are only counted.
     pub fn len(&self) -> usize {
         self.list.len() + self.further
     }
@@ -122,19 +120,19 @@ impl Problems {
         self.list.iter()
     }
 
-    /// Returns the name of the file as the caller gave it, or an empty text.
+    /// Returns the file's name as the caller gave it. The name is empty for problems without a file.
     pub fn file(&self) -> &str {
         &self.source.file
     }
 
-    /// Returns the line and the column of a mistake in this list, if it has a location. Both are counted from 1, and columns
-    /// count characters.
+    /// Returns the line and the column of a mistake in this list. Lines and columns are counted from 1, and columns count
+    /// characters. Returns `None` for a mistake without a location.
     pub fn position(&self, problem: &Problem) -> Option<(usize, usize)> {
         self.source.line_and_column(problem.start()?)
     }
 
     /// Returns a JSON array with one object per problem in the list: `file`, `line` and `column` (null without a location), `key`
-    /// (null if the problem concerns the whole file), `message` and `remedy`.
+    /// (null for a problem of the whole file), `message` and `remedy`.
     pub fn to_json(&self) -> Json {
         let each = |problem: &Problem| {
             let (line, column) = self.position(problem).unzip();
@@ -151,8 +149,8 @@ impl Problems {
         Json::Array(self.list.iter().map(each).collect())
     }
 
-    /// Returns the report for people, in the style and the colours of `renderer`. It ends with the number of mistakes that are
-    /// only counted.
+    /// Returns the report for people, in the style and the colours of `renderer`. The report ends with the number of mistakes
+    /// that are only counted.
     pub fn render(&self, renderer: &Renderer) -> String {
         let each = |problem: &Problem| {
             let title = Level::ERROR.primary_title(&problem.error.message);
@@ -197,9 +195,9 @@ impl fmt::Display for Problems {
 
 impl std::error::Error for Problems {}
 
-/// An error of a key's value, before the location of the value is known.
+/// An error of a key's value, before the value's location is known.
 pub(super) struct Violation {
-    /// The list entry that is wrong; `None` if the error concerns the whole value.
+    /// The list entry that is wrong, or `None` if the error concerns the whole value.
     pub entry: Option<usize>,
     pub error: ConfigError,
 }
@@ -217,8 +215,7 @@ pub(super) fn shown(text: &str) -> String {
     }
 }
 
-/// Quotes a text from a file for a message, with quotes, backslashes and control characters escaped, and cuts it as [`shown`]
-/// does.
+/// Quotes a text from a file for a message. Quotes, backslashes and control characters are escaped, and [`shown`] cuts the text.
 pub(super) fn quoted(text: &str) -> String {
     format!("\"{}\"", shown(&text.escape_debug().to_string()))
 }

@@ -13,19 +13,19 @@ use glint_base::config_error::ConfigError;
 use glint_base::input;
 use glint_base::program::Program;
 
-/// The limit, in bytes, protects against files that would exhaust the memory.
+/// The largest size of a file in bytes, because a huge file would exhaust the memory.
 const LARGEST: u64 = 1 << 16;
 
 /// Reads a configuration file, or standard input if the path is `-`. `schemas` must contain the schemas of all devices.
 ///
 /// # Errors
-/// Fails with all problems at once. Fails if the path is a pipe, a device or a directory, or if the file cannot be read.
-/// Also fails if the file has more than 65,536 bytes, is not UTF-8, or has a problem that [`parse`](super::parse()) finds.
+/// Fails with all problems at once. Fails if the path is a pipe, a device or a directory, or if the file cannot be read. Fails if
+/// the file has more than 65,536 bytes, is not UTF-8, or has a problem that [`parse`](super::parse()) finds.
 pub fn read(path: &Path, schemas: &[Schema]) -> Result<Config, Problems> {
     read_located(path, schemas).map(|(config, _)| config)
 }
 
-/// Reads a file as [`read`] does. Also returns the location of each key in the file, for errors that are found later.
+/// Reads a file like [`read`]. Also returns the location of each key in the file, for errors that are found later.
 pub fn read_located(path: &Path, schemas: &[Schema]) -> Result<(Config, ConfigSource), Problems> {
     let file_name = if path == Path::new(input::STDIN) {
         STANDARD_INPUT.to_owned()
@@ -58,7 +58,7 @@ pub fn read_located(path: &Path, schemas: &[Schema]) -> Result<(Config, ConfigSo
     }
 }
 
-/// Fails with a message and a remedy if the file cannot be read or is too large.
+/// Reads all bytes of a file. Fails with a message and a remedy if the file cannot be read or is too large.
 fn contents(path: &Path) -> Result<Vec<u8>, (String, String)> {
     let mut bytes = Vec::new();
     let read = input::open(path).and_then(|file| file.take(LARGEST + 1).read_to_end(&mut bytes));
@@ -89,7 +89,8 @@ fn contents(path: &Path) -> Result<Vec<u8>, (String, String)> {
     }
 }
 
-/// Returns the path of the TOML file in the same directory with the most similar name.
+/// Returns the path of the TOML file in the same directory with the name most similar to `path`. Returns `None` if no name is
+/// similar.
 fn neighbour(path: &Path) -> Option<String> {
     let wanted = path.file_name()?.to_str()?;
     let parent = path.parent()?;

@@ -8,20 +8,21 @@ use super::problems::Problems;
 use super::schema::{Key, KeyKind, Schema};
 use super::values::{Config, Value};
 
-/// After this number of drawn configurations, the search for a valid one fails.
+/// The number of drawn configurations after which the search for a valid one fails.
 const DRAWS: usize = 1000;
-/// In one configuration, keys that the device's check reports are drawn again this number of times.
+/// The largest number of times that keys with problems are drawn again in one configuration.
 const REPAIRS: usize = 100;
 
-/// Returns a random valid configuration of a device. The same seed always gives the same configuration, with a name such as
+/// Returns a random valid configuration of a device. The same `seed` always gives the same configuration, with a name such as
 /// `dot_product_7`.
 ///
 /// Integers, numbers, choices, flags and lists of the device are drawn from their ranges, or from the range of [`Key::drawn`].
 /// The ends are drawn more often than other values. Texts, tables, keys that do not apply and the keys that every device shares
-/// keep their defaults. If the device refuses a combination, the offending key is drawn again, so that keys with narrow
-/// conditions vary too. `refusal` returns the error of a configuration that the schema accepts and the device cannot have.
+/// keep their defaults. If the device refuses a combination, the offending key is drawn again. `refusal` returns the error of a
+/// configuration that the schema accepts and the device cannot have.
 ///
 /// # Panics
+///
 /// Panics if the device refuses all 1000 configurations that are drawn.
 pub fn sample(
     schema: &Schema,
@@ -76,7 +77,7 @@ fn draw(key: &Key, rng: &mut ChaCha8Rng) -> Value {
             Value::Text(options[index].to_owned())
         }
         KeyKind::Flag => Value::Flag(rng.next_u32() & 1 == 1),
-        // Another text or table would test nothing more.
+        // A different text or table would test nothing more.
         KeyKind::Text(_) | KeyKind::Table { .. } => key.default.clone(),
         KeyKind::Integers { min, max, len_min, len_max } => {
             let len = integer(*len_min as i64, *len_max as i64, rng);
@@ -85,7 +86,7 @@ fn draw(key: &Key, rng: &mut ChaCha8Rng) -> Value {
     }
 }
 
-/// Each end has a probability of at least 1/8; the rest is uniform.
+/// Draws an integer. Each end has a probability of at least 1/8, and the rest is uniform.
 fn integer(min: i64, max: i64, rng: &mut ChaCha8Rng) -> i64 {
     match rng.next_u32() % 8 {
         0 => min,

@@ -1,4 +1,4 @@
-//! Defines the schema of a device: the list of its configuration keys, with types, ranges, defaults, conditions and descriptions.
+//! Defines a device's schema: the list of its configuration keys, with types, ranges, defaults, conditions and descriptions.
 
 use std::ops::RangeInclusive;
 
@@ -10,13 +10,13 @@ use glint_base::keywords::is_keyword;
 /// The keys of one device, and the conditions between them.
 #[derive(Clone, Debug)]
 pub struct Schema {
-    /// A configuration has this name under the key `device`.
+    /// The device's name, which a configuration states under the key `device`.
     pub device: &'static str,
     /// The device's own keys, in the order in which a written file shows them, without the keys that every device shares
     /// ([`super::shared_keys`]).
     pub keys: Vec<Key>,
-    /// Checks the conditions between keys. It gets configurations in which every value is inside its own range, in any
-    /// combination, and must not panic. It must report each violated condition under the key that the user should change.
+    /// Checks the conditions between keys. Each value of the configuration is inside its own range, in any combination. The
+    /// function must not panic, and must report each violated condition under the key that the user should change.
     pub check: fn(&Config, &mut Problems),
 }
 
@@ -37,36 +37,37 @@ pub struct Key {
     pub kind: KeyKind,
     /// The value if a file does not set the key.
     pub default: Value,
-    /// The meaning of the key, in one or two sentences.
+    /// The key's meaning, in one or two sentences.
     pub doc: &'static str,
-    /// The condition under which the key applies. If it does not hold, a file may set the key only to its default.
+    /// The condition under which the key applies. If the condition does not hold, a file may set the key only to its default.
     pub condition: Option<Condition>,
-    /// Whether configurations of the device existed before the key. Such a key is not written while it has its default, so that
-    /// digests of older configurations stay valid.
+    /// Whether configurations of the device existed before the key. The default of such a key is not written, so digests of older
+    /// configurations stay valid.
     pub joined_later: bool,
-    /// The range from which random configurations draw an integer, if larger values would make a configuration too slow to test.
-    /// The default of such a key is never adjusted to other keys.
+    /// The range from which random configurations draw an integer, if larger values would be too slow to test. The default of
+    /// such a key is never adjusted to other keys.
     pub drawn: Option<(i64, i64)>,
 }
 
-/// When a key applies: another key has, or does not have, a certain value.
+/// The condition that another key has, or does not have, a certain value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Condition {
     pub key: &'static str,
-    /// A value of the other key, without quotes.
+    /// A value of the key in `key`, without quotes.
     pub value: &'static str,
-    /// Whether the other key must have this value, not a different one.
+    /// Whether the key must have this value, not a different one.
     pub is_equal: bool,
 }
 
 impl Condition {
-    /// `architecture = "pipelined"` holds for the value `pipelined`.
+    /// Returns whether `value`, the value of the key in the condition, meets the condition. For example, `architecture =
+    /// "pipelined"` holds for the value `pipelined`.
     pub fn holds(&self, value: &Value) -> bool {
         (value.bare() == self.value) == self.is_equal
     }
 
-    /// Returns the condition as text, for example `architecture = "pipelined"`. `value` must be some value of the other key. If
-    /// it is a text, the value in the condition has quotes, unless it is an integer, as in `power = 4`.
+    /// Returns the condition as text, for example `architecture = "pipelined"`. `value` is any value of the key in the condition,
+    /// and shows whether the text needs quotes. An integer has no quotes, as in `power = 4`.
     pub fn words(&self, value: &Value) -> String {
         let needed = match value {
             Value::Text(_) => Value::Text(self.value.to_owned()).toml(),
@@ -89,13 +90,14 @@ pub enum KeyKind {
     Flag,
     /// A text that matches a pattern.
     Text(TextPattern),
-    /// A list of integers; its entries and its length have limits. For example, `visibility.levels = [50, 100, 200, 400, 800]`.
+    /// A list of integers with limits on the entries and on the length. For example, `visibility.levels = [50, 100, 200, 400,
+    /// 800]`.
     Integers { min: i64, max: i64, len_min: usize, len_max: usize },
     /// A table whose entries have names that the user chooses, such as `operands` of the device `expression`.
     Table {
-        /// The fields of an entry. The defaults of these keys are only examples: a field that is not given has no value.
+        /// An entry's fields. The defaults of these keys are only examples, and a field that is not given has no value.
         fields: Vec<Key>,
-        /// The field whose value may replace a whole entry: `s = "x^2"` means `s = { formula = "x^2" }`.
+        /// The field whose value may replace a whole entry. For example, `s = "x^2"` means `s = { formula = "x^2" }`.
         shorthand: Option<&'static str>,
         least: usize,
         most: usize,
@@ -107,7 +109,8 @@ impl Key {
         Key { name, kind, default, doc, condition: None, joined_later: false, drawn: None }
     }
 
-    /// Makes a key for an integer: `Key::integer("cosine.fraction", 20, 6..=24, "…")` accepts 6 to 24 and has the default 20.
+    /// Makes a key for an integer. For example, `Key::integer("cosine.fraction", 20, 6..=24, "…")` accepts 6 to 24 and has the
+    /// default 20.
     pub fn integer(
         name: &'static str,
         default: i64,
@@ -139,8 +142,8 @@ impl Key {
         Self::new(name, KeyKind::Number { min, max, or_zero: true }, Value::Number(0.0), doc)
     }
 
-    /// Makes a key whose value is one of several texts. If all texts are decimal integers, such as `["2", "4"]`, a file must
-    /// write an integer, and [`Config::integer`] returns it.
+    /// Makes a key for one of the texts in `options`. If all texts are decimal integers, such as `["2", "4"]`, a file must write
+    /// an integer, and [`Config::integer`] returns it.
     pub fn choice(
         name: &'static str,
         default: &'static str,
@@ -155,7 +158,7 @@ impl Key {
         Self::new(name, KeyKind::Flag, Value::Flag(default), doc)
     }
 
-    /// Makes a key for a text that matches a pattern, as the default must.
+    /// Makes a key for a text that matches `pattern`. The default must match `pattern`.
     pub fn text(
         name: &'static str,
         default: &'static str,
@@ -165,7 +168,7 @@ impl Key {
         Self::new(name, KeyKind::Text(pattern), Value::Text(default.to_owned()), doc)
     }
 
-    /// Makes a key for a list of integers. Each integer must be in `range`, and the length of the list must be in `len`.
+    /// Makes a key for a list of integers. Each integer must be in `range`, and the list's length must be in `len`.
     pub fn integers(
         name: &'static str,
         default: &[i64],
@@ -179,7 +182,7 @@ impl Key {
         Self::new(name, kind, Value::Integers(default.to_vec()), doc)
     }
 
-    /// Makes a key for a table whose entries the user names: the table `operands` may have an entry `x`, whose fields are the
+    /// Makes a key for a table whose entries the user names. For example, the table `operands` may have an entry `x`, with the
     /// keys in `fields`. The number of entries must be in `entries`. `shorthand` names a field whose value may replace a whole
     /// entry.
     pub fn records(
@@ -195,37 +198,38 @@ impl Key {
         Self::new(name, kind, Value::Table(TableEntries(default.to_vec())), doc)
     }
 
-    /// Restricts the key to configurations in which the key `other` has the value `value`: `pipeline.stages` has
-    /// `only_when("architecture", "pipelined")`. `value` must be written without quotes, as [`Value::bare`] returns it.
+    /// Restricts the key to configurations in which the key `other` has the value `value`. For example, `pipeline.stages` has
+    /// `only_when("architecture", "pipelined")`. `value` has no quotes, like a result of [`Value::bare`].
     pub fn only_when(mut self, other: &'static str, value: &'static str) -> Self {
         self.condition = Some(Condition { key: other, value, is_equal: true });
         self
     }
 
-    /// Restricts the key to configurations in which the key `other` has any other value, written as for [`Key::only_when`].
+    /// Restricts the key to configurations in which the key `other` lacks the value `value`. `value` has no quotes.
     pub fn unless(mut self, other: &'static str, value: &'static str) -> Self {
         self.condition = Some(Condition { key: other, value, is_equal: false });
         self
     }
 
-    /// Marks a key that was added after configurations of the device existed, whose digests then do not change.
+    /// Marks a key that was added after configurations of the device existed. A default value then does not change the digests of
+    /// these configurations.
     pub fn joined_later(self) -> Self {
         Self { joined_later: true, ..self }
     }
 
     /// Sets the range, both ends included, from which random configurations draw the integer, because larger values take long to
-    /// test. The default of the key is then never adjusted to other keys.
+    /// test. The key's default is then never adjusted to other keys.
     pub fn drawn(self, min: i64, max: i64) -> Self {
         Self { drawn: Some((min, max)), ..self }
     }
 
-    /// Returns the full name of a field, such as `operands.x.fraction`.
+    /// Returns the full name of a field in the entry `entry`, such as `operands.x.fraction`.
     pub fn field_name(&self, entry: &str, field: &str) -> String {
         format!("{}.{entry}.{field}", self.name)
     }
 
     /// Returns the table and the last part of the key's name, for example `("cosine", "fraction")`. The table is empty for a key
-    /// outside tables, and the last part for a key that is itself a table.
+    /// outside tables. The last part is empty for a key that is a table.
     pub fn table_and_leaf(&self) -> (&'static str, &'static str) {
         if matches!(self.kind, KeyKind::Table { .. }) {
             return (self.name, "");
@@ -235,7 +239,7 @@ impl Key {
 }
 
 impl KeyKind {
-    /// TOML writes the options of such a choice without quotes.
+    /// Returns whether the kind is a choice of integers, which TOML writes without quotes.
     pub fn is_integer_choice(&self) -> bool {
         matches!(self, KeyKind::Choice(options) if options.iter().all(|option| is_integer(option)))
     }

@@ -1,9 +1,9 @@
 //! Declares the configuration keys that every device has, including devices that a user adds, except `device`, `name` and
-//! `strict`. These keys choose the architecture of the hardware, its interface and the generated files, not the function that
-//! the hardware computes.
+//! `strict`. These keys choose the hardware's architecture, its interface and the generated files, not the function that the
+//! hardware computes.
 //!
-//! [`Schema::key`] finds these keys like the keys of a device. [`Config::to_toml`](super::Config::to_toml) does not write a
-//! shared key that has its default, so that the digests in older records stay valid.
+//! [`Config::to_toml`](super::Config::to_toml) writes a shared key only with a value other than the default, so the digests in
+//! older records stay valid.
 
 use std::sync::LazyLock;
 
@@ -11,10 +11,10 @@ use super::schema::{Key, Schema};
 use super::text_pattern::TextPattern;
 use glint_base::target::TIMING_NAMES;
 
-/// The default of `interface.queue`.
+/// The default of `interface.queue`, with which a configuration needs no bus registers.
 pub(super) const DEFAULT_QUEUE: &str = "4";
 
-/// Returns the shared keys in the order in which a written file shows them, after the keys of the device.
+/// Returns the shared keys in the order in which a written file shows them.
 pub fn shared_keys() -> &'static [Key] {
     &KEYS
 }
@@ -165,12 +165,12 @@ keys! {
 }
 
 impl Schema {
-    /// Returns the key with this name, the device's own or shared.
+    /// Returns the key `name`, one of the device's own or a shared one.
     pub fn key(&self, name: &str) -> Option<&Key> {
         self.all_keys().find(|key| key.name == name)
     }
 
-    /// Returns the keys of the device, then the shared ones.
+    /// Returns the device's keys, then the shared ones.
     pub fn all_keys(&self) -> impl Iterator<Item = &Key> {
         self.keys.iter().chain(shared_keys())
     }

@@ -1,22 +1,22 @@
-//! Defines the text of a configuration file, with the locations of the keys that it sets.
+//! Holds a configuration file's text, with the locations of its keys.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
 
 use glint_base::config_error::ConfigError;
 
-/// The text of a configuration file. An error that is found after reading gets its line and column from here.
+/// The text of a configuration file, which gives errors found after reading their lines and columns.
 #[derive(Clone, Debug, Default)]
 pub struct ConfigSource {
-    /// The path as the caller gave it, or an empty text.
+    /// The path as the caller gave it. The path is empty for a configuration without a file.
     pub file: String,
     pub text: String,
-    /// The places of the keys, as ranges of bytes.
+    /// The ranges of bytes in which the text sets the keys.
     locations: BTreeMap<String, Range<usize>>,
 }
 
 impl ConfigSource {
-    /// No key is located yet.
+    /// Returns the source without locations of keys.
     pub(super) fn new(file: &str, text: &str) -> Self {
         Self { file: file.to_owned(), text: text.to_owned(), locations: BTreeMap::new() }
     }
@@ -29,14 +29,14 @@ impl ConfigSource {
         self.locations.contains_key(key)
     }
 
-    /// Returns the line and the column at which the file sets `key`, if it does. Both are counted from 1, and columns count
-    /// characters.
+    /// Returns the line and the column at which the file sets `key`, or `None` for a key that the file does not set. Lines and
+    /// columns are counted from 1, and columns count characters.
     pub fn position(&self, key: &str) -> Option<(usize, usize)> {
         self.line_and_column(self.locations.get(key)?.start)
     }
 
-    /// Returns the range of bytes in the file that an error concerns, if the file sets the key. It is a part of the key's text,
-    /// if the file has this text in quotes and without escapes, or the whole value.
+    /// Returns the range of bytes in the file that `error` concerns, or `None` if the file does not set the key. The range is a
+    /// part of the key's text if the file has the text in quotes and without escapes, and otherwise the whole value.
     pub(super) fn span_of(&self, error: &ConfigError) -> Option<Range<usize>> {
         let whole = self.locations.get(&error.key)?.clone();
         let within = error.place.clone().and_then(|bytes| {

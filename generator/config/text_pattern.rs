@@ -1,38 +1,37 @@
-//! Patterns that texts in a configuration must match. Names, versions, licences and points have no quotes, backslashes, `$`, `[`,
-//! `{`, `<` or `&`, so a generated file can quote them without escapes.
+//! Defines patterns for texts in a configuration. All texts except formulas lack quotes, backslashes, `$`, `[`, `{`, `<` and `&`,
+//! so a generated file can quote them without escapes.
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TextPattern {
     /// A vendor: a letter, followed by letters, digits, `.`, `-` and `_`; 60 characters at most.
     Name,
-    /// Three numbers from 0 to 9999 without leading zeros, separated by dots: `0.1.0`.
+    /// Three numbers from 0 to 9999 without leading zeros, separated by dots, such as `0.1.0`.
     Version,
     /// An SPDX licence expression, such as `MIT OR Apache-2.0`. Only the characters are checked: at most 60 letters, digits,
     /// blanks, `.`, `-`, `+` and parentheses, beginning with a letter or an opening parenthesis.
     Licence,
-    /// A formula or a number, of 1 to 500 characters without control characters. The formula parser decides which other
-    /// characters a formula may have, because it can mark the wrong one in its message.
+    /// A formula or a number, of 1 to 500 characters without control characters.
     Formula,
     /// A remark in one line: 1 to 80 ASCII letters, digits, blanks and `.,:;()+-_%=/`, beginning with a letter.
     Remark,
     /// Samples as pairs `x,y x,y`, or an empty text. Only the characters and the length (at most 2^20 bytes) are checked. A
-    /// configuration file may state the path of a CSV file instead, which the reader replaces by its points.
+    /// configuration file may state the path of a CSV file instead, and the reader then takes the points from that file.
     Samples,
 }
 
-/// The limit of a formula, in characters.
+/// The largest length of a formula in characters.
 const LONGEST_FORMULA: usize = 500;
 
-/// The limit of samples, in bytes.
+/// The largest length of samples in bytes.
 const LONGEST_SAMPLES: usize = 1 << 20;
 
-/// The limit of a remark, in characters.
+/// The largest length of a remark in characters.
 const LONGEST_REMARK: usize = 80;
 
-/// The limit of a name or a licence, in bytes.
+/// The largest length of a name or a licence in bytes.
 const LONGEST: usize = 60;
 
-/// The most digits of each number in a version.
+/// The largest number of digits of each number in a version.
 const DIGITS: usize = 4;
 
 impl TextPattern {
@@ -66,8 +65,8 @@ impl TextPattern {
         }
     }
 
-    /// Returns a regular expression that both JavaScript and Rust understand. For `Samples`, it also matches the path of a file
-    /// with points, and states no largest length.
+    /// Returns a regular expression that both JavaScript and Rust understand. For `Samples`, the expression also matches the path
+    /// of a file with points, and does not limit the length.
     pub fn regex(self) -> &'static str {
         match self {
             TextPattern::Name => "^[A-Za-z][A-Za-z0-9._-]{0,59}$",
@@ -81,7 +80,7 @@ impl TextPattern {
         }
     }
 
-    /// Returns a description for messages.
+    /// Returns a description of the pattern for messages.
     pub fn text(self) -> &'static str {
         match self {
             TextPattern::Name => {
@@ -104,7 +103,8 @@ impl TextPattern {
     }
 }
 
-/// Returns whether a text is the path of a file with points: it ends, in small or capital letters, in .csv, .tsv, .txt or .dat.
+/// Returns whether `text` is the path of a file with points. Such a path ends, in small or capital letters, in .csv, .tsv, .txt
+/// or .dat.
 pub(super) fn is_path_of_points(text: &str) -> bool {
     let ending = text.rsplit_once('.').map(|(_, ending)| ending.to_ascii_lowercase());
     ending.is_some_and(|ending| ["csv", "tsv", "txt", "dat"].contains(&ending.as_str()))

@@ -1,5 +1,5 @@
-//! Finds the key that a user means by a name that no key has, for the remedy of the message. A name can be misspelt, be in the
-//! wrong table, or be another word for a key.
+//! Finds the key that a user means by a name that no key has, for the remedy in a message. The name can be misspelt, in the wrong
+//! table, or a different word for a key.
 
 use super::nearest::{listed, nearest};
 use super::other_words::{self, MeantSetting};
@@ -8,7 +8,6 @@ use super::shared::shared_keys;
 use super::write::tables;
 
 pub(super) struct UnknownName {
-    /// The remedy that the message tells the user.
     pub(super) remedy: String,
     /// The keys that the user may mean. Their intended values are unknown.
     pub(super) meant: Vec<&'static str>,
@@ -72,8 +71,8 @@ pub(super) fn suggestion(settings: &[MeantSetting]) -> String {
     format!("did you mean {}?", settings.join(" or "))
 }
 
-/// Returns the key in `table` whose last part is most similar to `leaf`, or else means the same. With an empty `table`, returns a
-/// key outside tables, or a table if `is_table`.
+/// Returns the key in `table` whose last part is most similar to `leaf`, or else has the same meaning. With an empty `table`,
+/// returns a key outside tables, or a table if `is_table`.
 fn similar(schema: &Schema, table: &str, leaf: &str, is_table: bool) -> Option<&'static str> {
     let in_table = || schema.all_keys().filter(|key| key.table_and_leaf().0 == table);
     if table.is_empty() && is_table {
@@ -81,7 +80,7 @@ fn similar(schema: &Schema, table: &str, leaf: &str, is_table: bool) -> Option<&
         return nearest(leaf, tables.filter(|table| !table.is_empty()));
     }
     let common = common_names().filter(|_| table.is_empty());
-    // A key that is itself a table has no last part.
+    // A key that is a table has no last part.
     let leaves = || in_table().map(|key| key.table_and_leaf().1).filter(|leaf| !leaf.is_empty());
     let meant =
         nearest(leaf, common.chain(leaves())).or_else(|| other_words::last_part(leaf, leaves()))?;
@@ -94,7 +93,7 @@ pub(super) fn common_names() -> impl Iterator<Item = &'static str> {
     super::COMMON.iter().map(|(name, _)| *name)
 }
 
-/// Returns a remedy. An empty `table` means the keys outside tables.
+/// Returns a remedy with the names of the keys in `table`. An empty `table` means the keys outside tables.
 pub(super) fn keys_of(schema: &Schema, table: &str) -> String {
     let mut keys: Vec<&str> = schema
         .all_keys()

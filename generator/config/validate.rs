@@ -1,5 +1,4 @@
-//! Checks ranges, the conditions under which keys apply, and the conditions of the device between keys, and builds a [`Config`]
-//! from valid values.
+//! Checks ranges and conditions of keys, and builds a [`Config`] from valid values.
 
 use std::collections::BTreeSet;
 
@@ -16,7 +15,7 @@ use super::values::{Config, Value, is_integer};
 use glint_base::config_error::ConfigError;
 
 impl Key {
-    /// Returns the mistakes of a value.
+    /// Returns all mistakes of `value`, such as an integer out of range. The result is empty if the key accepts `value`.
     pub(super) fn violations_of(&self, value: &Value) -> Vec<Violation> {
         let name = self.name;
         match (&self.kind, value) {
@@ -89,7 +88,7 @@ impl Key {
         violations.map(|violation| self.named_within(violation, within)).collect()
     }
 
-    /// Replaces the short name of a field by its full name `within`.
+    /// Replaces the short name of a field in the message by the full name `within`.
     pub(super) fn named_within(&self, mut violation: Violation, within: &str) -> Violation {
         let own = format!("`{}`", self.name);
         let message = violation.error.message.replacen(&own, &format!("`{within}`"), 1);
@@ -98,7 +97,7 @@ impl Key {
         violation
     }
 
-    /// `found` describes the value, for example `the integer 7`.
+    /// Returns the mistake of a value with a wrong type. `found` describes the value, for example `the integer 7`.
     pub(super) fn wrong_type(&self, found: &str) -> Violation {
         let wanted = match self.kind {
             KeyKind::Integer { .. } => "an integer",
@@ -115,7 +114,7 @@ impl Key {
         self.violation(format!("`{}` must be {wanted}, not {found}", self.name))
     }
 
-    /// The remedy names the values that the key accepts.
+    /// Returns a mistake with this message. The remedy names the values that the key accepts.
     pub(super) fn violation(&self, message: String) -> Violation {
         let remedy = format!("give {} (default {})", self.accepts(), self.default.toml());
         Violation { entry: None, error: ConfigError::new(self.name, message, remedy) }
@@ -143,7 +142,7 @@ impl Key {
         }
     }
 
-    /// Returns a description such as `an integer from 4 to 30`.
+    /// Returns a description of the accepted values, such as `an integer from 4 to 30`.
     pub fn accepts(&self) -> String {
         match &self.kind {
             KeyKind::Integer { min, max } => format!("an integer from {min} to {max}"),
@@ -189,7 +188,7 @@ impl Key {
     }
 
     /// Returns values that replace an unknown value in trials of the device's check: the default, and the ends of the range or
-    /// all options. For a list of integers, these ends are the shortest list of the smallest integer and the longest list of the
+    /// all options. For a list of integers, these are the shortest list of the smallest integer and the longest list of the
     /// largest integer. A text or a table has only its default.
     fn stand_ins(&self) -> Vec<Value> {
         let ends: Vec<Value> = match &self.kind {
@@ -225,7 +224,7 @@ impl Value {
     }
 }
 
-/// A configuration while its values are read.
+/// A configuration during the reading of its values.
 pub(super) struct Draft<'a> {
     /// A key has its default if the user gave no value, or a value that is not accepted.
     pub config: Config,
@@ -235,11 +234,11 @@ pub(super) struct Draft<'a> {
     pub doubtful: BTreeSet<&'a str>,
 }
 
-/// Checks the conditions of `only_when` and `unless`, the conditions between shared keys, and the device's own check. The first
-/// are reported only for a key that the user gave with another value than its default.
+/// Checks the conditions of `only_when` and `unless`, the conditions between shared keys, and the device's own check. An unmet
+/// `only_when` or `unless` is reported only if the user gave the key, with a value other than the default.
 ///
-/// A value that is not accepted is unknown. A condition is reported only if it fails for all trial values of the unknown keys.
-/// One mistake therefore raises no messages about other keys.
+/// A value that is not accepted is unknown. A problem of the device's check is reported only if the check finds it for all trial
+/// values of the unknown keys. One mistake therefore raises no messages about other keys.
 fn check(schema: &Schema, draft: &Draft, problems: &mut Problems) {
     for key in schema.all_keys() {
         let governors = chain(schema, key);
@@ -332,13 +331,13 @@ fn check(schema: &Schema, draft: &Draft, problems: &mut Problems) {
     problems.extend(found);
 }
 
-/// Begins a message about a key that the user did not give with its value, and says that this is the default.
+/// Begins a message about a key that the user did not give with the value, and says that the value is the default.
 pub(super) fn of_default(key: &Key, config: &Config, message: &str) -> String {
     let value = config.value(key.name).toml();
     format!("`{}` is not set and has the default {value}: {message}", key.name)
 }
 
-/// Returns the conditions on which it depends whether `key` applies, the key's own condition first.
+/// Returns the conditions that must hold so that `key` applies, the key's own condition first.
 fn chain(schema: &Schema, key: &Key) -> Vec<Condition> {
     let mut conditions = Vec::new();
     let mut condition = key.condition;
@@ -353,8 +352,8 @@ fn chain(schema: &Schema, key: &Key) -> Vec<Condition> {
     conditions
 }
 
-/// Returns configurations in which trial values replace each unknown value; each uses the next trial value of every such key.
-/// Without unknown values, the draft itself is the only one.
+/// Returns configurations in which trial values replace the unknown values. Each configuration uses the next trial value of every
+/// unknown key.
 fn trials(schema: &Schema, draft: &Draft) -> Vec<Config> {
     let stand_ins: Vec<(&str, Vec<Value>)> = schema
         .all_keys()
@@ -384,8 +383,8 @@ impl Config {
         }
     }
 
-    /// Returns the configuration with the given values, and adjusted defaults for all other keys. Fails with the problems,
-    /// without locations, that a file with these values would have.
+    /// Returns the configuration with the given values, and adjusted defaults for all other keys. Fails with the problems that a
+    /// file with these values would have, without locations.
     pub fn from_values(
         schema: &Schema,
         name: &str,
@@ -413,8 +412,7 @@ impl Config {
         draft.finish(schema, problems)
     }
 
-    /// Sets the keys that do not apply to their defaults: `output.registered` applies only to sequential cores, so a
-    /// configuration that has become a pipeline must not keep the value `true`.
+    /// Sets the keys that do not apply to their defaults. For example, `output.registered` applies only to sequential cores.
     pub fn reset_keys_without_effect(&mut self, schema: &Schema) {
         for key in schema.all_keys() {
             if !self.applies(schema, key.name) {
@@ -423,8 +421,8 @@ impl Config {
         }
     }
 
-    /// Returns whether the key has an effect, given the values of the other keys. Keys without a condition, and keys that the
-    /// schema does not have, do.
+    /// Returns whether the key has an effect, given the values of the other keys. Returns true for keys without a condition, and
+    /// for keys that the schema does not have.
     pub fn applies(&self, schema: &Schema, key: &str) -> bool {
         match schema.key(key).and_then(|key| key.condition) {
             None => true,
@@ -436,7 +434,7 @@ impl Config {
 }
 
 impl<'a> Draft<'a> {
-    /// All keys have their defaults, and no key counts as given.
+    /// Returns a draft in which all keys have their defaults, and no key counts as given.
     pub(super) fn new(schema: &Schema, name: &str) -> Self {
         Draft {
             config: Config::defaults(schema, name),
@@ -445,7 +443,7 @@ impl<'a> Draft<'a> {
         }
     }
 
-    /// Records that the user gave a key; `value` is `None` if the given value is not accepted.
+    /// Records that the user gave `key`. `value` is `None` if the given value is not accepted.
     pub(super) fn give(&mut self, key: &'a Key, value: Option<Value>) {
         self.given.insert(key.name);
         match value {
@@ -456,8 +454,8 @@ impl<'a> Draft<'a> {
         }
     }
 
-    /// Adjusts the defaults of keys that the user left out, and checks the conditions between keys. If a given value is unknown,
-    /// no default is adjusted. Fails with all problems, those in `problems` first.
+    /// Adjusts the defaults of keys that the user left out, and checks the conditions between keys. With an unknown value, no
+    /// default is adjusted. Fails with all problems, the problems in `problems` first.
     pub(super) fn finish(
         mut self,
         schema: &Schema,

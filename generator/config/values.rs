@@ -46,8 +46,8 @@ impl Value {
         }
     }
 
-    /// Returns the value in TOML syntax: like [`Value::bare`], but with quotes around a text that is no integer. `truncate`
-    /// becomes `"truncate"`, and `16` stays `16`.
+    /// Returns the value in TOML syntax. The text is the result of [`Value::bare`], with quotes around a text that is no integer.
+    /// For example, `truncate` becomes `"truncate"`, and `16` stays `16`.
     pub fn toml(&self) -> String {
         match self {
             Value::Text(text) if !is_integer(text) => format!("\"{text}\""),
@@ -65,22 +65,22 @@ pub struct TableEntry {
     pub fields: Vec<(&'static str, Value)>,
 }
 
-/// The entries have the order of the file.
+/// A table's entries, in the file's order.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TableEntries(pub Vec<TableEntry>);
 
 impl TableEntry {
-    /// For example, `TableEntry::new("x", &[("fraction", Value::Integer(15))])`.
+    /// Returns an entry with the name `name`. For example, `TableEntry::new("x", &[("fraction", Value::Integer(15))])`.
     pub fn new(name: &str, fields: &[(&'static str, Value)]) -> Self {
         Self { name: name.to_owned(), fields: fields.to_vec() }
     }
 
-    /// Returns the value of a field, if the user gave it.
+    /// Returns the value of the field `name`, or `None` if the user did not give the field.
     pub fn field(&self, name: &str) -> Option<&Value> {
         self.fields.iter().find(|(own, _)| *own == name).map(|(_, value)| value)
     }
 
-    /// Returns the text in a field, if the user gave one.
+    /// Returns the text in the field `name`, or `None` if the user gave no text.
     pub fn text(&self, name: &str) -> Option<&str> {
         match self.field(name)? {
             Value::Text(text) => Some(text),
@@ -88,7 +88,7 @@ impl TableEntry {
         }
     }
 
-    /// Returns the number of bits in a field, if the user gave an integer of 0 or more.
+    /// Returns the number of bits in the field `name`, or `None` if the user gave no integer of 0 or more.
     pub fn bits(&self, name: &str) -> Option<u32> {
         match self.field(name)? {
             Value::Integer(value) => u32::try_from(*value).ok(),
@@ -96,7 +96,8 @@ impl TableEntry {
         }
     }
 
-    /// Returns the number in a field, if the user gave a [`Value::Number`]; an integer is none.
+    /// Returns the number in the field `name`, or `None` if the user gave no [`Value::Number`]. An integer is not a
+    /// [`Value::Number`].
     pub fn number(&self, name: &str) -> Option<f64> {
         match self.field(name)? {
             Value::Number(value) => Some(*value),
@@ -104,7 +105,7 @@ impl TableEntry {
         }
     }
 
-    /// Returns whether the user gave the field as `true`.
+    /// Returns whether the user gave the field `name` as `true`.
     pub fn flag(&self, name: &str) -> bool {
         self.field(name) == Some(&Value::Flag(true))
     }
@@ -156,19 +157,19 @@ impl Serialize for TableEntry {
     }
 }
 
-/// The values of all keys of one device. A configuration that [`super::read()`], [`super::parse()`], [`super::sample()`] or
-/// [`Config::from_values`] returns is valid: every value is in the range of its key, and the device accepts the combination.
+/// The values of all keys of one device. [`super::read()`], [`super::parse()`], [`super::sample()`] and [`Config::from_values`]
+/// return valid configurations: every value is in the range of its key, and the device accepts the combination.
 /// [`Config::defaults`] and [`Config::set`] do not check this.
 ///
 /// In a valid configuration, keys that do not apply (see [`super::Key::condition`]) have their defaults.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Config {
-    /// The Verilog module and its files, a legal Verilog identifier.
+    /// The name of the Verilog module and of its files, a legal Verilog identifier.
     pub name: String,
     pub device: String,
     /// Whether Glint must refuse a configuration that violates the accuracy contract, instead of warning about it.
     pub strict: bool,
-    /// The values, in the order of the schema.
+    /// The values, in the schema's order.
     pub(super) values: Vec<(&'static str, Value)>,
 }
 
@@ -176,7 +177,7 @@ impl Config {
     /// Returns the value of a key for integers, or of a choice among integers.
     ///
     /// # Panics
-    /// Panics if the device has no such key, or if the key is of another type. The caller must know both.
+    /// Panics if the device has no such key, or if the key is of another type.
     pub fn integer(&self, key: &str) -> i64 {
         match self.value(key) {
             Value::Integer(value) => *value,
@@ -187,7 +188,7 @@ impl Config {
         }
     }
 
-    /// Panics as [`Config::integer`] does.
+    /// Returns the value of a key for numbers. Panics if the device has no such key, or a key of another type.
     pub fn number(&self, key: &str) -> f64 {
         match self.value(key) {
             Value::Number(value) => *value,
@@ -195,7 +196,7 @@ impl Config {
         }
     }
 
-    /// Panics as [`Config::integer`] does.
+    /// Returns a choice's word. Panics if the device has no such key, or a key of another type.
     pub fn choice(&self, key: &str) -> &str {
         match self.value(key) {
             Value::Text(value) => value,
@@ -203,7 +204,7 @@ impl Config {
         }
     }
 
-    /// Returns the text of a key for texts, or the word of a choice. Panics as [`Config::integer`] does.
+    /// Returns the text of a key for texts, or a choice's word. Panics if the device has no such key, or a key of another type.
     pub fn text(&self, key: &str) -> &str {
         match self.value(key) {
             Value::Text(value) => value,
@@ -211,7 +212,7 @@ impl Config {
         }
     }
 
-    /// Panics as [`Config::integer`] does.
+    /// Returns a flag's value. Panics if the device has no such key, or a key of another type.
     pub fn flag(&self, key: &str) -> bool {
         match self.value(key) {
             Value::Flag(value) => *value,
@@ -219,7 +220,7 @@ impl Config {
         }
     }
 
-    /// Panics as [`Config::integer`] does.
+    /// Returns the value of a key for lists. Panics if the device has no such key, or a key of another type.
     pub fn integers(&self, key: &str) -> &[i64] {
         match self.value(key) {
             Value::Integers(values) => values,
@@ -227,7 +228,7 @@ impl Config {
         }
     }
 
-    /// Returns the entries of a key for a table. Panics as [`Config::integer`] does.
+    /// Returns the entries of a key for a table. Panics if the device has no such key, or a key of another type.
     pub fn records(&self, key: &str) -> &TableEntries {
         match self.value(key) {
             Value::Table(records) => records,
@@ -248,8 +249,7 @@ impl Config {
         }
     }
 
-    /// Replaces the value of a key. The caller must make sure that the key accepts the value. Does nothing if the device has no
-    /// such key.
+    /// Replaces a key's value. The caller must ensure that the key accepts the value. Does nothing if the device has no such key.
     pub fn set(&mut self, key: &str, value: Value) {
         if let Some(slot) = self.values.iter_mut().find(|(name, _)| *name == key) {
             slot.1 = value;
@@ -261,7 +261,7 @@ impl Config {
     }
 }
 
-/// Returns whether a text is a 64-bit integer in its usual form: `7` is one, and `007` and `+7` are not.
+/// Returns whether `word` is a 64-bit integer in its usual form. For example, `7` is one, and `007` and `+7` are not.
 pub(super) fn is_integer(word: &str) -> bool {
     word.parse::<i64>().is_ok_and(|value| value.to_string() == word)
 }

@@ -1,26 +1,26 @@
-//! Writes configurations as TOML: files from which a user can start, and files that are read as the same configuration.
+//! Writes configurations as TOML, either as files from which a user can start, or as files that are read as the same
+//! configuration.
 
 use super::schema::{Key, KeyKind, Schema};
 use super::shared::shared_keys;
 use super::values::{Config, Value};
 
-/// Only a single longer word makes a longer comment line.
+/// The largest length of a comment line in bytes. Only a single longer word makes a longer line.
 const WIDTH: usize = 90;
 
-/// The remarks of [`brief`] begin in the same column.
+/// The column in which the remarks of [`brief`] begin.
 const REMARK_COLUMN: usize = 38;
 
-/// If the first clause of a description and the options of a choice are longer together, in bytes, the remark has only the
-/// options.
+/// The largest length of a remark in bytes. If a description's first clause and a choice's options are longer together, the
+/// remark has only the options.
 const REMARK_WIDTH: usize = 80;
 
 /// Returns the short file that `glint new` prints: one line with a remark for each key of the device, or for each entry of a
 /// table.
 ///
 /// The keys in `given`, `device`, `name` and `architecture` are set, and `strict` if it is true. All other keys are comments that
-/// show their values, so that a default still adjusts to the keys that a user sets (see [`super::parse()`]). Keys that do not
-/// apply, and the other keys that every device shares, are left out unless they are in `given`. `glint new DEVICE --all` prints
-/// the text of [`commented`].
+/// show their values, so a default still adjusts to the keys that a user sets (see [`super::parse()`]). Keys that do not apply
+/// and the shared keys are left out unless they are in `given`. `glint new DEVICE --all` prints the text of [`commented`].
 pub fn brief(schema: &Schema, config: &Config, given: &[String]) -> String {
     let mut text = String::new();
     for (key, value) in common(config) {
@@ -58,8 +58,8 @@ fn assignment(config: &Config, key: &str) -> String {
     format!("{key} = {}", config.value(key).toml())
 }
 
-/// Returns the lines that set a key under the name `name`. A table has one for each entry, such as `operands.x = { fraction = 15
-/// }`, and any other key has one. If `name` is empty, the lines are below the heading of the table.
+/// Returns the lines that set `key` under the name `name`. A table has one line for each entry, such as `operands.x = { fraction
+/// = 15 }`, and any other key has one line. An empty `name` is for lines below the table's heading.
 fn assignments(key: &Key, config: &Config, name: &str) -> Vec<String> {
     let value = config.value(key.name);
     if let (KeyKind::Table { shorthand, .. }, Value::Table(records)) = (&key.kind, value)
@@ -78,8 +78,8 @@ fn assignments(key: &Key, config: &Config, name: &str) -> Vec<String> {
     vec![format!("{name} = {}", value.toml())]
 }
 
-/// Returns the first clause of a key's description, and the options of a choice. If both are too long together, the remark is
-/// only the list of options.
+/// Returns the first clause of a key's description, and a choice's options. If clause and options are too long together, returns
+/// only the options.
 fn remark(key: &Key) -> String {
     let ends = [". ", ": ", "; "].map(|mark| key.doc.find(mark).unwrap_or(key.doc.len()));
     let end = ends.into_iter().min().unwrap_or(key.doc.len());
@@ -138,9 +138,8 @@ pub fn commented(schema: &Schema, config: &Config, given: &[String]) -> String {
 }
 
 impl Config {
-    /// Returns a TOML file that is read as the same configuration, with every key of the device that applies. A key with
-    /// [`Key::joined_later`](super::Key::joined_later), or a key that every device shares, is written only if it differs from its
-    /// default.
+    /// Returns a TOML file that is read as the same configuration, with every key of the device that applies. A shared key, or a
+    /// key with [`Key::joined_later`](super::Key::joined_later), is written only if it differs from its default.
     pub fn to_toml(&self, schema: &Schema) -> String {
         plain(schema, self)
     }
@@ -179,7 +178,7 @@ fn common(config: &Config) -> [(&'static str, String); 3] {
     ]
 }
 
-/// Returns the keys by table, in the order of the schema. The keys outside tables come first.
+/// Returns the keys by table, in the schema's order. The keys outside tables come first.
 pub(super) fn tables(schema: &Schema) -> Vec<(&'static str, Vec<&Key>)> {
     let mut tables: Vec<(&str, Vec<&Key>)> = vec![("", Vec::new())];
     for key in schema.all_keys() {
@@ -192,7 +191,7 @@ pub(super) fn tables(schema: &Schema) -> Vec<(&'static str, Vec<&Key>)> {
     tables
 }
 
-/// Returns a text as comment lines of at most [`WIDTH`] bytes; only a longer word makes a longer line.
+/// Returns `text` as comment lines of at most [`WIDTH`] bytes. Only a longer word makes a longer line.
 fn comment(text: &str) -> String {
     let mut lines = String::new();
     let mut line = String::from("#");
@@ -208,7 +207,7 @@ fn comment(text: &str) -> String {
     lines + &line + "\n"
 }
 
-/// Adds a capital letter at the start and a full stop at the end.
+/// Adds a capital letter at the start of `text`, and a full stop at the end.
 fn sentence(text: &str) -> String {
     let text = text.trim_end_matches('.');
     let mut letters = text.chars();

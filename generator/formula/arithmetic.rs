@@ -1,5 +1,4 @@
-//! Declares the interval arithmetic in which formulas are evaluated, for `f64`, which is fast, and for numbers of any
-//! precision.
+//! Declares the interval arithmetic in which formulas are evaluated: a fast one for `f64`, and one for numbers of any precision.
 
 use std::cmp::Ordering;
 
@@ -7,22 +6,22 @@ use super::{Enclosure, Function, Literal};
 
 /// Arithmetic on intervals. Every returned interval contains the exact result for all numbers in the operands' intervals.
 ///
-/// An `Err` has a message for the user about the part of the formula that is being computed. Sums, products, quotients, powers
-/// and functions of precise arithmetic fail if an exponent has too many bits.
+/// An `Err` has a message for the user about the computed part of the formula. Sums, products, quotients, powers and functions of
+/// precise arithmetic fail if an exponent has too many bits.
 pub(super) trait Arithmetic {
     /// An interval that contains one exact value.
     type Value: Clone;
 
     fn literal(&self, literal: &Literal) -> Self::Value;
 
-    /// Returns an interval for the constant π or e, which `name` names as [`super::Kind::Constant`] does. `below` is the
-    /// largest `f64` that is not above the constant.
+    /// Returns an interval for the constant π or e. `name` is the name in [`super::Kind::Constant`]. `below` is the largest `f64`
+    /// that is not above the constant.
     fn constant(&self, name: &str, below: f64) -> Self::Value;
 
     fn integer(&self, value: i64) -> Self::Value;
 
-    /// Converts the limits of a constant part, which were computed earlier in `f64`. Returns `None` if they are not precise
-    /// enough for this arithmetic; the part is then computed again.
+    /// Converts a constant part's limits, which were computed earlier in `f64`. Returns `None` if the limits are not precise
+    /// enough; the part is then computed again.
     fn folded(&self, constant: Enclosure) -> Option<Self::Value>;
 
     fn add(&self, a: &Self::Value, b: &Self::Value) -> Result<Self::Value, String>;
@@ -31,38 +30,39 @@ pub(super) trait Arithmetic {
 
     fn multiply(&self, a: &Self::Value, b: &Self::Value) -> Result<Self::Value, String>;
 
-    /// The caller must make sure that the interval `b` does not contain 0.
+    /// Returns the quotient. The caller must ensure that the interval `b` does not contain 0.
     fn divide(&self, a: &Self::Value, b: &Self::Value) -> Result<Self::Value, String>;
 
-    /// Returns the product of `exponent` factors `a`, at least 1.
+    /// Returns the product of `exponent` factors `a`. `exponent` must be at least 1.
     fn repeated_product(&self, a: &Self::Value, exponent: u32) -> Result<Self::Value, String>;
 
-    /// Returns a to the power of b. The caller must make sure that no number in the interval `a` is below 0.
+    /// Returns `a` to the power of `b`. The caller must ensure that no number in the interval `a` is below 0.
     fn power(&self, a: &Self::Value, b: &Self::Value) -> Result<Self::Value, String>;
 
-    /// Returns the values of `function` for `a`. The caller must make sure that the whole interval `a` is within the domain of
-    /// the function.
+    /// Returns the values of `function` for `a`. The caller must ensure that the whole interval `a` is within the function's
+    /// domain.
     fn function(&self, function: Function, a: &Self::Value) -> Result<Self::Value, String>;
 
     fn minimum(&self, a: &Self::Value, b: &Self::Value) -> Self::Value;
 
     fn maximum(&self, a: &Self::Value, b: &Self::Value) -> Self::Value;
 
-    /// Returns how the lower and the upper end of the interval compare with 0: `(Less, Greater)` contains 0.
+    /// Returns how the lower and the upper end of the interval compare with 0. For example, an interval with `(Less, Greater)`
+    /// contains 0.
     fn signs(&self, a: &Self::Value) -> (Ordering, Ordering);
 
-    /// Returns the greatest integer that is not above the value, if it is the same integer for the whole interval.
+    /// Returns the greatest integer that is not above the value, or `None` if it is not the same integer for the whole interval.
     fn floor(&self, a: &Self::Value) -> Option<Self::Value>;
 
-    /// Returns the integer that equals the value, unless the value may be no integer, or its absolute value is above
-    /// `largest`.
+    /// Returns the integer that equals the value. Returns `None` if the value may be no integer, or if its absolute value is
+    /// above `largest`.
     fn known_integer(&self, a: &Self::Value, largest: u32) -> Option<i64>;
 
-    /// Returns an interval that contains both `a` and `b`, for a value that is one of them if it is unknown which. Precise
-    /// arithmetic must decide, and fails with the message `what` instead.
+    /// Returns an interval that contains `a` and `b`, for a value that is either `a` or `b`. Precise arithmetic must know which,
+    /// and fails with the message `what`.
     fn either(&self, a: Self::Value, b: Self::Value, what: &str) -> Result<Self::Value, String>;
 
-    /// Rounds the ends outwards to `f64`.
+    /// Returns the interval with its ends rounded outwards to `f64`.
     fn enclosure(&self, a: &Self::Value) -> Enclosure;
 }
 

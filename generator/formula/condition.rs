@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::literal::Literal;
 use super::{Comparison, Expression, Function, Kind, Operator, TextSpan};
 
-/// A comparison, or two conditions, both or at least one of them true.
+/// A comparison, or two conditions that are joined by `and` or `or`.
 #[derive(Clone)]
 pub(super) enum JoinedCondition {
     Is(Comparison),
@@ -15,14 +15,15 @@ pub(super) enum JoinedCondition {
 }
 
 impl Comparison {
-    /// Returns the comparison that holds where this one does not: `x > y` gives `y >= x`.
+    /// Returns the comparison that holds exactly if this comparison does not. For example, `x > y` gives `y >= x`.
     #[must_use]
     pub fn negated(&self) -> Self {
         let Self { left, right, or_equal } = self.clone();
         Self { left: right, right: left, or_equal: !or_equal }
     }
 
-    /// Returns a comparison that holds where this one and `other` hold: `x > 0` and `y > 0` give `min(x, y) > 0`.
+    /// Returns a comparison that holds exactly if this comparison and `other` hold. For example, `x > 0` and `y > 0` give `min(x,
+    /// y) > 0`.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
         JoinedCondition::Both(
@@ -42,7 +43,7 @@ impl JoinedCondition {
         }
     }
 
-    /// Returns the formula that is `yes` where the condition holds, and `no` elsewhere. Its location is `span`.
+    /// Returns the formula that is `yes` if the condition holds, and otherwise `no`. The formula gets the location `span`.
     pub(super) fn choice(
         &self,
         yes: Arc<Expression>,
@@ -61,7 +62,8 @@ impl JoinedCondition {
         }
     }
 
-    /// Returns a single comparison that holds where the condition holds: `x > 0 and y > 0` gives `min(x, y) > 0`.
+    /// Returns a single comparison that holds exactly if the condition holds. For example, `x > 0 and y > 0` gives `min(x, y) >
+    /// 0`.
     pub(super) fn comparison(&self) -> Comparison {
         let (first, second, least) = match self {
             Self::Is(comparison) => return comparison.clone(),
@@ -75,7 +77,7 @@ impl JoinedCondition {
             let left = Arc::new(Expression::new(kind, first.left.span.clone()));
             return Comparison { left, right: zero, or_equal: first.or_equal };
         }
-        // A strict comparison decides where the other one does not.
+        // The strict comparison decides if the comparison with equality does not.
         let (strict, other) = if first.or_equal { (second, first) } else { (first, second) };
         let one = number(Literal::one(), &strict.left.span);
         let decided = match least {
@@ -94,7 +96,6 @@ impl JoinedCondition {
     }
 }
 
-/// Returns the left side minus the right side.
 fn difference(comparison: &Comparison) -> Arc<Expression> {
     let Comparison { left, right, .. } = comparison;
     let is_zero = right.rational().is_some_and(|value| value.is_zero());

@@ -1,17 +1,17 @@
-//! Interval arithmetic in `f64`: computes limits between which the exact value of a real number lies. Every rounding goes
+//! Computes with intervals of `f64`, the limits between which the exact value of a real number lies. Every rounding goes
 //! outwards. For the functions of `libm`, the limits rely on a relative error of at most 2^−50.
 
-/// The relative error that results of `libm` are assumed to have at most. The functions come from musl, which states errors
-/// below 1.5 units in the last place, and this margin is at least four units.
+/// The largest assumed relative error of results of `libm`. The functions come from musl, which states errors below 1.5 units in
+/// the last place, and this margin is at least four units.
 const MARGIN: f64 = 1.0 / (1u64 << 50) as f64;
 
-/// Below this size, a product loses low bits that its computed error cannot show.
+/// The absolute value below which a product loses low bits that its computed error cannot show.
 const SMALL: f64 = 1e-280;
 
 /// The largest `f64` that is not above π.
 const HALF_TURN: f64 = std::f64::consts::PI;
 
-/// An interval that contains a real number: π lies between two neighbouring `f64` numbers.
+/// An interval that contains a real number. For example, π lies between two neighbouring `f64` numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Enclosure {
     /// The lower limit.
@@ -21,12 +21,12 @@ pub struct Enclosure {
 }
 
 impl Enclosure {
-    /// Contains only `value`, for a number that is known exactly.
+    /// Returns the interval with only `value`, for a number that is known exactly.
     pub const fn exactly(value: f64) -> Self {
         Self { low: value, high: value }
     }
 
-    /// Contains `low` to `high`, both included. `low` must not be above `high`.
+    /// Returns the interval from `low` to `high`, both included. `low` must not be above `high`.
     pub const fn between(low: f64, high: f64) -> Self {
         Self { low, high }
     }
@@ -45,7 +45,7 @@ impl Enclosure {
         (self.low..=self.high).contains(&value)
     }
 
-    /// Returns the smallest interval that contains both: the hull of 0 to 1 and 3 to 4 is 0 to 4.
+    /// Returns the smallest interval that contains both intervals. For example, the hull of 0 to 1 and 3 to 4 is 0 to 4.
     #[must_use]
     pub fn hull(self, other: Self) -> Self {
         Self { low: self.low.min(other.low), high: self.high.max(other.high) }
@@ -60,8 +60,8 @@ impl Enclosure {
         Self { low: low - margin(low), high: high + margin(high) }
     }
 
-    /// Returns the hull of the results of `of` at the four combinations of the intervals' limits. It contains all results if
-    /// the function is monotone in each operand.
+    /// Returns the hull of the results of `of` at the four combinations of the intervals' limits. The hull contains all results
+    /// if the function is monotone in each operand.
     fn corners(self, other: Self, of: impl Fn(f64, f64) -> Self) -> Self {
         let first = of(self.low, other.low);
         if self.low == self.high && other.low == other.high {
@@ -72,46 +72,46 @@ impl Enclosure {
         a.hull(b).hull(c.hull(d))
     }
 
-    /// Limits the interval to the values that a function can have.
+    /// Limits the interval to the range from `least` to `most`, in which a function has all its values.
     fn within(self, least: f64, most: f64) -> Self {
         Self { low: self.low.clamp(least, most), high: self.high.clamp(least, most) }
     }
 
-    /// The function of `libm` never falls.
+    /// Returns the interval of a function of `libm` that never falls.
     pub(super) fn rising(self, function: fn(f64) -> f64) -> Self {
         let low = function(self.low);
         Self::near(low, if self.low == self.high { low } else { function(self.high) })
     }
 
-    /// The values of an exponential function are never below 0. If one is beyond the range of `f64`, the upper end is
-    /// infinity, and the lower end is at most the largest `f64`.
+    /// Returns the interval of an exponential function, never below 0.
     pub(super) fn exponential(self, function: fn(f64) -> f64) -> Self {
         let Self { low, high } = self.rising(function);
         Self { low: low.clamp(0.0, f64::MAX), high }
     }
 
-    /// The values of a logarithm are not negative for numbers of 1 or more, and not positive for numbers up to 1.
+    /// Returns a logarithm's interval, which is not negative for numbers of 1 or more, and not positive for numbers up to 1.
     pub(super) fn logarithm(self, function: fn(f64) -> f64) -> Self {
         let least = if self.low >= 1.0 { 0.0 } else { f64::NEG_INFINITY };
         let most = if self.high <= 1.0 { 0.0 } else { f64::INFINITY };
         self.rising(function).within(least, most)
     }
 
-    /// The function never falls, is odd, and is never beyond ±`largest`. Its values have the sign of the argument.
+    /// Returns the interval of an odd function that never falls and is never beyond ±`largest`. Its values have the argument's
+    /// sign.
     pub(super) fn odd_and_rising(self, function: fn(f64) -> f64, largest: f64) -> Self {
         let least = if self.low >= 0.0 { 0.0 } else { -largest };
         let most = if self.high <= 0.0 { 0.0 } else { largest };
         self.rising(function).within(least, most)
     }
 
-    /// Returns the interval of a sine. If the angle is certainly from 0 to π, or from −π to 0, the values have its sign.
+    /// Returns a sine's interval. If the angle is certainly from 0 to π, or from −π to 0, the sine has the angle's sign.
     pub(super) fn sine(self) -> Self {
         let least = if self.low >= 0.0 && self.high <= HALF_TURN { 0.0 } else { -1.0 };
         let most = if self.high <= 0.0 && self.low >= -HALF_TURN { 0.0 } else { 1.0 };
         self.wave(libm::sin).within(least, most)
     }
 
-    /// Returns the interval of a sine or a cosine, from the value in the middle: the slope is never steeper than 1.
+    /// Returns the interval of a sine or a cosine from its value in the middle, because the slope is never steeper than 1.
     pub(super) fn wave(self, function: fn(f64) -> f64) -> Self {
         let middle = self.middle();
         let reach = ((self.high - middle).max(middle - self.low)).next_up();
@@ -120,7 +120,7 @@ impl Enclosure {
         Self { low: (low - reach).next_down().max(-1.0), high: (high + reach).next_up().min(1.0) }
     }
 
-    /// The numbers must not be negative.
+    /// Returns the root's interval. The numbers must not be negative.
     pub(super) fn sqrt(self) -> Self {
         let root = |value: f64| {
             let root = value.sqrt();
@@ -150,7 +150,7 @@ impl Enclosure {
         Self { low: power(base.low).low, high: power(base.high).high }
     }
 
-    /// Returns the interval of a power, which `libm` computes. The base must not be negative.
+    /// Returns a power's interval, computed by `libm`. The base must not be negative.
     pub(super) fn power(self, exponent: Self) -> Self {
         self.corners(exponent, |base, exponent| {
             let power = libm::pow(base, exponent);
@@ -162,7 +162,7 @@ impl Enclosure {
     }
 }
 
-/// Returns the smallest interval of a number whose nearest `f64` is `value`. `error` must have the sign of the number minus
+/// Returns the smallest interval of a number, if `value` is the nearest `f64`. `error` must have the sign of the number minus
 /// `value`.
 fn directed(value: f64, error: f64) -> Enclosure {
     if value.abs() < SMALL && (value != 0.0 || error != 0.0) || !error.is_finite() {
@@ -220,7 +220,7 @@ impl std::ops::Mul for Enclosure {
 impl std::ops::Div for Enclosure {
     type Output = Self;
 
-    /// The interval of the divisor must not contain 0.
+    /// Returns the quotient. The divisor's interval must not contain 0.
     fn div(self, other: Self) -> Self {
         self.corners(other, |a, b| {
             if b.is_infinite() {

@@ -29,13 +29,14 @@ impl Expression {
     }
 
     /// Evaluates the formula for exact operands. The precision increases until all comparisons and jumps are decided, and the
-    /// `f64` limits of the result are at most two steps apart. With 1024 bits, it returns also wider limits.
+    /// `f64` limits of the result are at most two steps apart. After 1024 bits, the function also returns wider limits.
     ///
-    /// For example, `floor(x * 0.1)` is 3 for x = 30, although 0.1 is no `f64`. This is about a thousand times slower than
-    /// [`Expression::enclose`].
+    /// For example, `floor(x * 0.1)` is 3 for x = 30, although 0.1 is no `f64`. This function is about a thousand times slower
+    /// than [`Expression::enclose`].
     ///
     /// # Errors
-    /// Fails as [`Expression::enclose`] does, or if 1024 bits do not decide a comparison or a jump.
+    ///
+    /// Fails at a part without a value, see [`Expression::enclose`], or if 1024 bits do not decide a comparison or a jump.
     pub fn evaluate_exactly(&self, operands: &[(&str, RBig)]) -> Result<Enclosure, Fault> {
         let is_narrow = |precise: &Precise, value: &PreciseValue| {
             let Enclosure { low, high } = precise.enclosure(value);
@@ -45,12 +46,14 @@ impl Expression {
         Ok(precise.enclosure(&value))
     }
 
-    /// Returns the smallest integer that is not below the value times 2^`fraction`, and whether both are equal. `0.3` with two
-    /// fraction bits gives (2, false), and `log2(16)` with none gives (4, true). The formula must have no operands.
+    /// Returns the smallest integer that is not below the value times 2^`fraction`, and whether the two are equal. For example,
+    /// `0.3` with two fraction bits gives (2, false), and `log2(16)` without fraction bits gives (4, true). The formula must have
+    /// no operands.
     ///
     /// # Errors
-    /// Fails as [`Expression::evaluate_exactly`] does. Also fails if 1024 bits do not show whether the value is an integer, or
-    /// if the integer has more than 127 bits.
+    ///
+    /// Fails at a part without a value, see [`Expression::evaluate_exactly`]. Fails if 1024 bits do not show whether the value is
+    /// an integer, or if the integer has more than 127 bits.
     pub fn ceiling(&self, fraction: u32) -> Result<(i128, bool), Fault> {
         let (precise, value) =
             self.decided(&[], |precise, value| precise.ceiling(value, fraction).is_some())?;
@@ -61,8 +64,8 @@ impl Expression {
         })
     }
 
-    /// Returns the value of a formula without operands, if it is known to be rational: `log2(16)` gives 4, and `sqrt(2)` gives
-    /// `None`.
+    /// Returns the value of a formula without operands, or `None` if the value is not known to be rational. For example,
+    /// `log2(16)` gives 4, and `sqrt(2)` gives `None`.
     pub fn rational(&self) -> Option<RBig> {
         let (_, value) = self.decided(&[], |_, _| true).ok()?;
         value.rational().cloned()
@@ -99,13 +102,13 @@ impl Expression {
     }
 }
 
-/// A formula with fewer parts is evaluated without a look at the parts that were evaluated before, which is faster.
+/// The number of parts below which a part is evaluated without a search in the known values, because that is faster.
 pub(super) const FEW_PARTS: u32 = 200;
 
 struct Evaluation<'e, A: Arithmetic> {
     arithmetic: &'e A,
     operands: &'e [(&'e str, A::Value)],
-    /// The values of parts with at least [`FEW_PARTS`] parts of their own, so that no shared part is evaluated twice.
+    /// The values of parts with at least [`FEW_PARTS`] parts of their own, so no shared part is evaluated twice.
     known: HashMap<*const Expression, A::Value>,
 }
 
@@ -173,8 +176,8 @@ impl<A: Arithmetic> Evaluation<'_, A> {
 }
 
 impl Comparison {
-    /// Returns whether the comparison holds for all operands within the given intervals, or `None` if they do not decide it.
-    /// For x from 0 to 1, `x < 2` holds, and `x < 0.5` is undecided. Fails as [`Expression::enclose`] does.
+    /// Returns whether the comparison holds for all operands within the given intervals, or `None` if the intervals do not decide
+    /// it. For x from 0 to 1, `x < 2` holds, and `x < 0.5` is undecided. Fails if a side may have no value.
     pub fn holds(&self, operands: &[(&str, Enclosure)]) -> Result<Option<bool>, Fault> {
         let left = self.left.enclose(operands)?;
         let right = self.right.enclose(operands)?;
@@ -182,8 +185,8 @@ impl Comparison {
         self.decided(&Double, &left, &right).map_err(fault)
     }
 
-    /// Returns whether the comparison holds for the intervals of both sides; `None` if they do not decide it. Fails if the
-    /// difference of both sides cannot be computed.
+    /// Returns whether the comparison holds for the intervals `left` and `right`, or `None` if they do not decide it. Fails if
+    /// the difference of the two sides cannot be computed.
     pub(super) fn decided<A: Arithmetic>(
         &self,
         arithmetic: &A,
@@ -202,8 +205,8 @@ impl Comparison {
     }
 }
 
-/// Returns the values of a function for numbers in the interval `a`. Fails if they may be outside the function's domain, for
-/// example a root of a negative number.
+/// Returns the values of a function for numbers in the interval `a`. Fails if the numbers may be outside the function's domain,
+/// for example a root of a negative number.
 pub(super) fn unary<A: Arithmetic>(
     arithmetic: &A,
     function: Function,
@@ -235,7 +238,7 @@ pub(super) fn unary<A: Arithmetic>(
     arithmetic.function(function, a)
 }
 
-/// Returns the values of `operator` for numbers in the intervals `a` and `b`. Fails if they may be outside the domain, for
+/// Returns the values of `operator` for numbers in the intervals `a` and `b`. Fails if the numbers may be outside the domain, for
 /// example a division by an interval that contains 0.
 pub(super) fn binary<A: Arithmetic>(
     arithmetic: &A,
@@ -259,8 +262,8 @@ pub(super) fn binary<A: Arithmetic>(
     }
 }
 
-/// Computes the remainder of a division, from 0 to below the divisor, or above it for a negative divisor: the remainder of −1
-/// by 4 is 3. Fails if the divisor may be 0, or if precise arithmetic does not decide the integer quotient.
+/// Computes the remainder of a division, from 0 to below the divisor, or above it for a negative divisor. For example, the
+/// remainder of −1 by 4 is 3. Fails if the divisor may be 0, or if precise arithmetic does not decide the integer quotient.
 fn remainder<A: Arithmetic>(
     arithmetic: &A,
     a: &A::Value,
@@ -299,10 +302,11 @@ fn power<A: Arithmetic>(arithmetic: &A, a: &A::Value, b: &A::Value) -> Result<A:
     arithmetic.power(a, b)
 }
 
-/// Computes the direction of the point (x, y), an angle from −π to π: (0, 1) has π/2. Fails for the origin.
+/// Computes the direction of the point (x, y), an angle from −π to π. For example, (0, 1) has π/2. Fails for the origin.
 ///
-/// The function uses a formula whose divisor is certainly not 0. Right of the y axis, this is `atan(y / x)`, and left of it the
-/// same plus or minus half a turn. Above or below the x axis, it is plus or minus a quarter turn, minus `atan(x / y)`.
+/// The function chooses a formula whose divisor is certainly not 0. Right of the y axis, the direction is `atan(y / x)`. Above
+/// the x axis it is `π/2 - atan(x / y)`, and below it `-π/2 - atan(x / y)`. Otherwise, left of the y axis, it is `atan(y / x)`
+/// plus or minus π.
 fn direction<A: Arithmetic>(
     arithmetic: &A,
     y: &A::Value,
@@ -341,7 +345,7 @@ fn holds_zero<A: Arithmetic>(arithmetic: &A, a: &A::Value) -> bool {
     low != Ordering::Greater && high != Ordering::Less
 }
 
-/// Returns a number as text, or the two limits between which it lies.
+/// Returns a number as text, or the two limits of a wide interval.
 fn words(a: Enclosure) -> String {
     let middle = a.middle();
     if (a.high - a.low).abs() <= middle.abs() * 1e-12 {
@@ -351,7 +355,7 @@ fn words(a: Enclosure) -> String {
     }
 }
 
-/// Writes a very large or very small number with a power of ten.
+/// Formats a number, a very large or very small one with a power of ten.
 fn digits(value: f64) -> String {
     let is_moderate = value == 0.0 || (1e-6..1e9).contains(&value.abs());
     if is_moderate { format!("{value}") } else { format!("{value:e}") }

@@ -1,8 +1,8 @@
 //! Computes formulas without rounding if their values are rational numbers, multiples of π, or logarithms of rational numbers.
 //!
-//! For example, `0.1 * 10` is 1, `16 ^ (1 / 2)` is 4, and `sin(pi * 0.5)` is 1. Intervals alone cannot decide on which side of a
-//! jump a value counts if it lies exactly on the jump. An interval around `0.1 * 10` also contains values below 1, with the floor
-//! 0. The exact value decides it.
+//! For example, `0.1 * 10` is 1, `16 ^ (1 / 2)` is 4, and `sin(pi * 0.5)` is 1. Intervals cannot decide about a value that lies
+//! exactly on a jump. An interval around `0.1 * 10` also contains values below 1, with a floor of 0. The exact value decides the
+//! floor.
 
 use dashu_base::{Abs, BitTest, Signed, SquareRootRem};
 use dashu_int::{IBig, UBig};
@@ -10,10 +10,10 @@ use dashu_ratio::RBig;
 
 use super::{Function, Operator};
 
-/// The most bits of numerator and denominator together. A larger value is treated as not exactly known.
+/// The largest number of bits of numerator and denominator together. A larger value is treated as not exactly known.
 const MOST_BITS: usize = 1 << 14;
 
-/// If a logarithm is divided by another logarithm, only exponents below this number are tried.
+/// The limit of the exponents that are tried for the quotient of two logarithms.
 const LARGEST_LOGARITHM: usize = 1100;
 
 #[derive(Clone, Debug, PartialEq)]
@@ -36,7 +36,7 @@ impl Exact {
         matches!(self, Rational(value) if value.is_zero())
     }
 
-    /// Returns `None` if the number has more than [`MOST_BITS`] bits.
+    /// Returns the exact number, or `None` if it has more than [`MOST_BITS`] bits.
     fn rational(value: RBig) -> Option<Self> {
         let bits = value.numerator().bit_len() + value.denominator().bit_len();
         (bits <= MOST_BITS).then_some(Rational(value))
@@ -46,8 +46,8 @@ impl Exact {
         if factor.is_zero() { Rational(factor) } else { TimesPi(factor) }
     }
 
-    /// Returns the exact value of a function, if it is known. The sine, cosine and tangent are exact only at rational multiples
-    /// of π where they are rational (Niven's theorem).
+    /// Returns the exact value of a function, or `None` if it is not known. The sine, cosine and tangent are exact only at
+    /// rational multiples of π where they are rational (Niven's theorem).
     pub(super) fn function(&self, function: Function) -> Option<Self> {
         match (function, self) {
             (Function::Negate, Rational(a)) => Some(Rational(-a.clone())),
@@ -77,7 +77,7 @@ impl Exact {
         }
     }
 
-    /// Returns the rational factor of π, if there is one; 0 for the number 0.
+    /// Returns the rational factor of π, which is 0 for the number 0. Returns `None` for a number that is no such multiple.
     fn turns(&self) -> Option<RBig> {
         match self {
             TimesPi(a) => Some(a.clone()),
@@ -86,7 +86,7 @@ impl Exact {
         }
     }
 
-    /// Returns the exact value of a function of two numbers, if it is known.
+    /// Returns the exact value of a function of two numbers, or `None` if it is not known.
     pub(super) fn operator(operator: Operator, a: &Self, b: &Self) -> Option<Self> {
         match operator {
             Operator::Add => a.add(b),
@@ -162,8 +162,8 @@ impl Exact {
     }
 }
 
-/// Returns the root of a number if it is rational: the root of degree 3 of 8/27 is 2/3. A negative number has a root only if
-/// `degree` is 1. A degree above [`MOST_BITS`] gives `None` too.
+/// Returns the root of `value`, or `None` if it is not rational. For example, the root of degree 3 of 8/27 is 2/3. A negative
+/// number has a root only for a `degree` of 1. A degree above [`MOST_BITS`] also gives `None`.
 fn root(value: &RBig, degree: usize) -> Option<RBig> {
     if degree == 1 {
         return Some(value.clone());
@@ -184,8 +184,8 @@ fn root(value: &RBig, degree: usize) -> Option<RBig> {
     Some(RBig::from_parts(IBig::from(numerator), denominator))
 }
 
-/// Returns the integer k from −1099 to 1099 with baseᵏ = value, if there is one: −3 for the value 1/8 and the base 2. Both
-/// numbers must be above 0; a base of 1 gives `None`.
+/// Returns the integer k from −1099 to 1099 with baseᵏ = value, or `None` without such an integer. For example, the value 1/8 and
+/// the base 2 give −3. Both numbers must be above 0.
 fn logarithm(value: &RBig, base: &RBig) -> Option<isize> {
     if base.is_one() {
         return None;
@@ -206,7 +206,7 @@ fn logarithm(value: &RBig, base: &RBig) -> Option<isize> {
     None
 }
 
-/// Returns the sine of `turns` · π if it is 0, ±1/2 or ±1.
+/// Returns the sine of `turns` · π, or `None` if it is not 0, ±1/2 or ±1.
 fn sine(turns: &RBig) -> Option<Exact> {
     // The angle in sixths of π, modulo a whole turn.
     let sixths = turns * RBig::from(6);
@@ -225,7 +225,7 @@ fn sine(turns: &RBig) -> Option<Exact> {
     Some(Rational(RBig::from(doubled) / RBig::from(2)))
 }
 
-/// Returns the tangent of `turns` · π if it is 0 or ±1.
+/// Returns the tangent of `turns` · π, or `None` if it is not 0 or ±1.
 fn tangent(turns: &RBig) -> Option<Exact> {
     let fourths = turns * RBig::from(4);
     if !fourths.is_int() {

@@ -1,4 +1,4 @@
-//! The functions of numbers that a formula may call, by name.
+//! Lists the functions of numbers that a formula may call, by name.
 
 use super::highlights::{HIGHLIGHTS, HIGHLIGHTS_WITH_POWER};
 use super::list;
@@ -22,7 +22,7 @@ pub const FUNCTIONS: [(&str, Function); 13] = [
     ("erf", Function::Erf),
 ];
 
-/// Functions of one number u that are combinations of other functions: in `cosh(2 * x)`, `2 * x` replaces u.
+/// Functions of one number u that are combinations of other functions. For example, `2 * x` replaces u in `cosh(2 * x)`.
 const DEFINED: [(&str, &str); 26] = [
     ("reciprocal", "1 / u"),
     ("rsqrt", "1 / sqrt(u)"),
@@ -66,8 +66,7 @@ pub(super) const FUNCTIONS_OF_TWO: [(&str, Operator); 4] = [
 const DEFINED_OF_TWO: [(&str, &str); 3] =
     [("hypot", "sqrt(u^2 + v^2)"), ("mod", "u % v"), ("step", "if(v < u, 0, 1)")];
 
-/// Functions of three numbers u, v and w that are combinations of other functions, as in shading languages. The value of
-/// `smoothstep` is 0 for w ≤ u, 1 for w ≥ v, and rises smoothly between the two.
+/// Functions of three numbers u, v and w that are combinations of other functions, as in shading languages.
 const DEFINED_OF_THREE: [(&str, &str); 4] = [
     ("clamp", "min(max(u, v), w)"),
     ("mix", "u + (v - u) * w"),
@@ -78,7 +77,7 @@ const DEFINED_OF_THREE: [(&str, &str); 4] = [
     ),
 ];
 
-/// The functions of two numbers that also take more.
+/// The functions of two numbers that also take more numbers.
 pub(super) const FUNCTIONS_OF_MANY: [&str; 3] = ["min", "max", "hypot"];
 
 /// Functions that a formula cannot call, each with a formula to write instead.
@@ -100,7 +99,7 @@ const INSTEAD: [(&str, &str); 15] = [
     ("logistic", "sigmoid(x)"),
 ];
 
-/// Returns the least number of arguments of a function of numbers. Returns `None` if there is no such function.
+/// Returns the least number of arguments of a function of numbers, or `None` for an unknown `name`.
 pub(super) fn arguments_of(name: &str) -> Option<usize> {
     if named(&FUNCTIONS, name).is_some() {
         return Some(1);
@@ -111,7 +110,8 @@ pub(super) fn arguments_of(name: &str) -> Option<usize> {
     definition_of(name).map(|(count, _)| count)
 }
 
-/// Returns the number of arguments of a function that is a combination of others, and its formula. Returns `None` for another function.
+/// Returns the number of arguments of a function that is a combination of other functions, and its formula. Returns `None` for
+/// any other function.
 pub(super) fn definition_of(name: &str) -> Option<(usize, &'static str)> {
     let tables: [(usize, &[(&str, &'static str)]); 5] = [
         (1, &DEFINED),
@@ -123,7 +123,7 @@ pub(super) fn definition_of(name: &str) -> Option<(usize, &'static str)> {
     tables.into_iter().find_map(|(count, table)| Some((count, named(table, name)?)))
 }
 
-/// Returns the entry of a table with the given name.
+/// Returns the entry of a table with the given name, or `None` for an unknown name.
 pub(super) fn named<T: Copy>(table: &[(&str, T)], name: &str) -> Option<T> {
     table.iter().find(|(own, _)| *own == name).map(|(_, entry)| *entry)
 }

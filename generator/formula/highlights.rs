@@ -1,5 +1,5 @@
-//! The highlights that a formula may call, by the names of the devices that compute them. `u` is the cosine of the angle γ, and `v` is the
-//! exponent. On a surface that faces away, where u ≤ 0, each is 0.
+//! Lists the highlights that a formula may call, by the names of the devices that compute them. `u` is the cosine of the angle γ,
+//! and `v` is the exponent. On a surface that faces away, where u ≤ 0, each highlight is 0.
 
 /// The highlights of the cosine and the exponent.
 pub(super) const HIGHLIGHTS: [(&str, &str); 3] = [

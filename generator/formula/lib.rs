@@ -3,7 +3,7 @@
 //!
 //! The formulas come from configurations and from accuracy contracts, such as `max(x, 0) if x > 1 else 2 ** -x`. An evaluation
 //! gives an interval that contains the exact value, or fails if there is no value. Each node of a tree knows its range of bytes
-//! in the text, so that a message can point at a mistake.
+//! in the text, for messages about mistakes.
 
 mod arithmetic;
 mod condition;
@@ -37,30 +37,29 @@ pub use parse::{
 };
 pub use print::CArithmetic;
 
-/// A formula, or a part of one, as a tree. Two formulas are equal if their kinds are equal, even at different locations.
+/// A formula, or a part of a formula, as a tree. Two formulas are equal if their kinds are equal, even at different locations.
 ///
-/// Several operations may read the same part: with `p = x + 1`, both factors of `p * p` are one part. Methods visit such a part
-/// only once, so that their cost grows with the number of different parts.
+/// Several operations may read the same part. For example, with `p = x + 1`, both factors of `p * p` are one part. Methods visit
+/// such a part only once, so their cost grows with the number of different parts.
 #[derive(Clone)]
 pub struct Expression {
-    /// The root of the tree: of `1 / x` a division.
+    /// The root of the tree, for example a division for `1 / x`.
     pub kind: Kind,
-    /// The location in the text from which this part was parsed; empty if it comes from no text.
+    /// The location in the text from which this part was parsed. The location is empty if the part comes from no text.
     pub span: TextSpan,
-    /// The hash is equal for equal formulas, and nearly always different for different ones.
+    /// The hash, which is equal for equal formulas, and nearly always different for different ones.
     hash: u64,
-    /// The number of parts, where a part that several operations read counts once for each. At most `u32::MAX`.
+    /// The number of parts, at most `u32::MAX`. A part that several operations read counts once for each of them.
     size: u32,
-    /// Whether the formula reads an operand.
     varies: bool,
-    /// The value, if the part contains no operand and no word of a ROM, and has a value. It is computed only once, because
-    /// formulas are evaluated at millions of operands.
+    /// The value of a part without operands and words of ROMs, or `None` without a value. The value is computed only once,
+    /// because formulas are evaluated at millions of operands.
     constant: Option<Enclosure>,
 }
 
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct TextSpan {
-    /// The number of the text, 0 for the formula itself. A caller that puts formulas together numbers the other texts.
+    /// The number of the text, which is 0 for the formula itself. A caller that combines formulas numbers the other texts.
     pub text: usize,
     /// The range of bytes in this text.
     pub bytes: Range<usize>,
@@ -80,17 +79,17 @@ pub enum Kind {
     Constant(&'static str, f64),
     /// An operand, whose value is a real number, not a raw integer.
     Operand(String),
-    /// A word of a ROM as a real number: the name of the ROM, and the index of the word.
+    /// A word of a ROM as a real number: the name of the ROM, and the word's index.
     Word(String, Arc<Expression>),
     /// A function of one number.
     Unary(Function, Arc<Expression>),
     /// A function of two numbers.
     Binary(Operator, Arc<Expression>, Arc<Expression>),
-    /// The first formula if the comparison holds, otherwise the second.
+    /// The first formula if the comparison holds, and otherwise the second.
     If(Comparison, Arc<Expression>, Arc<Expression>),
 }
 
-/// Whether the left number is larger than the right one.
+/// A comparison that holds if the left number is larger than the right one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
     pub left: Arc<Expression>,
@@ -126,12 +125,12 @@ pub enum Operator {
     Sub,
     Mul,
     Div,
-    /// The remainder, which lies between 0 and the second number: −1 and 4 give 3.
+    /// The remainder, which lies between 0 and the second number. For example, −1 and 4 give 3.
     Mod,
     Power,
     Min,
     Max,
-    /// The direction of a point as an angle from −π to π. The first number is the y coordinate, the second the x coordinate.
+    /// A point's direction as an angle from −π to π. The first number is the y coordinate, the second the x coordinate.
     Atan2,
 }
 
@@ -156,7 +155,7 @@ impl Fault {
         Self { span: span.into(), message: message.into() }
     }
 
-    /// Returns the text on one line, and on the next line carets under the mistake and the message.
+    /// Returns `text` on one line, and carets under the mistake with the message on the next line.
     pub fn under(&self, text: &str) -> String {
         let count = |range: Range<usize>| text.get(range).map_or(0, |it| it.chars().count());
         let bytes = self.span.bytes.clone();
@@ -166,7 +165,7 @@ impl Fault {
     }
 }
 
-/// Writes out a formula of few parts in Python. A formula of many parts, which may be shared, is represented by its hash.
+/// Prints a formula of few parts in Python. A formula of many parts, which may be shared, prints its hash.
 impl fmt::Debug for Expression {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         const MOST_PARTS: u32 = 1000;
@@ -189,12 +188,12 @@ impl Expression {
         Self::new(Kind::Operand(name.to_owned()), 0..0)
     }
 
-    /// Returns the formula with the location `span` of the text that it was written at.
+    /// Returns the formula with the location `span` in the text.
     pub fn at(self, span: impl Into<TextSpan>) -> Self {
         Self { span: span.into(), ..self }
     }
 
-    /// Makes a formula that was parsed from the location `span` of a text, and computes the value of a constant one.
+    /// Makes a formula that was parsed from the location `span` of a text. The value of a constant formula is computed at once.
     pub fn new(kind: Kind, span: impl Into<TextSpan>) -> Self {
         let varies = matches!(kind, Kind::Operand(_));
         let mut formula =
@@ -216,8 +215,8 @@ impl Expression {
         formula
     }
 
-    /// Returns the number of parts as a text would state them: a part that several operations read counts once for each. The
-    /// result is at most `u32::MAX`. `x * x + 1` has five parts.
+    /// Returns the number of parts as a text would state them. A part that several operations read counts once for each of them.
+    /// For example, `x * x + 1` has five parts.
     pub fn size(&self) -> u32 {
         self.size
     }
@@ -237,7 +236,7 @@ impl Expression {
         }
     }
 
-    /// Calls `visit` once for every part and then for the formula itself, each part before the operations that use it.
+    /// Calls `visit` once for every part, including the formula itself. Each part comes before the operations that use it.
     pub fn walk<'f>(&'f self, visit: &mut dyn FnMut(&'f Self)) {
         self.walk_unseen(&mut HashSet::new(), visit);
     }
@@ -252,8 +251,9 @@ impl Expression {
         visit(self);
     }
 
-    /// Returns the `f64` from which a decimal of 17 or more significant digits was printed, with its sign, if the formula is one.
-    /// For example, NumPy's `savetxt` prints 1 − 2^−20 as `9.999990463256835938e-01`, the nearest decimal of 19 digits.
+    /// Returns the `f64`, with its sign, from which a decimal of 17 or more significant digits was printed. Returns `None` if the
+    /// formula is no such decimal. For example, NumPy's `savetxt` prints 1 − 2^−20 as `9.999990463256835938e-01`, the nearest
+    /// decimal of 19 digits.
     pub fn printed_double(&self) -> Option<f64> {
         match &self.kind {
             Kind::Number(literal) if literal.significant_digits() >= 17 => Some(literal.nearest()),
@@ -262,14 +262,14 @@ impl Expression {
         }
     }
 
-    /// Returns the number of different parts for which `is` returns true, among them the formula itself.
+    /// Returns the number of different parts, including the formula itself, for which `is` returns true.
     pub fn count(&self, is: &dyn Fn(&Self) -> bool) -> usize {
         let mut count = 0;
         self.walk(&mut |part| count += usize::from(is(part)));
         count
     }
 
-    /// Returns the formula unchanged. Fails at the first operand other than `operand`, or word of a ROM.
+    /// Returns the formula unchanged. Fails at the first operand other than `operand`, or at the first word of a ROM.
     pub fn of_operand(self, operand: &str) -> Result<Self, Fault> {
         let mut fault = None;
         self.walk(&mut |part| {
@@ -283,7 +283,8 @@ impl Expression {
         fault.map_or(Ok(self), Err)
     }
 
-    /// Returns the names of the operands, each once, in the order in which they first occur: `y / (x + y)` gives y and x.
+    /// Returns the names of the operands, each once, in the order in which they first occur. For example, `y / (x + y)` gives y
+    /// and x.
     pub fn operands(&self) -> Vec<&str> {
         let mut names: Vec<&str> = Vec::new();
         self.walk(&mut |part| {
@@ -311,7 +312,7 @@ impl Expression {
         Arc::unwrap_or_clone(Rewriting::new(&replaced, &span).of(self))
     }
 
-    /// Moves all parts to text number `text`, at the same ranges of bytes.
+    /// Moves all parts to the text with the number `text`, at the same ranges of bytes.
     pub fn in_text(&self, text: usize) -> Self {
         let span = |part: &Self| TextSpan { text, bytes: part.span.bytes.clone() };
         Arc::unwrap_or_clone(Rewriting::new(&|_| None, &span).of(self))
@@ -328,7 +329,7 @@ impl Expression {
 
 /// Replaces parts of a formula. A part that several operations share stays shared.
 struct Rewriting<'r> {
-    /// Returns the formula that replaces a part; `None` if the part stays and only its own parts are rewritten.
+    /// Returns the formula that replaces a part, or `None` if only the parts of the part are rewritten.
     replaced: &'r dyn Fn(&Expression) -> Option<Arc<Expression>>,
     /// Returns the location of a part that is not replaced.
     span: &'r dyn Fn(&Expression) -> TextSpan,
@@ -361,7 +362,7 @@ impl<'r> Rewriting<'r> {
 }
 
 impl Kind {
-    /// Adds everything that distinguishes this kind from others to a hash, except for the formulas below it.
+    /// Adds the root's kind to a hash, without the formulas below it.
     fn hash_root(&self, hasher: &mut DefaultHasher) {
         mem::discriminant(self).hash(hasher);
         match self {
@@ -374,7 +375,7 @@ impl Kind {
         }
     }
 
-    /// Replaces the direct parts by `new`.
+    /// Returns the kind with each direct part replaced by the result of `new`.
     fn with_parts(&self, new: &mut dyn FnMut(&Expression) -> Arc<Expression>) -> Self {
         match self {
             Self::Word(rom, at) => Self::Word(rom.clone(), new(at)),

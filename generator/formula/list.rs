@@ -1,17 +1,18 @@
-//! Lists of numbers in formulas, such as the coordinates of a vector.
+//! Defines lists of numbers in formulas, such as a vector's coordinates.
 //!
-//! A list exists only while a text is parsed. An operator on lists becomes an operator on each pair of elements, and a function such as
-//! `dot(a, b)` becomes a formula of the elements: `a_0 * b_0 + a_1 * b_1`. The parsed formulas have numbers alone.
+//! A list exists only while a text is parsed. An operator on lists becomes an operator on each pair of elements. A function such
+//! as `dot(a, b)` becomes a formula of the elements, such as `a_0 * b_0 + a_1 * b_1`. The parsed formulas contain only numbers.
 
 use std::ops::Range;
 use std::sync::Arc;
 
 use super::{Expression, Fault, Function, Kind, Literal, Operator, TextSpan};
 
-/// The most elements of a list.
+/// The largest number of elements of a list.
 pub const LONGEST_LIST: usize = 16;
 
-/// The functions that read a whole list, with their numbers of arguments. `min`, `max` and `hypot` of a single list belong to them, too.
+/// The functions that read a whole list, with their numbers of arguments. `min`, `max` and `hypot` are included, because they
+/// also take a single list.
 const LIST_FUNCTIONS: [(&str, usize); 13] = [
     ("sum", 1),
     ("mean", 1),
@@ -28,7 +29,6 @@ const LIST_FUNCTIONS: [(&str, usize); 13] = [
     ("distance", 2),
 ];
 
-/// The names of the functions that only lists have.
 pub(super) fn names_of_list_functions() -> impl Iterator<Item = &'static str> {
     LIST_FUNCTIONS.into_iter().map(|(name, _)| name).filter(|name| !is_also_of_numbers(name))
 }
@@ -37,7 +37,7 @@ fn is_also_of_numbers(name: &str) -> bool {
     matches!(name, "min" | "max" | "hypot")
 }
 
-/// Returns the number of arguments of a function that only lists have. Returns `None` for another function.
+/// Returns the number of arguments of a function that reads only lists, or `None` for any other name.
 pub(super) fn arguments_of(name: &str) -> Option<usize> {
     let (_, count) = LIST_FUNCTIONS.iter().find(|(own, _)| *own == name)?;
     (!is_also_of_numbers(name)).then_some(*count)
@@ -46,9 +46,9 @@ pub(super) fn arguments_of(name: &str) -> Option<usize> {
 /// A list of numbers, which is a part of a text.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NumberList {
-    /// At least one formula.
+    /// The formulas of the elements, at least one.
     pub elements: Vec<Arc<Expression>>,
-    /// A letter for each element, such as `xyz`; `None` if the elements have only numbers.
+    /// A letter for each element, such as `xyz`, or `None` if the elements have only numbers.
     pub axes: Option<String>,
     /// The location of the list in the text.
     pub span: TextSpan,
@@ -63,7 +63,7 @@ impl NumberList {
         Err(Fault::new(self.span.clone(), message))
     }
 
-    /// Returns the element with the given index, counted from 0. Fails if there is no such element.
+    /// Returns the element with the index `index`, counted from 0. Fails if `index` is no integer or is beyond the last element.
     pub(super) fn element(&self, index: &Expression) -> Result<Expression, Fault> {
         let number = index.rational().filter(|value| value.is_int());
         let place = number.and_then(|value| usize::try_from(value.numerator().clone()).ok());
@@ -77,7 +77,8 @@ impl NumberList {
         }
     }
 
-    /// Returns the elements with the given axes: `n.x` has one, and `n.xy` two. Fails for a letter that is no axis of the list.
+    /// Returns the elements with the given axes. For example, `n.x` has one element, and `n.xy` two. Fails for a letter that is
+    /// no axis of the list.
     pub(super) fn on_axes(&self, letters: &str, span: Range<usize>) -> Result<NumberOrList, Fault> {
         let Some(axes) = &self.axes else {
             return Err(Fault::new(span, "this list has no axes: write its index, as in `v[0]`"));
@@ -99,10 +100,10 @@ impl NumberList {
     }
 }
 
-/// The meaning of a text: a number or a list of numbers.
+/// A text's meaning: a number or a list of numbers.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NumberOrList {
-    /// The formula of a number.
+    /// A number's formula.
     Number(Arc<Expression>),
     /// The formulas of several numbers.
     List(NumberList),
@@ -115,10 +116,11 @@ impl From<Expression> for NumberOrList {
 }
 
 impl NumberOrList {
-    /// Returns the formula of a number.
+    /// Returns a number's formula.
     ///
     /// # Errors
-    /// Fails for a list, at its location.
+    ///
+    /// Fails for a list, at the list's location.
     pub fn number(self) -> Result<Arc<Expression>, Fault> {
         match self {
             Self::Number(formula) => Ok(formula),
@@ -132,7 +134,7 @@ impl NumberOrList {
         }
     }
 
-    /// Returns the formulas of all numbers.
+    /// Returns the formulas of all elements, or the only formula of a number.
     pub fn elements(&self) -> &[Arc<Expression>] {
         match self {
             Self::Number(formula) => std::slice::from_ref(formula),
@@ -151,7 +153,8 @@ impl NumberOrList {
     }
 }
 
-/// Makes a list of numbers from the formulas in brackets: `[x, y, 1]`. Fails if one of them is a list, or if there are too many.
+/// Makes a list of numbers from the formulas in brackets, such as `[x, y, 1]`. Fails if a part is a list, or if there are more
+/// than `LONGEST_LIST` parts.
 pub(super) fn list_of(parts: Vec<NumberOrList>, span: Range<usize>) -> Result<NumberOrList, Fault> {
     let mut elements = Vec::new();
     for part in parts {
@@ -163,8 +166,8 @@ pub(super) fn list_of(parts: Vec<NumberOrList>, span: Range<usize>) -> Result<Nu
     Ok(NumberOrList::List(NumberList::new(elements, None, span)))
 }
 
-/// Returns what `make` returns for the arguments; for lists, a list of what it returns for each group of elements. A number counts as a
-/// list of equal numbers. Fails if two lists have different sizes, or if `make` fails.
+/// Calls `make` with the arguments, or for lists with each group of elements, and returns the result or a list of the results. A
+/// number counts as a list of equal numbers. Fails if two lists have different sizes, or if `make` fails.
 pub(super) fn for_each_element(
     arguments: &[NumberOrList],
     span: &Range<usize>,
@@ -204,7 +207,7 @@ fn check_sizes(first: &NumberList, second: &NumberList) -> Result<(), Fault> {
     second.fault(format!("this list has {other} numbers, and the one before it has {one}"))
 }
 
-/// Returns a call of a function that reads whole lists. `span` is the location of the call. Fails if an argument is no list, or if two
+/// Expands a call of a function that reads whole lists. `span` is the call's location. Fails if an argument is no list, or if two
 /// lists have different sizes.
 pub(super) fn list_function(
     name: &str,
@@ -240,7 +243,7 @@ pub(super) fn list_function(
             list(v.iter().map(|it| place.binary(Operator::Div, it, &length)).collect())
         }
         "softmax" => {
-            // The largest number is subtracted first, so that no power exceeds 1.
+            // The largest number is subtracted first, so no power exceeds 1.
             let largest = place.joined(Operator::Max, v);
             let mut powers = Vec::new();
             for number in v {
@@ -260,7 +263,7 @@ pub(super) fn list_function(
     })
 }
 
-/// The location that the parts of a function get.
+/// The location of all parts that a function makes.
 struct Place(TextSpan);
 
 impl Place {
@@ -282,7 +285,7 @@ impl Place {
         self.part(Kind::Number(literal))
     }
 
-    /// Joins all numbers by an operator, as a tree of the least depth.
+    /// Joins all numbers by `operator`, as a tree of the least depth.
     fn joined(&self, operator: Operator, numbers: &[Arc<Expression>]) -> Arc<Expression> {
         match numbers {
             [only] => only.clone(),
@@ -303,7 +306,6 @@ impl Place {
         self.binary(Operator::Power, number, &self.number(2))
     }
 
-    /// Returns the root of the sum of the squares.
     fn length(&self, numbers: &[Arc<Expression>]) -> Arc<Expression> {
         let squares: Vec<_> = numbers.iter().map(|it| self.squared(it)).collect();
         self.part(Kind::Unary(Function::Sqrt, self.joined(Operator::Add, &squares)))

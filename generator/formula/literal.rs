@@ -3,11 +3,11 @@
 use dashu_int::{IBig, UBig};
 use dashu_ratio::RBig;
 
-/// The largest power of ten, positive or negative, that a number may have. A larger one is a mistake in every formula.
+/// The largest power of ten, positive or negative, in a number. A larger power is a mistake in every formula.
 const LARGEST_EXPONENT: i32 = 400;
 
-/// A number in a formula, exactly as its text states it: `0.1` is the fraction 1/10, which no `f64` represents. The nearest
-/// `f64` is stored too. Two literals are equal if they state the same number, such as `1` and `1.0e0`.
+/// A number in a formula, exactly as its text states it, and the nearest `f64`. For example, `0.1` is the fraction 1/10, which no
+/// `f64` represents. Two literals are equal if they state the same number, such as `1` and `1.0e0`.
 #[derive(Clone, Debug)]
 pub struct Literal {
     text: String,
@@ -28,7 +28,7 @@ impl Literal {
     }
 
     /// Parses digits with an optional decimal point and an optional power of ten, such as `3`, `.5` or `1.52587890625e-05`.
-    /// Its power of ten must be within ±400, and it must have at most 400 digits after the point.
+    /// Returns `None` for any other text, for a power of ten beyond ±400, or for more than 400 digits after the point.
     pub fn read(text: &str) -> Option<Self> {
         let text = text.replace('−', "-");
         let (digits, exponent) = match text.split_once(['e', 'E']) {
@@ -60,7 +60,7 @@ impl Literal {
         Self { text: "0".to_owned(), value: RBig::ZERO, nearest: 0.0, is_exact: true }
     }
 
-    /// Returns the exact number, as a fraction.
+    /// Returns the exact number as a fraction.
     pub fn value(&self) -> &RBig {
         &self.value
     }
@@ -74,16 +74,16 @@ impl Literal {
         self.is_exact
     }
 
-    /// Returns the number of significant digits in the text, from the first digit that is not 0 on, without the exponent.
-    /// `0.0125` and `1.25e-2` both have three.
+    /// Returns the number of significant digits in the text, from the first digit that is not 0, without the exponent. For
+    /// example, `0.0125` and `1.25e-2` both have three.
     pub(super) fn significant_digits(&self) -> usize {
         let digits = self.text.split(['e', 'E']).next().unwrap_or_default();
         let from_first = digits.trim_start_matches(['0', '.']);
         from_first.bytes().filter(u8::is_ascii_digit).count()
     }
 
-    /// Returns a decimal that C and Python can parse: the shortest if it is exact, such as `0.00125` for `1.25e-3`, and
-    /// otherwise the text of the formula.
+    /// Returns a decimal that C and Python can parse. This is the shortest decimal if it is exact, such as `0.00125` for
+    /// `1.25e-3`, and otherwise the formula's text.
     pub fn digits(&self) -> String {
         let shortest = format!("{:?}", self.nearest);
         match Self::read(&shortest) {

@@ -1,4 +1,4 @@
-//! Parses the text of a formula, such as `1 / sqrt(x)`, to a tree.
+//! Parses a formula's text, such as `1 / sqrt(x)`, to a tree.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -14,39 +14,41 @@ use super::{Comparison, Expression, Fault, Function, Kind, Literal, Operator, Te
 /// The constants, each with the largest `f64` that is not above it.
 const CONSTANTS: [(&str, f64); 2] = [("pi", std::f64::consts::PI), (EULER, std::f64::consts::E)];
 
-/// The name of the base of the natural logarithm. An operand may have this name too, because controllers often
-/// call their error `e`.
+/// The name of the base of the natural logarithm. An operand may also have this name, because controllers often call their error
+/// `e`.
 pub const EULER: &str = "e";
 
 const SIGNS_OF_COMPARISONS: [&str; 6] = ["<", ">", "<=", ">=", "==", "!="];
 
 const PI: &str = "π";
 
-/// The most parts inside each other, because the parser recurses for each.
+/// The largest depth of nested parts, because the parser recurses for each level.
 const DEEPEST: usize = 200;
 
-/// The most comparisons of a formula and signs that join them. Each can be a level of the tree.
+/// The largest number of comparisons and of joining signs in a formula, because each can be a level of the tree.
 const MOST_CONDITIONS: usize = 400;
 
 /// The largest number of parts of a formula after functions are replaced. For example, `silu(x)` has 6 parts more than x and
-/// contains x twice, so each `silu` around another doubles the number of parts.
+/// contains x twice.
 const MOST_PARTS: usize = 4096;
 
-/// Parses a formula. It may have sums, products, powers (`^` or `**`), parentheses, numbers, `pi`, `e`, names of operands,
-/// functions, and `if(a < b, x, y)`. A choice may also have the notation of Python or C: `x if a < b else y` or `a < b ? x : y`.
+/// Parses a formula with sums, products, powers (`^` or `**`), parentheses, numbers, `pi`, `e`, names of operands, functions, and
+/// `if(a < b, x, y)`. A choice may also have the notation of Python or C: `x if a < b else y` or `a < b ? x : y`.
 ///
 /// # Errors
+///
 /// Fails at the first mistake, with its location. Also fails for a list of numbers.
 pub fn parse(text: &str) -> Result<Expression, Fault> {
     let formula = parse_with_lists(text, &|_| None)?.number()?;
     Ok(Arc::unwrap_or_clone(formula))
 }
 
-/// Parses a formula whose operands and parts can be lists: `lists` returns the list that a name stands for, or `None` for the name of
-/// a number. It may return a number for a name that is otherwise a constant. An operator on lists gives a list. For example, `2 * v` is
-/// `[2 * v_0, 2 * v_1]`.
+/// Parses a formula whose operands and parts can be lists. `lists` returns the list with a given name, or `None` for a number's
+/// name. `lists` may return a number for a name that is otherwise a constant. An operator on lists gives a list. For example,
+/// `2 * v` is `[2 * v_0, 2 * v_1]`.
 ///
 /// # Errors
+///
 /// Fails at the first mistake, with its location.
 pub fn parse_with_lists(text: &str, lists: NamedLists<'_>) -> Result<NumberOrList, Fault> {
     let mut parser = Parser::new(text, lists)?;
@@ -68,14 +70,14 @@ pub fn parse_with_lists(text: &str, lists: NamedLists<'_>) -> Result<NumberOrLis
     }
 }
 
-/// Parses a condition, such as `x < y`, `0 < x <= 2`, or `x > 0 and y != 0`, into a single comparison that is equivalent. Fails
-/// at the first mistake, with its location.
+/// Parses a condition, such as `x < y`, `0 < x <= 2`, or `x > 0 and y != 0`, into a single equivalent comparison. Fails at the
+/// first mistake, with its location.
 pub fn parse_condition(text: &str) -> Result<Comparison, Fault> {
     parse_condition_with_lists(text, &|_| None)
 }
 
-/// Parses a condition as [`parse_condition`] does, with lists by their names, as [`parse_with_lists`] does. The condition compares
-/// numbers, such as `dot(a, b) > 0`. Fails at the first mistake, with its location.
+/// Parses a condition into a comparison. `lists` returns the lists by their names, see [`parse_with_lists`]. The condition must
+/// compare numbers, such as `dot(a, b) > 0`. Fails at the first mistake, with its location.
 pub fn parse_condition_with_lists(text: &str, lists: NamedLists<'_>) -> Result<Comparison, Fault> {
     let mut parser = Parser::new(text, lists)?;
     let condition = parser.condition()?;
@@ -85,11 +87,11 @@ pub fn parse_condition_with_lists(text: &str, lists: NamedLists<'_>) -> Result<C
     }
 }
 
-/// A function that returns the list that a name stands for, or the number if the name would otherwise be a constant, such as `e`.
+/// A function from a name to its list. It may return a number for a name that is otherwise a constant, such as `e`.
 pub type NamedLists<'t> = &'t dyn Fn(&str) -> Option<NumberOrList>;
 
-/// Returns the ranges of bytes of all names, numbers and signs: `2*x` gives 0..1, 1..2 and 2..3. Fails at a character that no
-/// formula can have.
+/// Returns the ranges of bytes of all names, numbers and signs. For example, `2*x` gives 0..1, 1..2 and 2..3. Fails at a
+/// character that no formula can have.
 fn tokens(text: &str) -> Result<Vec<Range<usize>>, Fault> {
     let mut tokens = Vec::new();
     let mut at = 0;
@@ -126,7 +128,7 @@ fn tokens(text: &str) -> Result<Vec<Range<usize>>, Fault> {
     Ok(tokens)
 }
 
-/// Returns an advice about the notation that replaces a sign, if it is known.
+/// Returns advice about the notation that replaces `sign`, or `None` for a sign without advice.
 fn instead_of_sign(sign: char) -> Option<&'static str> {
     Some(match sign {
         '=' => "compare with `<`, `>`, `<=`, `>=`, `==` or `!=`",
@@ -151,8 +153,8 @@ fn instead_of_sign(sign: char) -> Option<&'static str> {
     })
 }
 
-/// Returns the length in bytes of the number at the beginning of a text: digits with a point, and a power of ten. `1.5e3*x` gives
-/// 5.
+/// Returns the length in bytes of the number at the beginning of `text`: digits with a point, and a power of ten. For example,
+/// `1.5e3*x` gives 5.
 fn number(text: &str) -> usize {
     let digits = |from: usize, also: char| {
         let rest = &text[from..];
@@ -171,7 +173,6 @@ fn number(text: &str) -> usize {
     if power > end + 1 + sign { power } else { end }
 }
 
-/// Returns whether a number can end with this token.
 fn ends_number(token: &str) -> bool {
     let last = token.chars().last();
     last.is_some_and(|last| last.is_alphanumeric() || matches!(last, '_' | ')' | ']' | '.'))
@@ -182,7 +183,6 @@ struct Parser<'t> {
     tokens: Vec<Range<usize>>,
     at: usize,
     depth: usize,
-    /// The number of comparisons, and of the signs that join them, so far.
     conditions: usize,
     lists: NamedLists<'t>,
 }
@@ -215,12 +215,12 @@ impl<'t> Parser<'t> {
         if self.taken(&[token]) { Ok(()) } else { self.fault(format!("`{token}` is missing")) }
     }
 
-    /// Makes a part from the tokens from number `from` to the last one that was read.
+    /// Makes a part from the tokens from number `from` to the last read token.
     fn made(&self, from: usize, kind: Kind) -> Expression {
         Expression::new(kind, self.span(from))
     }
 
-    /// Returns the range of bytes of the tokens from number `from` to the last one that was read.
+    /// Returns the range of bytes of the tokens from number `from` to the last read token.
     fn span(&self, from: usize) -> Range<usize> {
         self.tokens[from].start..self.tokens[self.at - 1].end
     }
@@ -252,7 +252,7 @@ impl<'t> Parser<'t> {
         Ok(choice)
     }
 
-    /// Parses `? x : y` after a condition, which begins at token number `from`.
+    /// Parses `? x : y` after a condition that begins at token number `from`.
     fn cases_in_c(
         &mut self,
         from: usize,
@@ -265,7 +265,8 @@ impl<'t> Parser<'t> {
         self.chosen(from, condition, yes, no)
     }
 
-    /// Makes a choice, which begins at token number `from`, from its two cases. Fails if they are lists of different sizes.
+    /// Makes a choice between the cases `yes` and `no`. The choice begins at token number `from`. Fails if the cases are lists of
+    /// different sizes.
     fn chosen(
         &self,
         from: usize,
@@ -280,12 +281,10 @@ impl<'t> Parser<'t> {
         })
     }
 
-    /// Parses a sum that is a number.
     fn number(&mut self) -> Result<Expression, Fault> {
         Ok(Arc::unwrap_or_clone(self.sum()?.number()?))
     }
 
-    /// Parses comparisons joined by `and`, `or` and `not`.
     fn condition(&mut self) -> Result<JoinedCondition, Fault> {
         if self.depth == DEEPEST {
             return self.fault(format!("the formula is nested more than {DEEPEST} deep"));
@@ -297,13 +296,12 @@ impl<'t> Parser<'t> {
         condition
     }
 
-    /// Parses the rest of a condition whose first number is `first`.
     fn condition_of(&mut self, first: Arc<Expression>) -> Result<JoinedCondition, Fault> {
         let comparison = self.comparisons(first)?;
         self.joined(comparison)
     }
 
-    /// Parses the conditions that `and` and `or` join to `first`; `and` binds closer.
+    /// Parses the conditions that `and` and `or` join to `first`. `and` binds closer.
     fn joined(&mut self, first: JoinedCondition) -> Result<JoinedCondition, Fault> {
         let mut either = self.all_of(first)?;
         while self.taken(&["or", "||"]) {
@@ -314,7 +312,6 @@ impl<'t> Parser<'t> {
         Ok(either)
     }
 
-    /// Parses the conditions that `and` joins to `first`.
     fn all_of(&mut self, first: JoinedCondition) -> Result<JoinedCondition, Fault> {
         let mut both = first;
         while self.taken(&["and", "&&"]) {
@@ -324,7 +321,7 @@ impl<'t> Parser<'t> {
         Ok(both)
     }
 
-    /// Fails at more than [`MOST_CONDITIONS`] comparisons and joined conditions.
+    /// Counts a comparison or a joining sign. Fails if there are more than [`MOST_CONDITIONS`].
     fn count_joined(&mut self) -> Result<(), Fault> {
         self.conditions += 1;
         if self.conditions > MOST_CONDITIONS {
@@ -333,7 +330,7 @@ impl<'t> Parser<'t> {
         Ok(())
     }
 
-    /// Parses a condition that neither `and` nor `or` divides.
+    /// Parses a condition without `and` or `or` at its top level.
     fn single_condition(&mut self) -> Result<JoinedCondition, Fault> {
         let mut negations = 0;
         while self.taken(&["not", "!"]) {
@@ -343,7 +340,6 @@ impl<'t> Parser<'t> {
         Ok(if negations % 2 == 1 { condition.negated() } else { condition })
     }
 
-    /// Parses a condition in parentheses, or comparisons.
     fn condition_without_sign(&mut self) -> Result<JoinedCondition, Fault> {
         if self.begins_condition() {
             self.expect("(")?;
@@ -355,8 +351,8 @@ impl<'t> Parser<'t> {
         self.comparisons(first)
     }
 
-    /// Returns whether the next tokens are a condition in parentheses: they have a comparison between these parentheses, and no
-    /// choice that makes a number of it.
+    /// Returns whether the next tokens are a condition in parentheses. Such parentheses have a comparison directly inside, which
+    /// is not a choice's condition.
     fn begins_condition(&self) -> bool {
         if self.peek() != "(" {
             return false;
@@ -412,7 +408,7 @@ impl<'t> Parser<'t> {
         Comparison { left, right, or_equal: sign.len() == 2 }
     }
 
-    /// Compares the distance of two numbers with 0, to decide whether they are equal or differ.
+    /// Returns whether two numbers are equal (`is_equal`) or differ, as a comparison of their distance with 0.
     fn equality(
         &self,
         first: Arc<Expression>,
@@ -455,7 +451,7 @@ impl<'t> Parser<'t> {
         Ok(all)
     }
 
-    /// Applies an operator to two numbers, or to each pair of elements. The text of the result begins at token number `from`. Fails for
+    /// Applies `operator` to two numbers, or to each pair of elements. The result's text begins at token number `from`. Fails for
     /// lists of different sizes.
     fn joined_by(
         &self,
@@ -482,7 +478,7 @@ impl<'t> Parser<'t> {
         self.chain(&signs, Self::signed)
     }
 
-    /// Parses a power with a sign before it, which is applied after the power: `-x^2` is −(x²).
+    /// Parses a power with signs before it, which are applied after the power. For example, `-x^2` is −(x²).
     fn signed(&mut self) -> Result<NumberOrList, Fault> {
         let from = self.at;
         let mut negations = 0;
@@ -514,7 +510,7 @@ impl<'t> Parser<'t> {
         Ok(part)
     }
 
-    /// Parses a number or a list, and what selects elements of the list: an index or axes, as in `v[2]` and `n.xy`.
+    /// Parses a number or a list with an optional index or axes, as in `v[2]` and `n.xy`.
     fn element(&mut self) -> Result<NumberOrList, Fault> {
         let from = self.at;
         let mut part = self.atom()?;
@@ -583,7 +579,7 @@ impl<'t> Parser<'t> {
             });
         }
         if self.taken(&["["]) {
-            // The index of a word is an integer. In Python, `int` makes it one.
+            // A word's index is an integer. In Python, `int` makes it one.
             self.taken(&["int"]);
             let place = self.choice()?.number()?;
             self.expect("]")?;
@@ -600,8 +596,8 @@ impl<'t> Parser<'t> {
         self.call(from, &token)
     }
 
-    /// Parses the arguments of a call of the function `name`; the opening parenthesis has been read. Fails if there is no such
-    /// function, or at the first mistake in an argument.
+    /// Parses the arguments of a call of the function `name`, after the opening parenthesis. Fails if there is no such function,
+    /// or at the first mistake in an argument.
     fn call(&mut self, from: usize, name: &str) -> Result<NumberOrList, Fault> {
         if name == "if" {
             let condition = self.condition()?;
@@ -635,7 +631,8 @@ impl<'t> Parser<'t> {
     }
 }
 
-/// Returns a call of a function with as many numbers as it takes. `span` is the location of the call. Fails as [`written_out`] does.
+/// Returns a call of a function of numbers. `span` is the call's location. Fails if the result has more than [`MOST_PARTS`]
+/// parts.
 fn function_of_numbers(
     name: &str,
     arguments: &[Expression],
@@ -660,7 +657,7 @@ fn function_of_numbers(
     Ok(Arc::unwrap_or_clone(all))
 }
 
-/// Returns the root of the sum of the squares of a vector's coordinates. `span` is the location of the call.
+/// Returns the root of the sum of the squares of a vector's coordinates. `span` is the call's location.
 fn length_of_many(arguments: &[Expression], span: Range<usize>) -> Result<Expression, Fault> {
     let mut sum = written_out("hypot", "u^2", &arguments[..1], span.clone())?;
     for argument in &arguments[1..] {
@@ -671,8 +668,8 @@ fn length_of_many(arguments: &[Expression], span: Range<usize>) -> Result<Expres
     Ok(Expression::new(Kind::Unary(Function::Sqrt, Arc::new(sum)), span))
 }
 
-/// Returns the formula `body` of the function `name`, in which the arguments of a call replace u, v and w: `hypot(a, 2)` becomes
-/// `sqrt(a^2 + 2^2)`. `span` is the location of the call. Fails if the result has more than [`MOST_PARTS`] parts.
+/// Returns the formula `body` of the function `name`, with the arguments of a call in place of u, v and w. For example, `hypot(a,
+/// 2)` becomes `sqrt(a^2 + 2^2)`. `span` is the call's location. Fails if the result has more than [`MOST_PARTS`] parts.
 fn written_out(
     name: &str,
     body: &str,

@@ -1,8 +1,8 @@
-//! Interval arithmetic of any precision. A value that is known exactly is also stored exactly.
+//! Computes with intervals of any precision. A value that is known exactly is also stored exactly.
 //!
-//! The arithmetic is slow. Glint uses it for constants, such as the ends of a domain, and where intervals of `f64` decide
-//! nothing. For example, an `f64` interval around 1 leaves open whether the `floor` of its value is 0 or 1, and `exp(1000)` in
-//! `1 / (1 + exp(1000))` is beyond the range of `f64`.
+//! The arithmetic is slow. Glint uses it for constants, such as a domain's ends, and if intervals of `f64` do not decide. For
+//! example, an `f64` interval around 1 leaves open whether the `floor` of its value is 0 or 1, and `exp(1000)` in `1 / (1 +
+//! exp(1000))` is beyond the range of `f64`.
 
 use std::cmp::Ordering;
 
@@ -36,7 +36,7 @@ impl PreciseValue {
         Self { low, high, exact: None }
     }
 
-    /// Returns the value if it is known to be rational.
+    /// Returns the value, or `None` if it is not known to be rational.
     pub(super) fn rational(&self) -> Option<&RBig> {
         match &self.exact {
             Some(Exact::Rational(value)) => Some(value),
@@ -45,7 +45,7 @@ impl PreciseValue {
     }
 }
 
-/// Arithmetic with numbers of a given number of bits. It rounds the lower limit of each result down, and the upper limit up.
+/// Arithmetic with numbers of a given number of bits. The lower limit of each result is rounded down, and the upper limit up.
 pub(super) struct Precise {
     bits: usize,
     down: Context<mode::Down>,
@@ -57,13 +57,13 @@ impl Precise {
         Self { bits, down: Context::new(bits), up: Context::new(bits) }
     }
 
-    /// Returns the interval of a rational number, which is also stored exactly.
+    /// Returns a rational number's interval, which is also stored exactly.
     pub(super) fn rational(&self, value: &RBig) -> PreciseValue {
         self.exactly(Exact::Rational(value.clone()))
     }
 
-    /// Returns the smallest integer that is not below `value` · 2^`fraction`, and whether both are equal. The interval must
-    /// decide it, and the integer have at most 127 bits.
+    /// Returns the smallest integer that is not below `value` · 2^`fraction`, and whether the two are equal. Returns `None` if
+    /// the interval does not decide this, or if the integer has more than 127 bits.
     pub(super) fn ceiling(&self, value: &PreciseValue, fraction: u32) -> Option<(i128, bool)> {
         if let Some(exact) = value.rational() {
             let scaled = exact * RBig::from(IBig::ONE << fraction as usize);
@@ -124,8 +124,8 @@ impl Precise {
         PreciseValue::between(low, high)
     }
 
-    /// Returns the interval between the results of an operation that were rounded down and up. Fails if one of them is an error
-    /// of the library, for example because an exponent has too many bits.
+    /// Returns the interval between the results of an operation that were rounded down and up. Fails if a result is an error of
+    /// the library, for example because an exponent has too many bits.
     fn rounded(down: Rounded<mode::Down>, up: Rounded<mode::Up>) -> Result<PreciseValue, String> {
         let beyond = |error: FpError| match error {
             FpError::Overflow(_) | FpError::Underflow(_) => {
@@ -142,8 +142,8 @@ impl Precise {
         Self::rounded(self.down.mul(a, b), self.up.mul(a, b))
     }
 
-    /// Returns the smallest interval that contains an operation's results at the four combinations of the intervals' limits. It
-    /// contains all results if the operation is monotone in each operand.
+    /// Returns the smallest interval that contains an operation's results at the four combinations of the intervals' limits. The
+    /// interval contains all results if the operation is monotone in each operand.
     fn corners(
         &self,
         a: &PreciseValue,
@@ -169,8 +169,8 @@ impl Precise {
         Self::rounded(down(&self.down, &a.low), up(&self.up, &a.high))
     }
 
-    /// Returns the interval of a sine or a cosine. The slope is never steeper than 1, so the interval's length is added, in
-    /// both directions, to the value at its lower limit.
+    /// Returns the interval of a sine or a cosine. The slope is never steeper than 1. The function therefore takes the value at
+    /// the lower limit, and extends it by the interval's length in both directions.
     fn wave(
         &self,
         a: &PreciseValue,
@@ -185,7 +185,7 @@ impl Precise {
         )
     }
 
-    /// Returns two values, the lower one first, if it is known which one is lower. Equal values may have any order.
+    /// Returns two values, the lower one first, or `None` if their order is not known. Equal values may have any order.
     fn in_order<'v>(
         &self,
         a: &'v PreciseValue,
@@ -233,7 +233,6 @@ impl Precise {
         Ok(self.minimum(&value, &one))
     }
 
-    /// Computes the error function of any number. The function is odd.
     fn signed_error_function(&self, x: &BigFloat) -> Result<PreciseValue, String> {
         if *x < BigFloat::zero() {
             let value = self.error_function(&-x.clone())?;
@@ -255,7 +254,7 @@ fn or_computed(
     }
 }
 
-/// Returns the exact result of a function of two numbers, if it is known.
+/// Returns the exact result of a function of two numbers, or `None` if it is not known.
 fn exact_operator(operator: Operator, a: &PreciseValue, b: &PreciseValue) -> Option<Exact> {
     let is_zero = |value: &PreciseValue| value.exact.as_ref().is_some_and(Exact::is_zero);
     if operator == Operator::Mul && (is_zero(a) || is_zero(b)) {
@@ -299,7 +298,7 @@ impl Arithmetic for Precise {
         PreciseValue::between(low, high)
     }
 
-    /// Limits in `f64` are not precise enough.
+    /// Returns `None`, because limits in `f64` are not precise enough.
     fn folded(&self, _constant: Enclosure) -> Option<Self::Value> {
         None
     }

@@ -10,8 +10,8 @@ const POWER: u8 = 3;
 const ATOM: u8 = 4;
 
 impl Expression {
-    /// Returns a Python expression, which can be evaluated after `from math import *`, and which [`super::parse()`] can parse
-    /// too. `x^2 + 1` becomes `x ** 2.0 + 1.0`. The function `exp2` needs Python 3.11.
+    /// Returns an expression that Python evaluates after `from math import *`, and that [`super::parse()`] also parses. For
+    /// example, `x^2 + 1` becomes `x ** 2.0 + 1.0`. The function `exp2` needs Python 3.11.
     pub fn python(&self) -> String {
         python(self).0
     }
@@ -28,7 +28,7 @@ pub enum CArithmetic {
 }
 
 impl CArithmetic {
-    /// Begins the names of all functions of this arithmetic.
+    /// Returns the prefix of the names of all functions of this arithmetic.
     fn prefix(self) -> &'static str {
         match self {
             Self::Limits => "",
@@ -44,7 +44,7 @@ impl CArithmetic {
         }
     }
 
-    /// `below` is the largest `f64` that is not above the constant.
+    /// Returns the C expression of a constant. `below` is the largest `f64` that is not above the constant.
     fn constant(self, name: &str, below: f64) -> String {
         match (self, name) {
             (Self::Limits, "pi") => "constant(mpfr_const_pi)".to_owned(),
@@ -53,7 +53,7 @@ impl CArithmetic {
         }
     }
 
-    /// Returns the library function that computes a function of a formula: the sine is `mpfr_sin` or `sin`.
+    /// Returns the library function that computes a function of a formula. For example, the sine is `mpfr_sin` or `sin`.
     fn library_function(self, function: Function) -> String {
         match self {
             Self::Limits => format!("mpfr_{}", function.name()),
@@ -86,8 +86,8 @@ impl Expression {
 }
 
 impl Comparison {
-    /// Returns a call of a C function, which returns whether the comparison holds: `x >= 0` becomes `exceeds(x, number("0.0"),
-    /// 1)`. The last argument is 1 for `>=`, and 0 for `>`.
+    /// Returns a call of a C function that returns whether the comparison holds. For example, `x >= 0` becomes `exceeds(x,
+    /// number("0.0"), 1)`. The last argument is 1 for `>=`, and 0 for `>`.
     pub fn c(&self, arithmetic: CArithmetic) -> String {
         let or_equal = format!(", {}", u8::from(self.or_equal));
         c_call(arithmetic, "exceeds", &[&self.left, &self.right], &or_equal)
@@ -100,7 +100,7 @@ impl Comparison {
     }
 }
 
-/// For doubles, a square is printed as a product, which is faster than a power.
+/// Returns whether a formula is the number 2. For doubles, a square is printed as a product, which is faster than a power.
 fn is_two(formula: &Expression) -> bool {
     matches!(&formula.kind, Kind::Number(literal) if literal.is_exact() && literal.nearest() == 2.0)
 }
@@ -139,7 +139,7 @@ fn c_operator(operator: Operator) -> &'static str {
     }
 }
 
-/// Returns a part, in parentheses if its precedence is weaker than `least`.
+/// Returns a part's text, in parentheses if its precedence is weaker than `least`.
 fn within((text, rank): (String, u8), least: u8) -> String {
     if rank < least { format!("({text})") } else { text }
 }
@@ -181,7 +181,7 @@ fn python(formula: &Expression) -> (String, u8) {
 }
 
 impl Function {
-    /// Returns the name in formulas; `-` for [`Function::Negate`].
+    /// Returns the name in formulas, or `-` for [`Function::Negate`].
     pub fn name(self) -> &'static str {
         super::FUNCTIONS.iter().find(|(_, own)| *own == self).map_or("-", |(name, _)| name)
     }

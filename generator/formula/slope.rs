@@ -7,7 +7,6 @@ use super::arithmetic::Double;
 use super::evaluate::{FEW_PARTS, binary, unary};
 use super::{Enclosure, Expression, Fault, Function, Kind, Operator};
 
-/// The limits of a value, and of its derivative.
 #[derive(Clone, Copy)]
 struct ValueAndSlope {
     value: Enclosure,
@@ -17,9 +16,10 @@ struct ValueAndSlope {
 impl Expression {
     /// Returns intervals that contain the value and the derivative of the formula, for all values of `operand` within `limits`.
     /// At a corner, such as `abs(x)` at 0, the interval contains the derivatives of both sides. For example, x · x for x from 1
-    /// to 2 has values from 1 to 4 and derivatives from 2 to 4.
+    /// to 2 has values from 1 to 4, and derivatives from 2 to 4.
     ///
     /// # Errors
+    ///
     /// Fails if a part of the formula has no value, may jump, or may be infinitely steep.
     pub fn slope(&self, operand: &str, limits: Enclosure) -> Result<(Enclosure, Enclosure), Fault> {
         let mut derivation = Derivation { operand, limits, known: HashMap::new() };
@@ -30,7 +30,7 @@ impl Expression {
 struct Derivation<'d> {
     operand: &'d str,
     limits: Enclosure,
-    /// The results of parts with at least [`FEW_PARTS`] parts of their own, so that no shared part is computed twice.
+    /// The results of parts with at least [`FEW_PARTS`] parts of their own, so no shared part is computed twice.
     known: HashMap<*const Expression, ValueAndSlope>,
 }
 
@@ -118,7 +118,7 @@ fn of_unary(function: Function, a: ValueAndSlope, value: Enclosure) -> Enclosure
     }
 }
 
-/// Returns the limits of the derivative of a function of two numbers, unless the value may jump.
+/// Returns the limits of the derivative of a function of two numbers, or `None` if the value may jump.
 fn of_binary(
     operator: Operator,
     a: ValueAndSlope,

@@ -14,7 +14,8 @@ fn value(text: &str, x: f64) -> Enclosure {
         .unwrap_or_else(|fault| panic!("{}", fault.under(text)))
 }
 
-/// Values to 20 digits, from tables (Abramowitz and Stegun) and by hand, lie between the limits, which are close to each other.
+/// Compares the limits with values to 20 digits, from tables (Abramowitz and Stegun) and by hand. The limits must be close to
+/// each other.
 #[test]
 #[expect(
     clippy::excessive_precision,
@@ -67,7 +68,7 @@ fn enclosures_hold_known_values() {
     }
 }
 
-/// An argument may have the name of the function's own parameters.
+/// Checks that an argument may have the name of the function's own parameters.
 #[test]
 fn arguments_keep_their_names() {
     let formula = parse("hypot(v, u) - 2 * u").unwrap();
@@ -76,7 +77,6 @@ fn arguments_keep_their_names() {
     assert_eq!(formula.operands(), ["v", "u"]);
 }
 
-/// At the negative x axis the direction jumps from π to −π, and the origin has no direction.
 /// Returns the parsed text as formulas without lists, for the list v of four numbers and the vectors n and l with axes.
 fn written_out(text: &str) -> Result<Vec<String>, Fault> {
     let lists = |name: &str| {
@@ -168,7 +168,7 @@ fn directions_near_their_jump_and_at_the_origin() {
     assert!(slope.holds(0.25) && slope.high - slope.low < 1e-12);
 }
 
-/// A root at the end of its domain has a value because values that `f64` represents exactly stay exact.
+/// Checks that a root at the end of its domain has a value, because values that `f64` represents exactly stay exact.
 #[test]
 fn exact_steps_stay_exact() {
     for (text, x, known) in [
@@ -254,7 +254,7 @@ fn ceiling(text: &str, fraction: u32) -> (i128, bool) {
     formula.ceiling(fraction).unwrap_or_else(|fault| panic!("{}", fault.under(text)))
 }
 
-/// The values of these formulas are multiples of 2^−fraction, and the evaluation finds this for every notation.
+/// Checks that the evaluation finds, for every notation, that these values are multiples of 2^−fraction.
 #[test]
 fn exact_values_are_known_to_be_exact() {
     for (text, fraction, raw) in [
@@ -340,7 +340,7 @@ fn random_decimals_are_read_exactly() {
     }
 }
 
-/// In these formulas `f64` rounds to the wrong side of a jump, is too small, or overflows.
+/// Checks formulas for which `f64` rounds to the wrong side of a jump, is too small, or overflows.
 #[test]
 fn steps_signs_and_sizes_are_decided_at_exact_operands() {
     for (text, operand, known) in [
@@ -381,7 +381,7 @@ fn steps_signs_and_sizes_are_decided_at_exact_operands() {
     );
 }
 
-/// Both evaluations give intervals that contain the exact value, so the intervals must overlap.
+/// Checks that the intervals of the two evaluations overlap, because each contains the exact value.
 #[test]
 fn both_evaluations_overlap() {
     for text in [
@@ -449,7 +449,7 @@ fn c_calls_the_functions_of_an_arithmetic() {
     }
 }
 
-/// Functions of shading languages and of C.
+/// Checks functions of shading languages and of C.
 #[test]
 fn functions_of_other_languages_have_their_values() {
     for (text, x, expected) in [
@@ -495,7 +495,6 @@ fn functions_of_other_languages_have_their_values() {
     }
 }
 
-/// Conditions of x and y, each with a function that decides it.
 type KnownCondition = (&'static str, fn(f64, f64) -> bool);
 
 #[test]

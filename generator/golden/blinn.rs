@@ -9,12 +9,12 @@ use super::{Contract, Model};
 use glint_config::Config;
 use glint_keys::decay::Decay;
 
-/// Panics if the check of the schema has not accepted the configuration.
+/// Returns the golden model. Panics if `config` has not passed the check against the schema.
 pub fn model(config: &Config) -> Box<dyn Model> {
     decay::model(config, Decay::Logarithm)
 }
 
-/// Panics if the check of the schema has not accepted the configuration.
+/// Returns the accuracy contract. Panics if `config` has not passed the check against the schema.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     decay::contract(config, Decay::Logarithm)
 }

@@ -11,16 +11,16 @@ pub const COSINE: &str = "cos_gamma";
 pub const EXPONENT: &str = "exponent";
 
 /// A contribution to the error of the reflectance `f`: the configuration key that governs it, its description, and its size as a
-/// value.
+/// value (not in units).
 pub type ErrorShare = (&'static str, &'static str, f64);
 
-/// Returns the operand `cos_gamma` with a domain of raw values.
+/// Returns the operand `cos_gamma` with `domain`, its smallest and largest raw value.
 pub fn cosine_operand(format: Format, domain: (i64, i64)) -> Operand {
     let doc = "cosine of the angle between the normal and the half vector";
     control(COSINE, format, domain, doc)
 }
 
-/// Returns the operand `exponent` with a domain of raw values.
+/// Returns the operand `exponent` with `domain`, its smallest and largest raw value.
 pub fn exponent_operand(format: Format, domain: (i64, i64)) -> Operand {
     control(EXPONENT, format, domain, "specular exponent n")
 }
@@ -31,13 +31,13 @@ pub fn control(name: &str, format: Format, domain: (i64, i64), doc: &str) -> Ope
     Operand { name: name.to_owned(), format, domain, clamped: false, colour: false, doc }
 }
 
-/// Returns the error bounds of a device that multiplies colours by a reflectance `f` with `frac` fraction bits. They are the
-/// bound of `f`, and the bound of each output. `shares` are the contributions to the error of `f`.
+/// Returns the error bounds of a device that multiplies colours by a reflectance `f` with `frac` fraction bits: the bound of `f`
+/// as a value, and the bound of each output in units. `shares` are the contributions to the error of `f`.
 ///
 /// An output is `f` times a colour of `colour_bits` bits, rounded by `output_rounding`. Its bound is therefore the error of `f`
 /// times the largest colour, plus the error of that rounding. Both `f` and the formula lie in 0 … 1, so shares whose sum exceeds
-/// 1.0 are scaled down to 1.0. The term of the rounding names the key `output.rounding`, which the device must have. If `shares`
-/// is empty, the bound is infinite and has no terms: it is not stated.
+/// 1.0 are scaled down to 1.0. The term of the rounding names the key `output.rounding`, which the device must have. Empty
+/// `shares` mean that no bound is known: the bound is then infinite and has no terms.
 pub fn bound(
     shares: &[ErrorShare],
     frac: u32,
@@ -77,8 +77,8 @@ pub fn where_it_faces(expression: &str) -> String {
     format!("{expression} if {COSINE} > 0 else 0")
 }
 
-/// Returns the raw value of `operand` for the specular exponent `n`, if the format and the domain have it exactly. In `u10.0` n =
-/// 20 gives 20, and n = 20.5 gives `None`.
+/// Returns the raw value of `operand` for the specular exponent `n`. Returns `None` if the format cannot represent `n` exactly,
+/// or if `n` is outside the domain. For example, in `u10.0` n = 20 gives 20, and n = 20.5 gives `None`.
 pub fn exponent_at(operand: &Operand, n: f64) -> Option<i64> {
     let raw = operand.format.quantise(n);
     let held = operand.format.to_f64(raw) == n;
@@ -86,11 +86,11 @@ pub fn exponent_at(operand: &Operand, n: f64) -> Option<i64> {
     (held && (low..=high).contains(&raw)).then_some(raw)
 }
 
-/// Returns the raw control operands among `operands`, in their order, for an angle `gamma` (in radians) and an exponent `n`. Any
-/// operand besides `cos_gamma` and `exponent` takes its raw value in `neutral`, or else the value of its domain that is nearest
-/// to 0.
+/// Returns the raw values of the control operands for an angle `gamma` (in radians) and an exponent `n`, in the order of
+/// `operands`. A control operand besides `cos_gamma` and `exponent` takes its raw value in `neutral`. Without an entry, it takes
+/// the value of its domain that is nearest to 0.
 ///
-/// Returns `None` if one of these two operands is missing, or if the exponent cannot represent `n` or `n` is not in its domain.
+/// Returns `None` if `cos_gamma` or `exponent` is missing, or if `exponent_at` returns `None` for `n`.
 pub fn operands_at(
     operands: &[Operand],
     gamma: f64,

@@ -46,8 +46,8 @@ impl PowerArithmetic {
         self.scaled.apply((self.keys.operands.cosine.one() - cosine) * exponent)
     }
 
-    /// Returns the base: the bitwise inverse of the accumulator, `1.0 − ulp − accumulator`, or 0 for a surface that faces away,
-    /// which has the cosine 0.
+    /// Returns the base: the bitwise inverse of `accumulator`, which is `1.0 − ulp − accumulator`. The base is 0 if `cosine` is
+    /// 0, because the surface then faces away.
     #[inline]
     fn base(&self, cosine: i64, accumulator: i64) -> i64 {
         if cosine == 0 { 0 } else { self.largest - accumulator }
@@ -89,7 +89,7 @@ pub fn model(config: &Config) -> Box<dyn Model> {
     Box::new(products.behind(frame, accumulator, program))
 }
 
-/// The control operands are `cos_gamma` and `exponent`.
+/// Returns the accuracy contract, with the control operands `cos_gamma` and `exponent`.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     let it = PowerArithmetic::new(Keys::of(config));
     let operands = highlight::operands(&it.keys.operands, &it.keys.domain);
@@ -122,8 +122,9 @@ impl Reflectance for PowerArithmetic {
         vec![contract::where_it_faces(&format!("{base} ** {power}"))]
     }
 
-    /// The largest n is an upper limit of the slope n·base^(m − 1), since the base is at most 1. At a right angle W is (1 −
-    /// n/m)^m if n is below m, and jumps from this value to 0, most for the smallest n.
+    /// Returns how fast and by which jumps W changes. The largest n is an upper limit of the slope n·base^(m − 1), because the
+    /// base is at most 1. If n is below m, W is (1 − n/m)^m at a right angle, and jumps to 0 there. The smallest n has the
+    /// largest jump.
     fn variation(&self) -> Option<Variation> {
         let (least, most) = self.keys.domain.exponents();
         let power = f64::from(self.keys.power);
@@ -131,15 +132,15 @@ impl Reflectance for PowerArithmetic {
         Some(Variation { slope: most as f64, jump: libm::pow(base, power) })
     }
 
-    /// Derives the contributions to the error of f. Every quantity here lies in 0 … 1, hardware's and formula's alike. By the
+    /// Derives the contributions to the error of f. Every quantity here lies in 0 … 1, in the hardware and in the formula. By the
     /// mean value theorem, an error ε before a power p therefore grows to at most p·ε.
     ///
     /// - Base: the hardware uses the inverse, 1.0 − ulp − t, instead of 1.0 − t. If t is truncated, its error is in (−ulp, 0],
     ///   and the base is low by (0, ulp]. If t is rounded to the nearest, its error is ±ulp/2, and the base is low by up to 3/2
-    ///   ulp. Saturation of t at 1.0 − ulp makes the base 0, and the formula's base is then at most as large as that error. The
-    ///   base is raised to m.
+    ///   ulp. If t saturates at 1.0 − ulp, the hardware's base is 0, and the formula's base is at most as large as this error.
+    ///   The base is raised to m.
     /// - The result of squaring number i is rounded, and then raised to m/2^i. The factors of these errors add up to m − 1.
-    /// - The output adds its own rounding; it cannot exceed the largest colour, for f < 1.
+    /// - The output adds its own rounding. It cannot exceed the largest colour, because f < 1.
     fn shares(&self) -> Vec<ErrorShare> {
         let (f, power) = (self.keys.f.fraction, f64::from(self.keys.power));
         let ulp = exp2(-(f as i32));
@@ -157,8 +158,7 @@ impl Reflectance for PowerArithmetic {
         ]
     }
 
-    /// Remarks that a smaller m approximates cosⁿγ better than the configured m, for some n below m. The base of W is then
-    /// above 0 at a right angle, where cosⁿγ is 0.
+    /// Returns a warning if, for some n below m, a smaller m approximates cosⁿγ better than the configured m.
     fn remarks(&self) -> Vec<String> {
         let power = self.keys.power;
         let (first, last) = self.keys.domain.exponents();

@@ -1,10 +1,10 @@
-//! The golden model and the accuracy contract of the device `cosine-squared`, which computes f = cos²(a·δ) for the points of a
-//! scan line.
+//! The golden model and the accuracy contract of the device `cosine-squared`, which computes f = cos²(a·δ) for a scan line's
+//! points.
 //!
 //! δ is the angle at a point of the line, and a = √(n/2) with the specular exponent n. The host multiplies its angles by a, so
-//! the device only sees the product a·δ. f is 0 if |a·δ| is a right angle or more. The golden model reads cos² from its own copy
-//! of the device's table, ROM 12; the contract compares the result with the exact formula. The source is a prototype (Abbas,
-//! Szirmay-Kalos, Horváth 2000), which [seed 000](crate#symbols) cites.
+//! the device's operands are products a·δ. f is 0 if |a·δ| is a right angle or more. The golden model reads cos² from its own
+//! copy of the device's table, ROM 12. The source is a prototype (Abbas, Szirmay-Kalos, Horváth 2000), which [seed
+//! 000](crate#symbols) cites.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -18,7 +18,6 @@ use glint_base::fixed::exp2;
 use glint_config::Config;
 use glint_keys::cosine_squared::Keys;
 
-/// The integer arithmetic of the device, on raw values.
 struct SquaredArithmetic {
     keys: Keys,
     /// ROM 12 by the numbers of blocks in seed 000.
@@ -30,7 +29,7 @@ impl SquaredArithmetic {
         Self { table: CosineTable::new(2, keys.table_address, keys.fraction), keys }
     }
 
-    /// Returns the address of ROM 12 for an angle a·δ; a right angle or more has the last address.
+    /// Returns the address of ROM 12 for an angle a·δ. A right angle or more gives the last address, whose word is 0.
     #[inline]
     fn step_of(&self, angle: i64) -> i64 {
         magnitude(angle, self.keys.angle_fraction, self.keys.table_address)
@@ -75,8 +74,9 @@ pub fn model(config: &Config) -> Box<dyn Model> {
     Box::new(frame.model(program))
 }
 
-/// The control operands are `delta_zeta` (the angle from a point to the next), `zeta_start` (the first angle) and `length` (the
-/// number of intervals). To state a single point of a line, the contract sets `zeta_start` to the angle of that point.
+/// Returns the accuracy contract. The control operands are `delta_zeta` (the angle from a point to the next), `zeta_start` (the
+/// first angle) and `length` (the number of intervals). To state a single point of a line, the contract sets `zeta_start` to the
+/// angle of that point.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     let keys = Keys::of(config);
     let mut operands = line::angle_operands(keys.angle_format()).to_vec();
@@ -111,13 +111,13 @@ impl Reflectance for SquaredArithmetic {
         vec![line::interval(angle, last[1], length, first[0]), angle, length]
     }
 
-    /// Returns the operands of a line of one point, at the angle `gamma`·√(n/2): the host multiplies angles by this root.
+    /// Returns the operands of a line with a single point, at the angle `gamma`·√(n/2): the host multiplies angles by this root.
     fn at(&self, operands: &[Operand], gamma: f64, n: f64) -> Option<Vec<i64>> {
         let stretched = (n / 2.0).sqrt() * gamma;
         Some(vec![0, line::raw_angle(&operands[1], stretched), 0])
     }
 
-    /// The operand is an angle times √(n/2), from which the angle alone cannot be computed.
+    /// Returns `None`: the operand is γ·√(n/2), and γ cannot be computed from it without n.
     fn cosine(&self, _: &[Operand], _: &[i64]) -> Option<f64> {
         None
     }
@@ -133,8 +133,7 @@ impl Reflectance for SquaredArithmetic {
         Some(Sweep::ranges([("step of the table", (0, last))]))
     }
 
-    /// Returns the largest error over all angles in the step, of either sign. The formula falls from one end of the step to the
-    /// other, so the error is largest at an end.
+    /// Returns the largest error, positive or negative, over all angles of the step `place`.
     fn sweep_error(&self, place: &[i64]) -> Option<f64> {
         let step = place[0];
         let word = self.table.words[step as usize];
@@ -144,8 +143,8 @@ impl Reflectance for SquaredArithmetic {
         Some((end(step) - f).max(f - end(step + 1)))
     }
 
-    /// The steps contribute the distance of the formula from the middle of its values in a step, or from 0 in the last step. The
-    /// word of ROM 12 is rounded. The angle and its step are exact.
+    /// Returns the error of the steps and the error of the rounded words of ROM 12. In a step, the word is the middle of the
+    /// formula's values; in the last step it is 0.
     fn shares(&self) -> Vec<ErrorShare> {
         let table = &self.table;
         vec![

@@ -1,16 +1,16 @@
 //! Builds a table of straight segments that approximates an increasing, concave function, such as the square root. The golden
-//! model of the device `rough` uses it for its sines; the hardware description computes that table with other code.
+//! model of the device `rough` uses it for its sines.
 //!
-//! The operand u is an unsigned integer of C bits. The upper three quarters of the operands are the first range. The upper
-//! three quarters of the remaining quarter are the second range, and so on. The operands below all ranges are called the tail.
-//! The segments of one range have the same length, and so have the segments of the tail. A value of the table is a raw number
-//! in the format u0.S.
+//! The operand u is an unsigned integer of C bits. The upper three quarters of the operands are the first range. The upper three
+//! quarters of the remaining quarter are the second range, and so on. The operands below all ranges are called the tail. All
+//! segments of a range have the same length, and so have all segments of the tail. A value of the table is a raw number in the
+//! format u0.S.
 
 use glint_base::fixed::exp2;
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CurveParams {
-    /// The C of the module documentation.
+    /// The number C of bits of the operand u.
     pub operand_bits: u32,
     /// The number S of fraction bits of a value.
     pub fraction: u32,
@@ -24,7 +24,7 @@ pub struct CurveParams {
     pub tail: u32,
 }
 
-/// Base and slope are the raw values that the table stores.
+/// A straight segment. `base` and `slope` are the raw values that the table stores.
 #[derive(Clone, Copy, Debug)]
 struct CurveSegment {
     start: u64,
@@ -36,11 +36,11 @@ struct CurveSegment {
 /// A segment of a [`SegmentedCurve`] with its error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Piece {
-    /// The smallest operand.
+    /// The smallest operand of the segment.
     pub start: u64,
-    /// The largest operand.
+    /// The largest operand of the segment.
     pub last: u64,
-    /// The largest `|value − function|`.
+    /// The largest `|value − function|` over the segment's operands, as a value.
     pub error: f64,
     /// The error that words of unlimited width would leave: the largest distance of the straight line from the function.
     pub shape: f64,
@@ -58,7 +58,7 @@ pub struct SegmentedCurve {
 }
 
 impl SegmentedCurve {
-    /// Makes the table of `function`, which gets the operand u from 0 to 2^C. It must be concave and increase from 0 to 1.
+    /// Makes the table of `function`, whose argument is u from 0 to 2^C. `function` must be concave and increase from 0 to 1.
     pub fn new(params: &CurveParams, function: impl Fn(f64) -> f64) -> Self {
         let mut curve = Self {
             params: params.clone(),
@@ -93,10 +93,10 @@ impl SegmentedCurve {
 
     /// Fits the base and the slope of segment number `at`, and appends its errors to `pieces`.
     ///
-    /// The slope is the slope of the chord, rounded. The difference between a concave function and a line of this slope rises
-    /// and then falls. The smallest difference is therefore at an end of the segment. The largest is at the turning point,
-    /// after which the function rises less than the line from one operand to the next. The base is the mean of both extremes. A
-    /// segment with a single operand has the slope 0.
+    /// The slope is the rounded slope of the chord. The difference between a concave function and a line of this slope rises and
+    /// then falls. The smallest difference is therefore at an end of the segment. The largest is at the turning point, after
+    /// which the function rises less than the line from one operand to the next. The base is the mean of the smallest and the
+    /// largest difference. A segment with a single operand has the slope 0.
     fn fit(&mut self, at: usize, function: &impl Fn(f64) -> f64) {
         let CurveSegment { start, log_length, .. } = self.segments[at];
         let steps = 1u64 << log_length;
@@ -140,12 +140,12 @@ impl SegmentedCurve {
         self.pieces.push(Piece { start, last: start + steps - 1, error, shape });
     }
 
-    /// Returns all segments: first the segments of the topmost range, and last the tail.
+    /// Returns all segments: first the topmost range's segments, and last the tail.
     pub fn pieces(&self) -> &[Piece] {
         &self.pieces
     }
 
-    /// Returns the value of the table at the operand u, from 0 to 2^C − 1.
+    /// Returns the table's value at the operand u, from 0 to 2^C − 1.
     #[inline]
     pub fn at(&self, u: i64) -> i64 {
         let length = 64 - (u as u64).leading_zeros();
@@ -169,7 +169,7 @@ impl SegmentedCurve {
 mod tests {
     use super::*;
 
-    /// Three quarters of x·(2 − x) at x = u/16.
+    /// Returns three quarters of x·(2 − x) at x = u/16.
     fn lobe(u: f64) -> f64 {
         0.75 * (u / 16.0) * (2.0 - u / 16.0)
     }

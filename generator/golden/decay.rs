@@ -22,14 +22,13 @@ use glint_base::fixed::{Format, Rounding, exp2};
 use glint_config::Config;
 use glint_keys::decay::{Decay, Keys};
 
-/// Each octave of the distance is divided into this number of parts, whose errors are bounded separately.
+/// Each octave of the distance is divided into this number of parts. Each part's error is bounded separately.
 const PARTS: i64 = 32;
 
-/// The integer arithmetic of the device, on raw values.
 struct DecayArithmetic {
     of: Decay,
     keys: Keys,
-    /// The decay divided by the distance 1 − c, and 2^−x.
+    /// `ratio` is the table of the decay divided by the distance 1 − c; `power` is the table of 2^−x.
     ratio: Arc<Piecewise>,
     power: Arc<Piecewise>,
     to_decay: Narrow,
@@ -40,7 +39,7 @@ struct DecayArithmetic {
 }
 
 impl DecayArithmetic {
-    /// Makes the tables of a configuration. Panics if the check of the schema has not accepted it.
+    /// Makes a configuration's tables. Panics if the schema's check has not accepted it.
     fn new(of: Decay, keys: Keys) -> Self {
         let ratio = keys.ratio(of).expect("a configuration that is checked");
         let power = keys.power().expect("a configuration that is checked");
@@ -62,12 +61,11 @@ impl DecayArithmetic {
         }
     }
 
-    /// Returns the octave and the distance of the cosine c. In `blinn`, the octave is the number of times that c must be
+    /// Returns the octave and the raw distance of the cosine c. In `blinn`, the octave is the number of times that c must be
     /// doubled to be at least one half. The distance is 1 minus the doubled c, less an ulp. In `gauss`, the octave is always 0,
     /// and c is not doubled. For example, with 4 fraction bits, c = 5/16 has octave 1 and distance 5 in `blinn`.
     ///
-    /// If the fraction bits of c are all 0 (c = 0 or 1.0), all bits of the octave in `blinn` are 1, as in the hardware. The
-    /// reflectance of such a c depends on neither.
+    /// If the fraction bits of c are all 0 (c = 0 or 1.0), all bits of the octave in `blinn` are 1, as in the hardware.
     #[inline]
     fn operand(&self, cosine: i64) -> (i64, i64) {
         let one = self.keys.operands.cosine.one();
@@ -85,9 +83,9 @@ impl DecayArithmetic {
         }
     }
 
-    /// Returns the decay as the factor that is multiplied by n, and whether the decay is small. The decay is `octave` plus
-    /// `distance` times `ratio`. A small decay, below ¼, has `decay.fraction` fraction bits; a larger one is truncated to
-    /// `decay.coarse_fraction`.
+    /// Returns the raw decay that is multiplied by n, and whether it is small. The decay is `octave` plus `distance` times
+    /// `ratio`. A small decay is below ¼ and has `decay.fraction` fraction bits; a larger decay is truncated to
+    /// `decay.coarse_fraction` fraction bits.
     #[inline]
     fn factor(&self, octave: i64, distance: i64, ratio: i64) -> (i64, bool) {
         let (fraction, coarse) = (self.keys.decay_fraction, self.keys.coarse_fraction);
@@ -106,7 +104,7 @@ impl DecayArithmetic {
         narrow.apply(factor * exponent)
     }
 
-    /// Returns the operand of the table of 2^−x.
+    /// Returns the operand of the table of 2^−x: the fraction bits of `halvings`.
     #[inline]
     fn argument(&self, halvings: i64) -> i64 {
         halvings & ((1 << self.keys.argument) - 1)
@@ -137,8 +135,9 @@ impl DecayArithmetic {
         }
     }
 
-    /// Returns upper limits of three errors of f, as values, for all raw distances from `from` to `to` in an octave. They come
-    /// from the error of the ratio, from the rounding of the decay, and from the bits that a coarse decay loses.
+    /// Returns upper limits of three errors of f, as values, for all raw distances from `from` to `to` in an octave. The first
+    /// comes from the error of the ratio, the second from the rounding of the decay, the third from the bits that a coarse decay
+    /// loses.
     fn of_distances(&self, (from, to): (i64, i64), octave: f64) -> [f64; 3] {
         let keys = &self.keys;
         let [from, to] = [from, to].map(|raw| raw as f64 * keys.operands.cosine.ulp());
@@ -169,7 +168,7 @@ impl DecayArithmetic {
     }
 }
 
-/// Panics if the check of the schema has not accepted the configuration.
+/// Returns the golden model. Panics if `config` has not passed the check against the schema.
 pub fn model(config: &Config, of: Decay) -> Box<dyn Model> {
     let it = Arc::new(DecayArithmetic::new(of, Keys::of(config)));
     let keys = &it.keys;
@@ -205,7 +204,8 @@ pub fn model(config: &Config, of: Decay) -> Box<dyn Model> {
     Box::new(products.behind(frame, reflectance, program))
 }
 
-/// Panics if the check of the schema has not accepted the configuration. The control operands are `cos_gamma` and `exponent`.
+/// Returns the accuracy contract, with the control operands `cos_gamma` and `exponent`. Panics if `config` has not passed the
+/// check against the schema.
 pub fn contract(config: &Config, of: Decay) -> Box<dyn Contract> {
     let it = DecayArithmetic::new(of, Keys::of(config));
     let operands = highlight::operands(&it.keys.operands, &it.keys.domain);
@@ -232,7 +232,8 @@ impl Reflectance for DecayArithmetic {
         Some(self.formula(cosine, exponent as f64))
     }
 
-    /// The largest n is an upper limit of the slope; the smallest n jumps most at a right angle.
+    /// Returns how fast and by which jumps f changes. The largest n is an upper limit of the slope; the smallest n jumps most at
+    /// a right angle.
     /// - cosⁿγ has the slope n·c^(n − 1), at most n. With n = 0 it jumps from 1 to 0 at a right angle.
     /// - exp(−n·γ²/2) has the slope n·(γ/sin γ)·exp(−n·γ²/2). It is at most n, since γ/sin γ ≤ exp(γ²/2) up to a right angle:
     ///   the logarithm of γ/sin γ is γ²/6 + γ⁴/180 + …, of positive terms that are together below γ²/2 there. At a right angle
@@ -260,15 +261,15 @@ impl Reflectance for DecayArithmetic {
     /// - The ratio of decay to distance has the error of its table, which is proved over every operand. In addition, several
     ///   distances share one operand of the table. Their difference from the middle distance is multiplied by the steepest
     ///   slope of the ratio. The sum of both errors is multiplied by the distance.
-    /// - |z − y| ≤ n·e, where e is the error of the decay, including the bits that a coarse decay loses. So |2^−z − 2^−y| ≤ ln
-    ///   2·n·e·2^−min(y, z), and min(y, z) ≥ n·(decay − e) with the smallest decay of a set of distances. As a function of n
-    ///   this is largest at n = 1/(ln 2·(decay − e)). Octaves beyond the first have the same distances and larger decays, so
-    ///   the first of them is the worst.
+    /// - |z − y| ≤ n·e, where e is the decay's error, including the bits that a coarse decay loses. So |2^−z − 2^−y| ≤ ln
+    ///   2·n·e·2^−min(y, z), and min(y, z) ≥ n·(decay − e) with the smallest decay of a set of distances. As a function of n this
+    ///   is largest at n = 1/(ln 2·(decay − e)). Octaves beyond the first have the same distances and larger decays, so the first
+    ///   of them is the worst.
     /// - z is truncated to the operand of the table of 2^−x. The table holds the value at the middle of the arguments that are
-    ///   truncated to one operand, so the argument is off by at most half an ulp of the operand. The slope of 2^−x is at most
-    ///   ln 2, and the table adds its own error. The shift to the right makes both errors smaller.
-    /// - f is rounded, or saturated just below 1.0; this changes f by at most an ulp. If the integer part of n·decay is F + 2
-    ///   or more, nothing of f is left, which is less than that ulp too.
+    ///   truncated to one operand. The argument is therefore off by at most half an ulp of the operand. The slope of 2^−x is at
+    ///   most ln 2, and the table adds its own error. The shift to the right makes both errors smaller.
+    /// - f is rounded, or saturated just below 1.0; this changes f by at most an ulp. If the integer part of n·decay is F + 2 or
+    ///   more, nothing of f is left, and f was below that ulp.
     /// - The output adds its own rounding. It cannot exceed the largest colour, because f < 1.
     fn shares(&self) -> Vec<ErrorShare> {
         let octaves: &[f64] = match self.of {

@@ -1,9 +1,8 @@
 //! Makes the golden model and the accuracy contract of a device from one list of its microinstructions.
 //!
-//! The author of a device declares operands and registers in a [`Frame`] and states the operation of each microinstruction. The
-//! golden model executes these operations clock by clock. The contract runs the golden model to get the results of the device. It
-//! compares them with a [`Formula`], which the author adds, with a bound on the error if the author has proved one. For example,
-//! this device squares its operand:
+//! The author of a device declares operands and registers in a [`Frame`] and states each microinstruction's operation. The golden
+//! model executes these operations clock by clock. The contract runs the golden model to get the device's results, and compares
+//! them with the author's [`Formula`]. For example, this device squares its operand:
 //!
 //! ```
 //! use glint_base::fixed::Format;
@@ -45,14 +44,13 @@ use super::{
     ANY_VALUE, Bound, Bounds, ComputedPart, Contract, Model, Operand, Output, Sweep, Term,
 };
 
-/// A computation may take this number of clocks at most.
+/// A computation may take at most this number of clocks. It ends a loop that never ends by mistake.
 const LONGEST: u32 = 1 << 20;
 
-/// The smallest bound, in units. A smaller one counts as this one, so that errors of outputs with different bounds can be
-/// compared.
+/// The smallest bound, in units. A bound below it counts as this one, so errors of outputs with different bounds can be compared.
 const LEAST_BOUND: f64 = 1e-6;
 
-/// Replaces a result that the device never shows.
+/// The result of a computation that never ends: no device outputs it.
 const NEVER: i64 = i64::MAX >> 1;
 
 /// A device whose golden model is a list of microinstructions, made by [`Frame::device`].
@@ -63,8 +61,8 @@ pub struct Device {
 }
 
 impl Frame {
-    /// Returns the device with this program of microinstructions, as [`Frame::model`] describes it. Panics if there is no
-    /// microinstruction.
+    /// Returns the device that executes the microinstructions `program`, as [`Frame::model`] describes. Panics if `program` is
+    /// empty.
     pub fn device(self, program: impl IntoIterator<Item = FrameStep>) -> Device {
         let mut operands = Vec::new();
         for (name, format, domain) in self.operands() {
@@ -79,8 +77,7 @@ impl Frame {
     }
 
     /// Returns the device that runs the parts of the frame one after the other, in the order in which [`Frame::part`] added them.
-    /// Each output that is combinational logic gets a register behind it. Never panics: its program ends unconditionally with the
-    /// microinstruction that raises `valid`, so that output registers can be added.
+    /// Each output that is combinational logic gets a register behind it.
     pub fn dataflow(mut self) -> Device {
         let device = match std::mem::take(&mut self.parts) {
             parts if parts.is_empty() => self.device([idle(), idle().valid().end()]),
@@ -96,8 +93,8 @@ impl Device {
         Box::new(self.model)
     }
 
-    /// Sets the operand's domain in the contract to the raw values `low ..= high`. Its register may have other values, for which
-    /// the contract promises nothing. Panics if the device has no such operand.
+    /// Sets the domain of `operand` in the contract to the raw values `low ..= high`. The operand's register may have other
+    /// values, for which the contract promises nothing. Panics if the device has no such operand.
     #[must_use]
     pub fn domain(mut self, operand: &str, low: i64, high: i64) -> Self {
         let found = self.operands.iter_mut().find(|it| it.name == operand);
@@ -105,8 +102,8 @@ impl Device {
         self
     }
 
-    /// Marks an operand as limited to its domain before the computation ([`Operand::clamped`]). Panics if the device has no such
-    /// operand.
+    /// Declares that the device limits `operand` to its domain before the computation ([`Operand::clamped`]). Panics if the
+    /// device has no such operand.
     #[must_use]
     pub fn limits(mut self, operand: &str) -> Self {
         let found = self.operands.iter_mut().find(|it| it.name == operand);
@@ -114,7 +111,7 @@ impl Device {
         self
     }
 
-    /// The golden model computes the contract's results, and `formula` states the exact values.
+    /// Returns the contract. The golden model computes its results, and `formula` gives the exact values.
     pub fn contract(self, formula: impl Formula + 'static) -> Box<dyn Contract> {
         let mut shown = Vec::new();
         for output in &self.outputs {
@@ -128,82 +125,82 @@ impl Device {
 
 /// The exact formula that a device approximates, with the proved bound of the device's error.
 pub trait Formula: Send + Sync {
-    /// Returns the exact outputs in f64, unrounded, for the values (not raw) of the operands in the order of the frame.
+    /// Returns the exact outputs, unrounded, for the values (not raw) of `operands`, in the order in which the frame declares
+    /// them.
     fn exact(&self, operands: &[f64]) -> Vec<f64>;
 
     /// Returns the two values that count as exact for output number `output` if the formula gives `value`. An error is measured
-    /// from the nearer one. They differ if the output wraps: an output from −1 to below 1 may be close to −1 or to 1 if the
-    /// formula gives 1.
+    /// from the nearer one. They differ only if the output wraps. For example, an output in −1 … 1 may be close to −1 or to 1 if
+    /// the formula gives 1.
     fn right_values(&self, value: f64, output: usize) -> [f64; 2] {
         let _ = output;
         [value; 2]
     }
 
-    /// Returns whether the contract promises anything about output number `output` for these values of the operands, for example
-    /// for a divisor of 0.
+    /// Returns whether the contract promises anything about output number `output` for these values of `operands`. A quotient
+    /// promises nothing for a divisor of 0.
     fn is_promised(&self, operands: &[f64], output: usize) -> bool {
         let _ = (operands, output);
         true
     }
 
-    /// Appends the raw outputs and returns true, if the author can compute them faster than the microprogram. They must equal the
-    /// results of the golden model.
+    /// Appends the raw outputs to `raw` and returns true, if the author can compute them faster than the microprogram. They must
+    /// equal the golden model's results.
     fn results(&self, operands: &[i64], raw: &mut Vec<i64>) -> bool {
         let _ = (operands, raw);
         false
     }
 
-    /// Returns the contributions to the error of output number `output`, each a proven upper limit; none if the bound is not
-    /// known yet.
+    /// Returns the contributions to the error of output number `output`, each a proved upper limit; none if no bound is known.
     fn terms(&self, output: usize) -> Vec<Term> {
         let _ = output;
         Vec::new()
     }
 
-    /// See [`Contract::parts`].
+    /// Returns the operations for [`Contract::parts`], by default none.
     fn parts(&self) -> Vec<ComputedPart> {
         Vec::new()
     }
 
-    /// Returns the bound that the contract demands for output number `output`, in units ([`Bound::limit`]).
+    /// Returns the largest error that the contract allows for output number `output`, in units ([`Bound::limit`]).
     fn limit(&self, output: usize) -> f64 {
         let _ = output;
         1.0
     }
 
-    /// See [`Contract::expressions`].
+    /// Returns the Python expressions for [`Contract::expressions`], by default none.
     fn expressions(&self) -> Vec<String> {
         Vec::new()
     }
 
-    /// See [`Contract::wraps`].
+    /// Returns whether an output loses the high bits of a value beyond its format ([`Contract::wraps`]).
     fn wraps(&self) -> bool {
         false
     }
 
-    /// See [`Contract::conditions`].
+    /// Returns the comparisons for [`Contract::conditions`], by default none.
     fn conditions(&self) -> Option<Vec<Option<Comparison>>> {
         None
     }
 
-    /// See [`Contract::hint`].
+    /// Returns raw operands for [`Contract::hint`], by default none.
     fn hint(&self, unit: &mut dyn FnMut() -> f64) -> Option<Vec<i64>> {
         let _ = unit;
         None
     }
 
-    /// See [`Contract::sweep`]; `None` visits all combinations of the operands.
+    /// Returns the cases for [`Contract::sweep`], or `None` for all combinations of the operands.
     fn sweep(&self) -> Option<Sweep> {
         None
     }
 
-    /// See [`Contract::sweep_error`]; `None` if a case is a set of operands.
+    /// Returns the error for [`Contract::sweep_error`], or `None` if a case is a set of operands.
     fn sweep_error(&self, place: &[i64]) -> Option<f64> {
         let _ = place;
         None
     }
 
-    /// See [`Contract::remarks`].
+    /// Returns the remarks for [`Contract::remarks`], by default none.
     fn remarks(&self) -> Vec<String> {
         Vec::new()
     }
@@ -211,16 +208,16 @@ pub trait Formula: Send + Sync {
 
 struct OfModel<F> {
     device: Device,
-    /// The positions of the outputs among the signals of the golden model.
+    /// The positions of the outputs in the list of the golden model's signals.
     shown: Vec<usize>,
-    /// See [`Bounds::weights`].
+    /// The factors of [`Bounds::weights`], which make the errors of all outputs comparable.
     weights: Vec<f64>,
     formula: F,
 }
 
 impl<F> OfModel<F> {
-    /// Runs the golden model from power-up with `operands`, and returns the raw outputs of result number `index`, if the model
-    /// shows it within `LONGEST` clocks.
+    /// Runs the golden model from power-up with `operands`, and returns the raw outputs of result number `index`. Returns `None`
+    /// if the model does not raise `valid` for this result within `LONGEST` clocks.
     fn shown(&self, operands: &[i64], index: u64) -> Option<Vec<i64>> {
         let mut model = self.device.model.clone();
         model.clock(&self.inputs(operands, 1));
@@ -253,7 +250,6 @@ impl<F> OfModel<F> {
         inputs
     }
 
-    /// Returns the raw outputs after the latest clock.
     fn raw_outputs(&self, model: &ClockedModel) -> Vec<i64> {
         let mut outputs = Vec::with_capacity(self.shown.len());
         for (&at, output) in self.shown.iter().zip(&self.device.outputs) {
@@ -272,8 +268,8 @@ impl<F: Formula> Contract for OfModel<F> {
         &self.device.outputs
     }
 
-    /// [`Formula::results`] only knows result number 0. If the model never shows the result, each output gets a number that is
-    /// further off than any bound.
+    /// Appends the outputs of result number `index`. [`Formula::results`] can compute only result number 0. If the model never
+    /// shows the result, each output gets a number whose error exceeds every bound.
     fn results(&self, operands: &[i64], index: u64, raw: &mut Vec<i64>) {
         if index == 0 && self.formula.results(operands, raw) {
             return;

@@ -1,9 +1,8 @@
 //! The golden model and the accuracy contract of the device `dot-product`, which computes cos γ = max(0, N·H / |N|).
 //!
 //! N is a vector of any length, such as an interpolated normal (operands `nx`, `ny`, `nz`). H is a unit vector, such as the half
-//! vector (`hx`, `hy`, `hz`). γ is the angle between them. With the key `two_sided` the result is |N·H| / |N|. It is at most 1,
-//! and 0 if N = 0. The device multiplies N·H by 1/√(N·N), which it interpolates in a table. For example, N = (0, 0, 0.5) and H =
-//! (0, 0, 1) give 1.
+//! vector (`hx`, `hy`, `hz`). γ is the angle between N and H. With the key `two_sided` the result is |N·H| / |N|. The result is
+//! at most 1, and 0 if N = 0. The device multiplies N·H by 1/√(N·N), which it interpolates in a table.
 
 use std::sync::Arc;
 
@@ -69,7 +68,7 @@ pub fn contract(config: &Config) -> Box<dyn Contract> {
     device(config).contract(CosineFormula::new(config))
 }
 
-/// Rounds a vector to `fraction` fraction bits: 0.5 with 4 is 8.
+/// Rounds each component to `fraction` fraction bits and returns it raw. For example, 0.5 with 4 fraction bits gives 8.
 fn raw_vector(vector: [f64; 3], fraction: u32) -> [i64; 3] {
     vector.map(|component| (component * exp2(fraction as i32)).round() as i64)
 }
@@ -78,7 +77,7 @@ fn raw_vector(vector: [f64; 3], fraction: u32) -> [i64; 3] {
 struct CosineFormula {
     keys: Keys,
     root: Root,
-    /// Rounds the shifted product N·H to the register `distance`, which holds half of it.
+    /// Rounds the shifted product N·H to the register `distance`, which holds half of the product.
     distance: Narrow,
     shortened: Narrow,
     rounded: Narrow,
@@ -99,14 +98,14 @@ impl CosineFormula {
         }
     }
 
-    /// Returns the register `distance`: half of N·H, shifted so that the length of N is from 1 to 2, and rounded. A negative N·H
-    /// gives 0, or half of |N·H| with `two_sided`.
+    /// Returns the raw value of the register `distance`: half of N·H, shifted and rounded. The shift makes the length of N lie
+    /// from 1 to 2. A negative N·H gives 0, or half of |N·H| with `two_sided`.
     fn distance(&self, sum: i64, shift: i64) -> i64 {
         self.distance.apply(if self.keys.two_sided { sum.abs() } else { sum } << shift)
     }
 
-    /// Returns upper limits of three errors of the cosine, as values: by the inverse root, the rounding of both factors, and the
-    /// rounding of the cosine.
+    /// Returns upper limits of three errors of the cosine, as values: from the inverse root, from the rounding of both factors,
+    /// and from the cosine's rounding.
     ///
     /// Let m be N·N, shifted to 1 ≤ m < 4. Let f = 1/√m, and let t be N·H, shifted by half as many places. The cosine is t·f.
     ///
@@ -141,8 +140,9 @@ impl Formula for CosineFormula {
         terms.map(|(key, what, error)| Term { key, what, units: error * units }).into()
     }
 
-    /// Returns a normal of random length, and a unit vector that is close to the normal's direction or nearly at a right angle
-    /// to it. Highlights are near a cosine of 1, and at a cosine of 0 the result begins to be clamped.
+    /// Returns random operands at which faults are likely to show: a normal of random length, and a unit vector. The unit vector
+    /// is near the normal's direction, where highlights are, or nearly perpendicular to it, where the result begins to be
+    /// clamped.
     fn hint(&self, unit: &mut dyn FnMut() -> f64) -> Option<Vec<i64>> {
         let normal = unit_vector(centred(unit));
         let off = centred(unit);
@@ -165,13 +165,13 @@ impl Formula for CosineFormula {
         Some([normal, half].concat())
     }
 
-    /// Visits every sum of squares N·N from 1 on, which determines the inverse root.
+    /// Visits every sum of squares N·N from 1 on, because N·N alone determines the inverse root.
     fn sweep(&self) -> Option<Sweep> {
         Some(self.root.sweep())
     }
 
-    /// Returns an upper limit of the error, in units. It is the actual error of the inverse root for this sum of squares, plus
-    /// the largest possible errors of the factors and of the rounding.
+    /// Returns an upper limit of the error, in units, for the sum of squares `place`. It is the actual error of the inverse root
+    /// there, plus the largest possible errors of the factors and of the rounding.
     fn sweep_error(&self, place: &[i64]) -> Option<f64> {
         let [_, factors, rounding] = self.errors();
         let error = self.root.relative_error(place[0]) + factors + rounding;

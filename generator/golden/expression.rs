@@ -1,7 +1,7 @@
 //! The golden model and the accuracy contract of the device `expression`, which computes formulas of several operands.
 //!
-//! A configuration states the formulas, such as `a / b` or `sqrt(x*x + y*y)`. The planner ([`glint_plan`]) translates them into
-//! a plan and proves a bound on its error against the formulas. The module `plan` executes the plan in integers.
+//! A configuration states the formulas, such as `a / b` or `sqrt(x*x + y*y)`. The planner ([`glint_plan`]) translates them into a
+//! plan and proves a bound on its error against the formulas. The golden model executes the plan in integers.
 
 use std::sync::Arc;
 
@@ -27,8 +27,8 @@ pub fn contract(config: &Config, planned: &Arc<ProvedPlan>) -> Box<dyn Contract>
     device(config, planned).contract(ProvedFormulas { planned: planned.clone() })
 }
 
-/// Returns the two numbers nearest to a format that differ from `value` by a multiple of the format's range, first the one in
-/// the format. For s0.7, with the range 2 from −1 to below 1, 1.25 gives −0.75 and 1.25.
+/// Returns two numbers that differ from `value` by a multiple of the format's range: first the one in the format, then the
+/// nearest one outside. For s0.7, with the range 2 from −1 to below 1, 1.25 gives −0.75 and 1.25.
 fn values_in_format(value: f64, format: Format) -> [f64; 2] {
     let range = exp2(format.width() as i32 - format.frac);
     let least = format.to_f64(format.min_raw());
@@ -37,10 +37,9 @@ fn values_in_format(value: f64, format: Format) -> [f64; 2] {
     [inside, if is_in_upper_half { inside - range } else { inside + range }]
 }
 
-/// A longer formula is not written out as text for benches and programs.
+/// The largest number of parts of a formula that is written out as text for benches and programs.
 const MOST_PARTS: u32 = 20_000;
 
-/// The formulas of the configuration, with the plan and the proved bounds.
 struct ProvedFormulas {
     planned: Arc<ProvedPlan>,
 }
@@ -76,7 +75,7 @@ impl ProvedFormulas {
 }
 
 impl Formula for ProvedFormulas {
-    /// A formula without a value, such as 1 / 0, gives NaN.
+    /// Returns NaN for a formula without a value, such as 1 / 0.
     fn exact(&self, operands: &[f64]) -> Vec<f64> {
         let enclosed = self.enclosed(operands);
         let mut values = Vec::with_capacity(self.planned.statement.results.len());
@@ -101,8 +100,8 @@ impl Formula for ProvedFormulas {
         result.promise.is_none() || result.is_promised(&self.enclosed(operands)) != Some(false)
     }
 
-    /// Appends the raw results of the plan and returns true, if the operands are in the domain. An operand that the device
-    /// limits to its domain is limited first. It is proved that no value leaves its format there.
+    /// Appends the raw results of the plan and returns true, if `operands` are in the domain. An operand that the device limits
+    /// to its domain is limited first.
     fn results(&self, operands: &[i64], raw: &mut Vec<i64>) -> bool {
         let mut computed = Vec::with_capacity(operands.len());
         for (operand, raw) in self.planned.statement.operands.iter().zip(operands) {
@@ -120,7 +119,7 @@ impl Formula for ProvedFormulas {
         true
     }
 
-    /// Separates the rounding of the result from everything before it.
+    /// Returns the rounding of the result and all errors before it as separate terms.
     fn terms(&self, output: usize) -> Vec<Term> {
         let bound = self.planned.bounds[output];
         let rounding = bound.min(0.5);
@@ -134,7 +133,6 @@ impl Formula for ProvedFormulas {
         ]
     }
 
-    /// Returns the operations of the plan, without operands and exact constants.
     fn parts(&self) -> Vec<ComputedPart> {
         let plan = &self.planned.plan;
         let mut parts = Vec::new();
@@ -163,7 +161,8 @@ impl Formula for ProvedFormulas {
         self.planned.statement.results[output].error
     }
 
-    /// Returns no text for formulas that are too long. Each use of a named part repeats the formula of this part.
+    /// Returns the formulas in Python, or nothing if a formula is too long. Each use of a named part repeats the formula of this
+    /// part.
     fn expressions(&self) -> Vec<String> {
         if !self.is_writable() {
             return Vec::new();

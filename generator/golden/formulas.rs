@@ -1,12 +1,11 @@
 //! The exact formulas of the devices, computed in f64 without rounding to fixed point ([symbols](crate#symbols)).
 //!
 //! A surface that faces away (c ≤ 0) has f = 0, except in [`lyon`], [`cosine_squared`] and [`stretched_cosine`], which do not
-//! know γ. Angles are in radians. Transcendental functions come from `libm`, so that every machine computes the same values.
+//! know γ. Angles are in radians. Transcendental functions come from `libm`, so every machine computes the same values.
 
 use std::f64::consts::FRAC_PI_2;
 
-/// Returns Blinn's function `cⁿ` (device `blinn`), or 0 if `c ≤ 0`, also for n = 0. The formulas of all other highlight devices
-/// approximate it. For example, c = 0.5 and n = 2 give 0.25.
+/// Returns Blinn's function `cⁿ` (device `blinn`), or 0 if `c ≤ 0`, also for n = 0. For example, c = 0.5 and n = 2 give 0.25.
 pub fn blinn(c: f64, n: f64) -> f64 {
     if c <= 0.0 { 0.0 } else { libm::pow(c, n) }
 }
@@ -25,14 +24,14 @@ pub fn turned_cosine(c: f64, cd: f64, dgamma_negative: bool) -> f64 {
     }
 }
 
-/// Returns `n/2·(cos(γ ± dγ) − 1) + 1`, before clamp and square.
+/// Returns `n/2·(cos(γ ± dγ) − 1) + 1`. The formula of `rough` clamps this base at 0 and squares it.
 #[inline]
 fn rough_base(c: f64, cd: f64, dgamma_negative: bool, n: f64) -> f64 {
     n / 2.0 * (turned_cosine(c, cd, dgamma_negative) - 1.0) + 1.0
 }
 
 /// Returns the formula of the device `rough` (seed 001): `(n/2·(cos(γ ± dγ) − 1) + 1)²`, or 0 if the base is negative or `c ≤ 0`.
-/// The parameters are those for [`turned_cosine`]; trigger 4 in the patent's figure is `dgamma_negative`.
+/// `c`, `cd` and `dgamma_negative` are as for [`turned_cosine`].
 #[inline]
 pub fn rough(c: f64, cd: f64, dgamma_negative: bool, n: f64) -> f64 {
     if c <= 0.0 {
@@ -42,8 +41,8 @@ pub fn rough(c: f64, cd: f64, dgamma_negative: bool, n: f64) -> f64 {
     base * base
 }
 
-/// Returns the formula of the device `rough` without its clamp: the parabola rises again if the base is negative. The result is
-/// limited to 1; it is 0 if `c ≤ 0`.
+/// Returns the formula of the device `rough` without its clamp of the base: for a negative base, the parabola rises again. The
+/// result is limited to 1; it is 0 if `c ≤ 0`.
 #[inline]
 pub fn rough_unclamped(c: f64, cd: f64, dgamma_negative: bool, n: f64) -> f64 {
     if c <= 0.0 {
@@ -53,14 +52,13 @@ pub fn rough_unclamped(c: f64, cd: f64, dgamma_negative: bool, n: f64) -> f64 {
     (base * base).min(1.0)
 }
 
-/// Returns the parabola `(n/2·(c − 1) + 1)²`, or 0 if the base is negative or `c ≤ 0`. The device `threshold` (UA 30041, cited in
-/// seed 001) compares this value with a level.
+/// Returns the parabola `(n/2·(c − 1) + 1)²`, or 0 if the base is negative or `c ≤ 0`.
 #[inline]
 pub fn parabola(c: f64, n: f64) -> f64 {
     rough(c, 1.0, false, n)
 }
 
-/// Returns `square` if it is at least `level`, otherwise 0. UA 30041 has such a level of visibility.
+/// Returns `square` if it is at least `level`, otherwise 0. UA 30041 (device `threshold`) calls `level` the level of visibility.
 #[inline]
 pub fn threshold(square: f64, level: f64) -> f64 {
     if square < level { 0.0 } else { square }
@@ -91,8 +89,6 @@ pub fn quadratic(c: f64, a: f64) -> f64 {
 
 /// Returns the formula of the device `cosine-power`, the function W of the paper (seed 002): `(n/m·(c − 1) + 1)^m`, or 0 if the
 /// base is negative or `c ≤ 0`.
-///
-/// `m` is a power of two; the paper uses 2 to 16.
 #[inline]
 pub fn cosine_power(c: f64, n: f64, m: u32) -> f64 {
     if c <= 0.0 {
@@ -114,7 +110,7 @@ pub fn quad_power(n: i64) -> u32 {
     }
 }
 
-/// Returns `cosᵏ` of `angle`, which may be negative, or 0 if its magnitude is a right angle or more. k is a power of two.
+/// Returns `cosᵏ(angle)`, or 0 if the magnitude of `angle` is a right angle or more. `k` is a power of two.
 #[inline]
 fn lobe(angle: f64, k: u32) -> f64 {
     let magnitude = angle.abs();
@@ -124,7 +120,7 @@ fn lobe(angle: f64, k: u32) -> f64 {
     (0..k.ilog2()).fold(libm::cos(magnitude), |power, _| power * power)
 }
 
-/// Returns the formula of the device `quad-cosine` (seed 000): `cosᵏ(√(n/k)·δ)`, where [`quad_power`] gives k and `delta` is δ.
+/// Returns the formula of the device `quad-cosine` (seed 000): `cosᵏ(√(n/k)·δ)`. `delta` is δ, and k is [`quad_power`] of `n`.
 /// The result is 0 if `√(n/k)·δ` or δ is beyond a right angle, since the surface then faces away.
 #[inline]
 pub fn quad_cosine(delta: f64, n: i64) -> f64 {
@@ -135,8 +131,8 @@ pub fn quad_cosine(delta: f64, n: i64) -> f64 {
     lobe((n as f64 / f64::from(k)).sqrt() * delta, k)
 }
 
-/// Returns the formula of the device `cosine-squared`, a prototype cited in seed 000 (Abbas, Szirmay-Kalos and Horváth):
-/// `cos²(a·δ)`, or 0 if a·δ is a right angle or more. `stretched` is the product a·δ, with a = √(n/2).
+/// Returns the formula of the device `cosine-squared` (a prototype that seed 000 cites): `cos²(a·δ)`, or 0 if a·δ is a right
+/// angle or more. `stretched` is the product a·δ, with a = √(n/2).
 #[inline]
 pub fn cosine_squared(stretched: f64) -> f64 {
     lobe(stretched, 2)
@@ -160,8 +156,7 @@ pub fn schlick(c: f64, n: f64) -> f64 {
     if c <= 0.0 { 0.0 } else { c / (n * (1.0 - c) + c) }
 }
 
-/// Returns the approximation of seed 000 for any power k: `cosᵏ(√(n/k)·δ)`, or 0 if `√(n/k)·δ` is a right angle or more. With k =
-/// 2 it is the formula of `cosine-squared`.
+/// Returns the approximation of seed 000 for any power k: `cosᵏ(√(n/k)·δ)`, or 0 if `√(n/k)·δ` is a right angle or more.
 #[inline]
 pub fn stretched_cosine(delta: f64, n: f64, k: u32) -> f64 {
     let angle = (n / f64::from(k)).sqrt() * delta.abs();

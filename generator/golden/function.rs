@@ -14,7 +14,7 @@ use glint_config::Config;
 use glint_formula::{Enclosure, parse};
 use glint_keys::function::{FunctionPlan, operand};
 
-/// The bound encloses the slope in each of this number of pieces of the domain. It is a power of two, so that the ends of the
+/// The domain is cut into this number of pieces; `slope` encloses the slope in each. It is a power of two, so the ends of the
 /// pieces are exact.
 const PIECES: u32 = 4096;
 
@@ -31,14 +31,14 @@ pub fn contract(config: &Config, planned: &FunctionPlan) -> Box<dyn Contract> {
     device(config, planned).contract(Stated { function, polynomials: planned.polynomials.clone() })
 }
 
-/// Returns NaN if the formula cannot be parsed or has no value.
+/// Returns the value of `formula` at x, or NaN if the formula cannot be parsed or has no value.
 pub(super) fn at(formula: &str, x: f64) -> f64 {
     let value = parse(formula).and_then(|it| it.enclose(&[("x", Enclosure::exactly(x))]));
     value.map_or(f64::NAN, Enclosure::middle)
 }
 
-/// Returns a proven limit of the absolute slope of the formula over its domain, from interval derivatives. There is no limit if
-/// the formula may jump or be infinitely steep, or if samples give the function.
+/// Returns a proved upper limit of the formula's absolute slope over its domain, from interval derivatives. Returns `None` if the
+/// formula may jump or be infinitely steep, or if samples give the function.
 pub(super) fn slope(planned: &FunctionPlan) -> Option<f64> {
     let FunctionPlan { function, polynomials: it, .. } = planned;
     let Curve::Formula(formula) = &function.curve else { return None };
@@ -53,14 +53,13 @@ pub(super) fn slope(planned: &FunctionPlan) -> Option<f64> {
     Some(steepest)
 }
 
-/// The function, and its piecewise polynomial with the proved bound.
 struct Stated {
     function: TargetFunction,
     polynomials: Arc<Piecewise>,
 }
 
 impl Formula for Stated {
-    /// Returns NaN if the formula or the curve has no value.
+    /// Returns the exact value, or NaN if the formula or the curve has none there.
     fn exact(&self, operands: &[f64]) -> Vec<f64> {
         let x = operand(&self.polynomials).computed(operands[0]);
         let raw = (x * exp2(self.function.operand.frac)) as i64;
@@ -68,8 +67,8 @@ impl Formula for Stated {
         vec![value * exp2(-(self.function.fraction as i32))]
     }
 
-    /// Appends the raw result and returns true, if the operand is in the domain. An operand that the device limits to its
-    /// domain is limited first. It is proved at every operand that no sum leaves its format there.
+    /// Appends the raw result and returns true, if the operand is in the domain. An operand that the device limits to its domain
+    /// is limited first.
     fn results(&self, operands: &[i64], raw: &mut Vec<i64>) -> bool {
         let (first, last) = self.polynomials.domain;
         let x = operand(&self.polynomials).computed_raw(operands[0]);

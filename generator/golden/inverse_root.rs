@@ -11,7 +11,7 @@ use glint_base::fixed::{exp2, mask};
 const FARTHEST: i64 = 12;
 
 pub(super) struct Root {
-    /// The number of bits of the sum.
+    /// The number of bits of the sum of squares.
     pub width: u32,
     address: u32,
     fraction: u32,
@@ -20,8 +20,8 @@ pub(super) struct Root {
 }
 
 impl Root {
-    /// Makes the table for components with `components` fraction bits. The `address` leading bits of the mantissa choose a
-    /// segment; an inverse root has `fraction` fraction bits.
+    /// Makes the table for components with `components` fraction bits. The `address` leading bits of the mantissa select a
+    /// segment. The table's values have `fraction` fraction bits.
     pub fn new(components: u32, address: u32, fraction: u32) -> Self {
         let segments = 1i64 << address;
         let scale = exp2(fraction as i32);
@@ -32,8 +32,8 @@ impl Root {
         Self { width: 2 * components + 4, address, fraction, ends }
     }
 
-    /// Returns the number of pairs of leading zeros of a sum, or for 0 the largest number of the shifter's count. The sum 0b0001
-    /// of 4 bits has one pair and one more zero, so the number is 1.
+    /// Returns the number of pairs of leading zeros of `sum`. For 0, returns the largest number that the shifter can count. For
+    /// example, the sum 0b0001 of 4 bits has three leading zeros, so one pair.
     pub fn pairs(&self, sum: i64) -> i64 {
         match sum {
             0 => (1 << self.pair_bits()) - 1,
@@ -46,12 +46,12 @@ impl Root {
         (self.width - 1).ilog2()
     }
 
-    /// Returns the sum shifted left by `pairs` pairs of bits. The mantissa of 0 is 0.
+    /// Returns the mantissa: `sum` shifted left by `pairs` pairs of bits. The mantissa of 0 is 0.
     pub fn mantissa(&self, sum: i64, pairs: i64) -> i64 {
         if sum == 0 { 0 } else { sum << (2 * pairs) }
     }
 
-    /// Returns 1/√m for a mantissa m, interpolated linearly in its segment, or 0 for 0.
+    /// Returns the raw 1/√m for a raw mantissa m, interpolated linearly in its segment, or 0 for 0.
     pub fn inverse(&self, mantissa: i64) -> i64 {
         if mantissa == 0 {
             return 0;
@@ -67,10 +67,10 @@ impl Root {
     /// be the mantissa, 1 ≤ m < 4, and f = 1/√m. Let r be the hardware's value of f with R fraction bits, u the weight of its
     /// last bit, and A the number of address bits.
     ///
-    /// - f is convex, so that a chord lies above it, by at most h²/8·max f″ = h²/8·¾·a^(−5/2) in the segment of length h that
-    ///   begins at a.
-    /// - The ends of the chord are rounded: ½u. The position in the segment is truncated by at most 2^−(R − A + 2) of the
-    ///   segment's length, over which f falls by at most h/2 = 2^(1 − A): ½u. The fall is truncated: u. The sum is 2u.
+    /// - f is convex, so a chord lies above it, by at most h²/8·max f″ = h²/8·¾·a^(−5/2) in the segment of length h that begins
+    ///   at a.
+    /// - The chord's ends are rounded: ½u. The position in the segment is truncated by at most 2^−(R − A + 2) of the segment's
+    ///   length, over which f falls by at most h/2 = 2^(1 − A): ½u. The fall is truncated: u. The sum is 2u.
     /// - √m is below 2, so the roundings contribute at most 4u to the error of √m·r. The error of the chord is multiplied by
     ///   the square root of the segment's upper end.
     pub fn error(&self) -> [f64; 2] {
@@ -84,7 +84,7 @@ impl Root {
         [chord, 4.0 * exp2(-(self.fraction as i32))]
     }
 
-    /// Visits every sum of squares from 1 on, which alone determines the inverse root.
+    /// Visits every sum of squares from 1 on, because the sum alone determines the inverse root.
     pub fn sweep(&self) -> Sweep {
         Sweep::ranges([("sum of squares", (1, FARTHEST << (self.width - 4)))])
     }
@@ -97,12 +97,11 @@ impl Root {
     }
 }
 
-/// Returns random components from −1 to 1, if `unit` returns random numbers from 0 to 1.
+/// Returns three random components from −1 to 1, from random numbers 0 to 1 that `unit` returns.
 pub(super) fn centred(unit: &mut dyn FnMut() -> f64) -> [f64; 3] {
     [(); 3].map(|()| 2.0 * unit() - 1.0)
 }
 
-/// Returns the unit vector with the direction of `vector`, or zero for the zero vector.
 pub(super) fn unit_vector(vector: [f64; 3]) -> [f64; 3] {
     let now = vector.map(|it| it * it).iter().sum::<f64>().sqrt();
     vector.map(|it| if now == 0.0 { 0.0 } else { it / now })

@@ -2,12 +2,12 @@
 //!
 //! A golden model is a second implementation of a device, written from the formula and the text of its source. It predicts the
 //! architectural registers and the outputs on every clock. An accuracy contract states the exact formula of the device, and a
-//! bound on its error if the author of the device has proved one.
+//! bound on its error if the device's author has proved one.
 //!
 //! A golden model never sees the hardware description, the netlist or the microcode. An error in one of them therefore shows as a
-//! difference in simulation. It also computes its own tables, except in four devices. In `blinn` and `gauss` the description and
-//! the golden model read the same polynomials ([`glint_keys::decay`]), and in `function` and `expression` the same plan
-//! ([`glint_plan`]). Exhaustive checks or proofs compare polynomials and plan with the formulas instead.
+//! difference in simulation. It also computes its own tables, except in five devices. In `blinn` and `gauss` the description and
+//! the golden model read the same polynomials ([`glint_keys::decay`]). In `function`, `expression` and `unit` they read the same
+//! plan ([`glint_plan`]).
 //!
 //! # Symbols
 //! c = cos γ, where γ is the angle between the surface normal and the half vector. n is the specular exponent. f is the
@@ -74,31 +74,32 @@ pub trait Model: CloneModel + Send + Sync {
     /// pipeline stages and synchronous ROMs.
     fn signals(&self) -> &[String];
 
-    /// Performs one rising edge with the bit patterns of the inputs just before it.
+    /// Performs one rising edge. `inputs` are the bit patterns of the inputs just before it, in the order of `Model::inputs`.
     fn clock(&mut self, inputs: &[u64]);
 
     /// Returns the model, after power-up, of a variant of the device: each result that is combinational logic has a register
-    /// `<output>_reg` behind it. The microinstruction that raised `valid` loads these registers, and one more after it raises
-    /// `valid`. If the device delays `valid`, every microinstruction loads the registers, and the delay becomes one clock longer.
-    /// Without combinational results the variant is a copy.
+    /// `<output>_reg` behind it. The microinstruction that raised `valid` loads these registers, and an added microinstruction
+    /// after it raises `valid`. If the device delays `valid`, every microinstruction loads the registers, and the delay becomes
+    /// one clock longer. Without combinational results the variant is a copy.
     ///
-    /// A model made from a [`frame::Frame`] has this variant, unless it does not delay `valid` and a condition decides what
-    /// follows a microinstruction with `valid`. The author of any other model may write it.
+    /// A model made from a [`frame::Frame`] has this variant, with one exception: without a delay of `valid`, a microinstruction
+    /// with `valid` must have an unconditional successor.
     fn with_output_registers(&self) -> Option<Box<dyn Model>> {
         None
     }
 
     /// Returns the model, after power-up, of a variant of the device: each operand register has a register `<operand>_buffer` in
-    /// front. The environment may write the buffers at any time. `start` loads the operand registers from the buffers; an operand
-    /// that is written in the same clock gets the new value. The last clock of a computation also accepts `start`, so that the
+    /// front of it. The environment may write the buffers at any time. `start` loads the operand registers from the buffers; an
+    /// operand that is written in the same clock gets the new value. The last clock of a computation also accepts `start`, so the
     /// next computation follows at once.
     ///
-    /// A model made from a [`frame::Frame`] has this variant. The author of any other model may write it.
+    /// A model made from a [`frame::Frame`] has this variant.
     fn with_operand_buffers(&self) -> Option<Box<dyn Model>> {
         None
     }
 
-    /// Returns the model if it was made from a [`frame::Frame`]: only such a model can be a part of another one.
+    /// Returns the model if it was made from a [`frame::Frame`], otherwise `None`. Only such a model can be a part of a larger
+    /// one.
     fn clocked(&self) -> Option<&frame::ClockedModel> {
         None
     }
@@ -106,14 +107,14 @@ pub trait Model: CloneModel + Send + Sync {
     /// Returns the values after the latest edge, in the order of [`Model::signals`].
     fn values(&self) -> &[u64];
 
-    /// Returns the bit pattern of the signal `name` after the latest edge.
+    /// Returns the bit pattern of the signal `name` after the latest edge, or `None` if the model has no such signal.
     fn value(&self, name: &str) -> Option<u64> {
         let at = self.signals().iter().position(|signal| signal == name)?;
         Some(self.values()[at])
     }
 }
 
-/// Clones a boxed [`Model`]; every `Model` that is [`Clone`] has it.
+/// Clones a boxed [`Model`]. Every `Model` that is [`Clone`] gets it automatically.
 pub trait CloneModel {
     fn boxed_clone(&self) -> Box<dyn Model>;
 }
@@ -130,23 +131,23 @@ impl Clone for Box<dyn Model> {
     }
 }
 
-/// An operand as an accuracy contract sees it.
+/// An operand of an accuracy contract.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Operand {
     pub name: String,
     pub format: Format,
-    /// The smallest and largest raw value, included, for which the contract is stated.
+    /// The smallest and largest raw value of the domain, for which the contract is stated.
     pub domain: (i64, i64),
     /// Whether the device limits the operand to the domain before it computes. The contract then also holds for operands outside
-    /// the domain, with the nearer end in their place.
+    /// the domain: they count as the nearest end.
     pub clamped: bool,
     /// Whether a highlight multiplies the reflectance `f` by this operand. The other operands determine `f`.
     pub colour: bool,
-    /// A text of one line.
+    /// A description of one line.
     pub doc: String,
 }
 
-/// An output as an accuracy contract sees it.
+/// An output of an accuracy contract.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Output {
     pub name: String,
@@ -154,20 +155,23 @@ pub struct Output {
     pub format: Format,
 }
 
-/// The exact formula of each output of a device, and a proven bound on the output's difference from it. A device that multiplies
-/// colours by a reflectance f uses a [`Highlight`].
+/// The exact formula of each output of a device, and a proven bound on the output's difference from it.
 pub trait Contract: Send + Sync {
-    /// The order in which values are passed.
+    /// Returns the operands, in the order in which other methods take their values.
     fn operands(&self) -> &[Operand];
 
-    /// The order in which results are given.
+    /// Returns the outputs, in the order in which other methods return their values.
     fn outputs(&self) -> &[Output];
 
-    /// Appends the raw outputs for raw operands. If a computation has several results, such as the points of a scan line, `index`
-    /// is the number of the result, from 0.
+    /// Appends the raw outputs for raw `operands` to `raw`. If a computation has several results, such as a scan line's points,
+    /// `index` is the number of the result, from 0.
     fn results(&self, operands: &[i64], index: u64, raw: &mut Vec<i64>);
 
-    /// Checks that the device shows its results at all. The error says why not, with a remedy.
+    /// Checks that the device shows its results.
+    ///
+    /// # Errors
+    ///
+    /// Fails if it does not. The message has the reason and a remedy.
     fn check(&self) -> Result<(), String> {
         Ok(())
     }
@@ -179,8 +183,8 @@ pub trait Contract: Send + Sync {
     /// contract promises nothing.
     fn exact(&self, operands: &[i64], index: u64, values: &mut Vec<[f64; 2]>);
 
-    /// Appends the value of the formula of each output, also where the contract promises nothing, or NaN if the formula has none.
-    /// For example, x / y is 9 for x = 0.9 and y = 0.1, even if the contract promises results only where x < y.
+    /// Appends the value of each output's formula, also where the contract promises nothing, or NaN if the formula has none. For
+    /// example, x / y is 9 for x = 0.9 and y = 0.1, even if the contract promises results only where x < y.
     fn formula_values(&self, operands: &[i64], index: u64, values: &mut Vec<f64>) {
         let mut exact = Vec::new();
         self.exact(operands, index, &mut exact);
@@ -189,12 +193,12 @@ pub trait Contract: Send + Sync {
         }
     }
 
-    /// Returns the proven bounds of the errors of all outputs. A bound without terms is not stated; `glint certify` may then find
+    /// Returns the proved bounds of the errors of all outputs. A bound without terms is not stated; `glint certify` may then find
     /// one.
     fn bounds(&self) -> Bounds;
 
-    /// Returns the formula of each output as a Python expression, by the rules of [`highlight::Reflectance::expressions`], or an
-    /// empty list. For a highlight it is empty; [`Highlight::expressions`] has f.
+    /// Returns each output's formula as a Python expression, by the rules of [`highlight::Reflectance::expressions`], or an empty
+    /// list. For a highlight it is empty; [`Highlight::expressions`] has f.
     fn expressions(&self) -> Vec<String> {
         Vec::new()
     }
@@ -205,7 +209,7 @@ pub trait Contract: Send + Sync {
         None
     }
 
-    /// Returns whether an output wraps: a value beyond its format loses its high bits, so that two values may be right.
+    /// Returns whether an output wraps: a value beyond its format loses its high bits, so two values may count as right.
     fn wraps(&self) -> bool {
         false
     }
@@ -215,12 +219,11 @@ pub trait Contract: Send + Sync {
         None
     }
 
-    /// Returns raw operands at which an error is likely to show: where the formula is steep, bends or ends. Half of the points of
-    /// a test are such points. `unit` returns random numbers from 0 to below 1. Values outside the domain are moved to its
-    /// nearest end.
+    /// Returns raw operands at which an error is likely to show: where the formula is steep, bends or ends. Tests draw half of
+    /// their points this way. `unit` returns random numbers from 0 to below 1. Values outside the domain are moved to its nearest
+    /// end.
     ///
-    /// With `None`, tests draw points from the whole domain, its ends more often. For a [`Highlight`] they draw points by the
-    /// value of its formula.
+    /// With `None`, tests draw points from the whole domain, its ends more often.
     fn hint(&self, unit: &mut dyn FnMut() -> f64) -> Option<Vec<i64>> {
         let _ = unit;
         None
@@ -245,7 +248,7 @@ pub trait Contract: Send + Sync {
     }
 
     /// Returns the error of each output for raw `operands`, in units of the output's last bit. For a computation with several
-    /// results, such as the points of a line, these are the errors of the first.
+    /// results, such as a line's points, these are the first's errors.
     fn errors(&self, operands: &[i64]) -> Vec<f64> {
         let (mut raw, mut exact) = (Vec::new(), Vec::new());
         self.results(operands, 0, &mut raw);
@@ -263,20 +266,20 @@ pub trait Contract: Send + Sync {
         self.errors(operands).into_iter().fold(0.0, f64::max)
     }
 
-    /// Returns the parts of the computation in order, if the contract knows them.
+    /// Returns the operations of the computation in order; none if the contract does not know them.
     fn parts(&self) -> Vec<ComputedPart> {
         Vec::new()
     }
 
-    /// Returns remarks for a user about the formula of this configuration, with numbers: another configuration may come closer to
-    /// the function that the device approximates.
+    /// Returns remarks for a user, with numbers. For example, they say that another configuration comes closer to the function
+    /// that the device approximates.
     fn remarks(&self) -> Vec<String> {
         Vec::new()
     }
 }
 
-/// Returns the distance of `value` from the nearer one of two correct results: 2.5 is 0.5 away from 2.0 and 4.0. A result that is
-/// not finite gives infinity, since a formula without a value cannot confirm a result; [`ANY_VALUE`] gives 0.
+/// Returns the distance of `value` from the nearer one of the two values `right`: 2.5 is 0.5 away from 2.0 and 4.0. A right value
+/// that is not finite gives infinity, because a formula without a value cannot confirm a result. [`ANY_VALUE`] gives 0.
 #[inline]
 pub fn nearer(value: f64, right: [f64; 2]) -> f64 {
     let [a, b] = right.map(|right| (value - right).abs());
@@ -290,14 +293,13 @@ pub fn nearer(value: f64, right: [f64; 2]) -> f64 {
     }
 }
 
-/// For operands for which the contract promises nothing, every value counts as correct.
+/// Takes the place of the exact values if the contract promises nothing: every result counts as right.
 pub const ANY_VALUE: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 
 /// The cases of an exhaustive check: every combination of the values on its axes.
 ///
 /// An axis is usually an operand. A device with too many combinations may use intermediate values that determine the result as
-/// axes. [`Contract::sweep_error`] then returns the largest error over all operands that lead to them. An axis may also be a list
-/// of settings.
+/// axes. [`Contract::sweep_error`] then returns the largest error over all operands that give these values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sweep {
     /// The axes, the outermost loop first.
@@ -308,7 +310,7 @@ pub struct Sweep {
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
-    /// An operand, or an intermediate value that replaces operands.
+    /// The name of an operand, or of an intermediate value that replaces operands.
     pub name: String,
     pub values: Values,
 }
@@ -321,12 +323,12 @@ pub enum Values {
 }
 
 impl Sweep {
-    /// Visits every combination of values of these operands.
+    /// Makes the sweep of all values in the domains of `operands`.
     pub fn all<'a>(operands: impl Iterator<Item = &'a Operand>) -> Self {
         Self::ranges(operands.map(|operand| (operand.name.as_str(), operand.domain)))
     }
 
-    /// Visits every combination of named values from the first to the last number of a range.
+    /// Makes a sweep from the name, the first and the last value of each axis.
     pub fn ranges<'a>(ranges: impl IntoIterator<Item = (&'a str, (i64, i64))>) -> Self {
         let axes = ranges.into_iter().map(|(name, (low, high))| Axis {
             name: name.to_owned(),
@@ -392,7 +394,7 @@ pub struct Bound {
     pub terms: Vec<Term>,
 }
 
-/// An operation of a core that computes an expression, for pages that people read.
+/// An operation of a core that computes an expression. Pages such as the datasheet list it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ComputedPart {
     /// The net that carries the value.
@@ -400,34 +402,35 @@ pub struct ComputedPart {
     /// The operation as text, such as `x · y`.
     pub words: String,
     pub format: Format,
-    /// The share in the error of each output, in units of the output's last bit; 0 if the operation is exact.
+    /// The operation's share in each output's error, in units of the output's last bit; 0 if the operation is exact.
     pub shares: Vec<f64>,
-    /// An estimate of the look-up tables of four inputs that the operation takes; 0 if it only selects bits.
+    /// An estimate of the number of look-up tables with four inputs that the operation takes; 0 if it only selects bits.
     pub cells: f64,
-    /// The number of products, each of which takes a multiplier of its own in a pipeline.
+    /// The number of products. In a pipeline, each takes a multiplier of its own.
     pub products: usize,
 }
 
-/// A contribution to a [`Bound`]: `output.rounding` contributes 0.5 units to the bound of `rough`, for the rounding of the colour
-/// outputs.
+/// A contribution to a [`Bound`]. For example, the rounding of the colour outputs of `rough` contributes 0.5 units, and the key
+/// `output.rounding` governs it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Term {
-    /// The configuration key that governs it.
+    /// The configuration key that governs the contribution.
     pub key: &'static str,
-    /// The operation that rounds or approximates.
+    /// A description of the operation that rounds or approximates.
     pub what: &'static str,
     /// The contribution, in units of the last bit of an output.
     pub units: f64,
 }
 
 impl Bounds {
-    /// Gives all outputs the bound `bound`.
+    /// Gives every output the bound `bound`. `f` is the bound on the quantity that a sweep measures.
     pub fn alike(f: f64, bound: &Bound, outputs: &[Output]) -> Self {
         let named = |output: &Output| Bound { output: output.name.clone(), ..bound.clone() };
         Self { f, outputs: outputs.iter().map(named).collect() }
     }
 
-    /// Returns the first bound that is nearest to its limit, or furthest beyond it. Panics if there are no outputs.
+    /// Returns the bound that is nearest to its limit, or furthest beyond it; the first of several. Panics if there are no
+    /// outputs.
     pub fn governing(&self) -> &Bound {
         let ratio = |bound: &Bound| bound.units / bound.limit;
         let largest = self.outputs.iter().rev().max_by(|a, b| ratio(a).total_cmp(&ratio(b)));
@@ -438,8 +441,8 @@ impl Bounds {
         self.outputs.iter().map(|bound| bound.units).fold(0.0, f64::max)
     }
 
-    /// Returns for each output the factor that makes its error comparable with other outputs' errors: the largest bound divided
-    /// by the output's own. A bound below `least` counts as `least`, so that no factor is infinite.
+    /// Returns a factor for each output that makes the errors of all outputs comparable: the largest bound divided by the
+    /// output's own bound. A bound below `least` counts as `least`, so no factor is infinite.
     pub fn weights(&self, least: f64) -> Vec<f64> {
         let largest = self.governing_units();
         let weight = |own: f64| if own == largest { 1.0 } else { largest / own.max(least) };
@@ -477,7 +480,8 @@ impl Bounds {
 }
 
 impl Bound {
-    /// Makes a bound with the limit 1 and no output name: the sum of the terms, or infinite without terms or if the sum is NaN.
+    /// Makes a bound with the limit 1 and no output name. The bound is the sum of the terms; it is infinite if there are no terms
+    /// or the sum is NaN.
     pub fn of(terms: Vec<Term>) -> Self {
         let sum: f64 = terms.iter().map(|term| term.units).sum();
         let units = if terms.is_empty() || sum.is_nan() { f64::INFINITY } else { sum };
@@ -499,8 +503,8 @@ impl Bound {
         self.units.is_finite()
     }
 
-    /// Returns the largest contribution, whose key a user should change first to reduce the error: `output.rounding` for `rough`,
-    /// with 0.5 of 0.969 units.
+    /// Returns the term with the largest contribution. A user should change its key first to reduce the error. For `rough`, this
+    /// is `output.rounding` with 0.5 of 0.969 units.
     pub fn limiting(&self) -> Option<&Term> {
         self.terms.iter().max_by(|a, b| a.units.total_cmp(&b.units))
     }

@@ -11,7 +11,8 @@ use super::contract::control;
 use super::frame::{Frame, FrameStep, Slot, idle, step};
 use glint_base::fixed::{Format, MAX_WIDTH, exp2};
 
-/// Returns the raw value nearest to `angle`, in radians, in the domain of the operand: π/4 gives 32768 with 16 fraction bits.
+/// Returns the raw value of `operand` that is nearest to `angle` (in radians) and in the domain. For example, π/4 gives 32768
+/// with 16 fraction bits.
 pub fn raw_angle(operand: &Operand, angle: f64) -> i64 {
     let (low, high) = operand.domain;
     let raw = operand.format.quantise(angle / FRAC_PI_2) as i64;
@@ -65,22 +66,23 @@ fn length_format(length_bits: u32) -> Format {
     Format::unsigned(length_bits as i32, 0)
 }
 
-/// Wraps an angle to the width of `format`, as the accumulator does: 32 wraps to −32 in `s1.4`, which has 6 bits.
+/// Wraps the raw angle to the width of `format`, as the accumulator does. For example, 32 wraps to −32 in `s1.4`, which has 6
+/// bits.
 #[inline]
 fn wrapped(format: Format, raw: i64) -> i64 {
     let above = MAX_WIDTH - format.width();
     raw << above >> above
 }
 
-/// Returns the angle of point number `index` of a line, wrapped as in the accumulator. `start` is the first angle and `delta` the
-/// step.
+/// Returns the raw angle of point number `index` of a line, wrapped as in the accumulator. `start` is the first angle and `delta`
+/// the step.
 #[inline]
 pub fn angle_at(format: Format, start: i64, delta: i64, index: u64) -> i64 {
     wrapped(format, start.wrapping_add(delta.wrapping_mul(index as i64)))
 }
 
-/// Returns the step of a line of `length` intervals from the angle `first` to the angle `last`, rounded toward 0, or `given` if
-/// `length` is 0. 3 intervals from 0 to 300 give 100.
+/// Returns the raw step of a line of `length` intervals from the angle `first` to the angle `last`, rounded toward 0. Returns
+/// `given` if `length` is 0. For example, 3 intervals from 0 to 300 have the step 100.
 pub fn interval(first: i64, last: i64, length: i64, given: i64) -> i64 {
     if length == 0 { given } else { (last - first) / length }
 }
@@ -93,7 +95,7 @@ pub fn angle_expression(format: Format) -> String {
     format!("((zeta_start + index * delta_zeta + {half}) % {turn} - {half})")
 }
 
-/// Returns `delta_zeta` and `zeta_start`, with every value of `format` in their domain.
+/// Returns the operands `delta_zeta` and `zeta_start`, with every value of `format` in their domain.
 pub fn angle_operands(format: Format) -> [Operand; 2] {
     let domain = (format.min_raw() as i64, format.max_raw() as i64);
     [
@@ -103,16 +105,16 @@ pub fn angle_operands(format: Format) -> [Operand; 2] {
     .map(|(name, doc)| control(name, format, domain, doc))
 }
 
-/// Returns `length`, with every value of `length_bits` bits in its domain.
+/// Returns the operand `length`, with every value of `length_bits` bits in its domain.
 pub fn length_operand(length_bits: u32) -> Operand {
     let format = length_format(length_bits);
     let doc = "intervals of the line: one less than its points";
     control("length", format, (0, format.max_raw() as i64), doc)
 }
 
-/// Returns the leading `kept` fraction bits of the magnitude of a raw angle with `fraction` fraction bits, if −90° ≤ angle < 90°.
-/// The magnitude of a negative angle is its bitwise complement. With `fraction` 4 and `kept` 4, 5 and −6 give 5, and 16 gives
-/// `None`.
+/// Returns the leading `kept` fraction bits of the magnitude of a raw `angle` with `fraction` fraction bits. Returns `None`
+/// unless −90° ≤ angle < 90°. The magnitude of a negative angle is its bitwise complement. For example, with `fraction` 4 and
+/// `kept` 4, 5 and −6 give 5, and 16 gives `None`.
 #[inline]
 pub fn magnitude(angle: i64, fraction: u32, kept: u32) -> Option<i64> {
     let right = 1i64 << fraction;
@@ -123,20 +125,20 @@ pub fn magnitude(angle: i64, fraction: u32, kept: u32) -> Option<i64> {
     Some(positive >> (fraction - kept))
 }
 
-/// An upper limit of the errors of f64 in the values of a table.
+/// An upper limit of the f64 rounding errors in a table's values.
 const SLACK: f64 = 1.0 / (1u64 << 40) as f64;
 
-/// A table of `cosᵏ` over a right angle, ROM 12 of seed 000. The word of each step, an interval of angles, is the middle of
-/// `cosᵏ` at both ends; the last word is 0.
+/// A table of `cosᵏ` over a right angle, ROM 12 of seed 000. A step is an interval of angles with one word: the mean of `cosᵏ` at
+/// the ends of the step. The last word is 0.
 #[derive(Clone, Debug)]
 pub struct CosineTable {
     /// Raw words with `fraction` fraction bits ([`CosineTable::new`]), one for each step.
     pub words: Vec<i64>,
-    /// The largest distance of `cosᵏ` at the ends of a step from their middle.
+    /// The largest distance between `cosᵏ` at an end of a step and the unrounded word.
     pub step: f64,
-    /// The largest distance of `cosᵏ` at the ends of a step from the rounded word, plus a margin for the errors of f64.
+    /// The largest distance between `cosᵏ` at an end of a step and the rounded word, plus a margin for the errors of f64.
     pub total: f64,
-    /// The largest slope of `cosᵏ`, as a difference per right angle.
+    /// The largest slope of `cosᵏ`: the change for each right angle.
     pub slope: f64,
 }
 
@@ -165,9 +167,9 @@ impl CosineTable {
         table
     }
 
-    /// Returns the index of the word for the angle `scaled`, a raw value with `fraction` fraction bits, in right angles. The
-    /// table has 2^`address` words. Negative angles, and angles of a right angle or more, give the last index. Half a right angle
-    /// gives the index 128 in a table of 256 words.
+    /// Returns the index of the word for the raw angle `scaled`, which has `fraction` fraction bits and is in right angles. The
+    /// table has 2^`address` words. Negative angles, and angles of a right angle or more, give the last index. For example, half
+    /// a right angle gives the index 128 in a table of 256 words.
     #[inline]
     pub fn address(scaled: i64, fraction: u32, address: u32) -> usize {
         let most = (1usize << address) - 1;
@@ -175,7 +177,7 @@ impl CosineTable {
     }
 }
 
-/// Returns the largest slope of `cosᵏ` with k = `power`, as a difference per right angle. It is at the angle with `tan² = 1/(k −
+/// Returns the largest slope of `cosᵏ` with k = `power`: the change for each right angle. It is at the angle with `tan² = 1/(k −
 /// 1)`.
 fn slope(power: u32) -> f64 {
     let k = f64::from(power);

@@ -33,7 +33,7 @@ impl Keys {
         Format::signed(1, self.vector_fraction as i32)
     }
 
-    /// The operand `shift` is log₂ n and at most `exponent.bits`.
+    /// Returns the format of the operand `shift` or `exponent`. `shift` is log₂ n and at most `exponent.bits`.
     fn scale_format(&self) -> Format {
         match self.scale {
             Scale::Shift => Format::unsigned(self.exponent_bits.ilog2() as i32 + 1, 0),
@@ -41,8 +41,8 @@ impl Keys {
         }
     }
 
-    /// Returns the operand for the exponent n. It is n itself, or the shift log₂ n rounded to the nearest integer (0 for n =
-    /// 0), such as 3 for n = 6.
+    /// Returns the value of the operand `exponent` or `shift` for the exponent `n`. `shift` is log₂ n, rounded to the nearest
+    /// integer (0 for n = 0). For example, n = 6 gives 3.
     fn scale_operand(&self, n: i64) -> i64 {
         match self.scale {
             Scale::Multiplier => n,
@@ -66,7 +66,7 @@ impl Keys {
         (self.scale_operand(self.domain.least), self.scale_operand(self.domain.most))
     }
 
-    /// Returns the exponent that an operand denotes.
+    /// Returns the exponent n that the raw `operand` (`shift` or `exponent`) denotes.
     fn exponent(&self, operand: i64) -> i64 {
         match self.scale {
             Scale::Shift => 1 << operand,
@@ -75,7 +75,6 @@ impl Keys {
     }
 }
 
-/// The integer arithmetic of the device, on raw values.
 struct LyonArithmetic {
     keys: Keys,
     squarings: u32,
@@ -85,7 +84,7 @@ struct LyonArithmetic {
     shifted_most: i64,
     /// Rounds the sum of the squares to the register of D².
     distance: Narrow,
-    /// Rounds β·D² from the product, or from the shift register, and limits it to less than 2.0.
+    /// Rounds β·D², from the product or from the shift register, and limits it to less than 2.0.
     scaled: Narrow,
     square: Narrow,
 }
@@ -112,14 +111,14 @@ impl LyonArithmetic {
         }
     }
 
-    /// Returns D²: the sum of the squared components, rounded to the format of the register.
+    /// Returns the raw D²: the sum of the squared components, rounded to the register's format.
     #[inline]
     fn distance(&self, vector: [i64; 3]) -> i64 {
         let [x, y, z] = vector;
         self.distance.apply(x * x + y * y + z * z)
     }
 
-    /// Shifts the register `word` left by one bit, limited to its largest value.
+    /// Returns the shift register's next value: `word` shifted left by one bit, limited to the largest value.
     #[inline]
     fn shifted(&self, word: i64) -> i64 {
         (2 * word).min(self.shifted_most)

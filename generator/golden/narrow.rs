@@ -1,12 +1,12 @@
-//! Rounds raw values to a format and limits them to the format's values. The golden models do this in their inner loop, so
-//! [`Narrow`] computes the constants of a conversion once.
+//! Rounds raw values to a format and saturates them. The golden models convert formats in their inner loop, so [`Narrow`]
+//! computes the constants of a conversion once.
 
 use glint_base::fixed::{Format, Rounding};
 
 /// A conversion of raw values with a fixed number of fraction bits to one format, which rounds and saturates.
 ///
-/// It returns the same value as [`Format::narrow`] with `Overflow::Saturate`, but works on `i64`. From 3 fraction bits to a
-/// rounded `s0.1` the raw value 5 gives 1, and so does 12.
+/// It returns the same value as [`Format::narrow`] with `Overflow::Saturate`, but works on `i64`. For example, from 3 fraction
+/// bits to `s0.1`, rounded, 5/8 becomes the raw value 1 (½), and 12/8 saturates to 1.
 #[derive(Clone, Copy, Debug)]
 pub struct Narrow {
     /// The number that is added before the shift: half a unit in the last place of the result, or 0.
@@ -41,8 +41,8 @@ impl Narrow {
     }
 }
 
-/// Returns an upper limit of the error, as a value, of a conversion without saturation: 5 to 4 fraction bits give 1/16 if
-/// truncated, and 1/32 if rounded to the nearest.
+/// Returns an upper limit of the error, as a value, of a conversion from `from_frac` to `frac` fraction bits without saturation.
+/// For example, 5 to 4 fraction bits give 1/16 if truncated, and 1/32 if rounded to the nearest.
 pub fn rounding_error(from_frac: u32, frac: u32, rounding: Rounding) -> f64 {
     let ulp = glint_base::fixed::exp2(-(frac as i32));
     match rounding {

@@ -1,8 +1,8 @@
 //! The golden model and the accuracy contract of the device `normaliser`, which computes the unit vector v/|v| of a vector v.
 //!
 //! v has any length and the components `x`, `y`, `z`. The table of 1/√s covers two octaves of s, so the device first shifts v to
-//! the left until s = v·v lies in them. It interpolates 1/√s, and multiplies each shifted component by it. For example,
-//! v = (0, 0, 0.5) gives (0, 0, 1). The zero vector gives the zero vector.
+//! the left until s = v·v lies in these octaves. It interpolates 1/√s, and multiplies each shifted component by 1/√s. For
+//! example, v = (0, 0, 0.5) gives (0, 0, 1). The zero vector gives the zero vector.
 
 use std::sync::Arc;
 
@@ -41,8 +41,8 @@ impl Normaliser {
         Format::signed(1, self.keys.kept as i32)
     }
 
-    /// Returns a component of the unit vector: a component of v, shifted left by `pairs` places, times `inverse`, the inverse
-    /// root of the shifted v·v, rounded.
+    /// Returns a raw component of the unit vector: `component`, shifted left by `pairs` places, times `inverse`, rounded.
+    /// `inverse` is the inverse root of the shifted v·v.
     fn scaled(&self, component: i64, pairs: i64, inverse: i64) -> i64 {
         let shifted = if component == 0 { 0 } else { component << pairs };
         self.rounded.apply(shifted * inverse)
@@ -110,8 +110,6 @@ impl Formula for Normaliser {
     /// 1/√m, and x the shifted component. Since x² ≤ m, an error of r changes the product x·r by at most √m times that error;
     /// [`Root::error`] bounds it. The product is rounded once. It does not saturate, because |x|/√m ≤ 1 and the other errors
     /// are far below 1.
-    ///
-    /// The result for the zero vector is the zero vector, as the formula defines.
     fn terms(&self, _output: usize) -> Vec<Term> {
         let [chord, root] = self.root.error();
         let units = exp2(self.keys.kept as i32);
@@ -131,13 +129,13 @@ impl Formula for Normaliser {
         Some((0..3).map(|_| ((2.0 * unit() - 1.0) * most).round() as i64).collect())
     }
 
-    /// Visits every sum of squares from 1 on, which determines the inverse root, and so the largest error of a component.
+    /// Visits every sum of squares from 1 on. The sum determines the inverse root, and so the largest error of a component.
     fn sweep(&self) -> Option<Sweep> {
         Some(self.root.sweep())
     }
 
-    /// Returns an upper limit of the error, in units, of a component that is as long as the vector. It is the error of the
-    /// inverse root for this sum of squares, plus the error of the rounding.
+    /// Returns an upper limit of the error, in units, for the sum of squares `place`. It is the inverse root's error, plus the
+    /// rounding's error, for a component as long as the vector.
     fn sweep_error(&self, place: &[i64]) -> Option<f64> {
         let error = self.root.relative_error(place[0]) + self.rounding_error();
         Some(error * exp2(self.keys.kept as i32))

@@ -1,5 +1,5 @@
-//! Models which point (one set of operands on its way to its results) each stage of a pipeline contains, clock by clock. The
-//! model predicts the handshake, and computes no results.
+//! Models which point each stage of a pipeline contains, clock by clock. The model predicts the handshake, and computes no
+//! results.
 
 use std::collections::VecDeque;
 
@@ -10,15 +10,15 @@ use std::collections::VecDeque;
 /// `interval`-th move.
 #[derive(Clone, Debug)]
 pub struct Occupancy<P> {
-    /// The computations from stage 1 on. The last stage has the results.
+    /// The points from stage 1 on. The last stage has the results.
     stages: VecDeque<Option<P>>,
     interval: usize,
     slot: usize,
 }
 
 impl<P> Occupancy<P> {
-    /// Makes an empty pipeline of `latency` stages that accepts a point every `interval` clocks. The results of a point that
-    /// `empty(2, 1)` accepts are on the outputs after two rising edges, counting the edge that accepts the point.
+    /// Makes an empty pipeline of `latency` stages that accepts a point every `interval` clocks. A point's results are on the
+    /// outputs after `latency` rising edges, counting the edge that accepts the point.
     pub fn empty(latency: usize, interval: usize) -> Self {
         Self { stages: (0..latency).map(|_| None).collect(), interval, slot: 0 }
     }
@@ -37,7 +37,7 @@ impl<P> Occupancy<P> {
         self.stages.back().and_then(Option::as_ref)
     }
 
-    /// Returns the point in a stage, counted from 1.
+    /// Returns the point in stage number `stage`, counted from 1; `None` if the stage has no point or does not exist.
     pub fn stage(&self, stage: usize) -> Option<&P> {
         self.stages.get(stage.checked_sub(1)?).and_then(Option::as_ref)
     }

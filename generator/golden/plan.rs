@@ -1,4 +1,5 @@
-//! The golden model of a plan, a list of fixed-point operations ([`glint_plan`]), for the devices `function` and `expression`.
+//! The golden model of a plan, a list of fixed-point operations ([`glint_plan`]), for the devices `function`, `expression` and
+//! `unit`.
 //!
 //! The model executes the operations in integers, with a register for each value that the schedule of the plan stores. It takes
 //! the plan from the planner, because a proof compares the plan's results with the formulas.
@@ -19,16 +20,17 @@ struct PlanModel {
     registers: Vec<Option<Slot>>,
 }
 
-/// The nodes between registers from which some nodes are computed in one clock.
+/// The nodes that the hardware computes between two edges, from registers, to get the values of certain nodes.
 struct ClockCone {
-    /// The nodes in the order of the plan, so that each reads registers or nodes before it.
+    /// The nodes in the plan's order, so each reads registers or nodes before it.
     nodes: Vec<NodeId>,
     /// For each node of the plan, its place in `nodes`.
     places: Vec<Option<usize>>,
 }
 
 impl ClockCone {
-    /// The cone ends at nodes with a register, unless these are in `ends` themselves.
+    /// Collects the nodes on which `ends` depend, back to nodes with a register. A node of `ends` is included even if it has a
+    /// register.
     fn new(model: &PlanModel, ends: &[NodeId]) -> Self {
         let count = model.plan.nodes().len();
         let mut needed = vec![false; count];
@@ -54,7 +56,7 @@ impl ClockCone {
         Self { nodes, places }
     }
 
-    /// Returns the raw values that the nodes `ends` of the cone have now, and their registers after the next edge.
+    /// Returns the raw values of the nodes `ends` before the next edge, which loads these values into the nodes' registers.
     fn values(&self, model: &PlanModel, ends: &[NodeId], state: &State) -> Vec<i64> {
         let operands: Vec<i64> = model.operands.iter().map(|slot| state[*slot]).collect();
         let mut values: Vec<i128> = Vec::with_capacity(self.nodes.len());
@@ -73,8 +75,8 @@ impl ClockCone {
     }
 }
 
-/// Makes the device of a plan, with the architecture that `config` states. Result number k of the plan goes to the port `outputs[k]`. Panics if the polynomials of a
-/// function are not known yet.
+/// Makes the device of `plan`, with the architecture that `config` states. Result number k of the plan goes to the port
+/// `outputs[k]`. Panics if a function's polynomials have not been found yet.
 pub(super) fn plan_device(
     operands: &[StatedOperand],
     plan: &ExpressionPlan,
@@ -155,7 +157,7 @@ pub(super) fn plan_device(
 /// Loads a register of a polynomial: a partial sum, or the highest coefficient.
 type TableLoad = Box<dyn Fn(&mut State) + Send + Sync>;
 
-/// Returns a microinstruction. Its registers load what their nodes have before the edge.
+/// Returns the microinstruction of `plan_step`. Its registers load the values that their nodes have before the edge.
 fn microinstruction(
     model: &Arc<PlanModel>,
     polynomials: &[Option<Polynomial>],
@@ -192,7 +194,7 @@ fn microinstruction(
     })
 }
 
-/// Returns a function that computes the operand of the polynomial at node `id`.
+/// Returns a function that computes the polynomial's operand at node `id`.
 fn operand_of(model: &Arc<PlanModel>, id: NodeId) -> impl Fn(&State) -> i64 + Send + Sync + use<> {
     let input = model.plan.node(id).operation.inputs()[0];
     let cone = ClockCone::new(model, &[input]);

@@ -1,23 +1,23 @@
 //! Evaluates a piecewise polynomial in a golden model by Horner's rule in integers, for `blinn`, `gauss`, `function` and
-//! `expression`. Each partial sum has a register. The models read the same table of coefficients as the hardware, because
-//! another check compares this table with the formula.
+//! `expression`. Each partial sum has a register. The models read the same table of coefficients as the hardware; another check
+//! compares this table with the formula.
 
 use std::sync::Arc;
 
 use super::frame::{Frame, Slot, State};
 use glint_approximate::Piecewise;
 
-/// The registers of the partial sums.
+/// A piecewise polynomial with the registers of its partial sums.
 pub struct Polynomial {
     it: Arc<Piecewise>,
     /// Sum number k contains the coefficients from number k on, so sum 0 is the whole polynomial.
     sums: Vec<Slot>,
-    /// The register of the highest coefficient, if it has one.
+    /// The highest coefficient's register, if it has one.
     highest: Option<Slot>,
 }
 
 impl Polynomial {
-    /// Adds the registers of the partial sums of `it`. `names` starts with the register of the whole polynomial; names
+    /// Adds the registers of the partial sums of `it` to `frame`. `names` begins with the whole polynomial's register; names
     /// beyond the degree are not used.
     pub fn new(frame: &mut Frame, names: &[&str], it: &Arc<Piecewise>) -> Self {
         let registers = names.iter().zip(&it.sums).take(it.degree().max(1));
@@ -25,15 +25,15 @@ impl Polynomial {
         Self { it: it.clone(), sums, highest: None }
     }
 
-    /// Returns the polynomial of another operand, with the same table, the same registers of partial sums, and the register `name` for
-    /// its value. The two polynomials are computed one after the other.
+    /// Returns the polynomial of another operand. It shares the table and the registers of partial sums, but has a register
+    /// `name` for its own value. The two polynomials are computed one after the other.
     pub fn sharing(&self, frame: &mut Frame, name: &str) -> Self {
         let mut sums = self.sums.clone();
         sums[0] = frame.register(name, self.it.sums[0]);
         Self { it: self.it.clone(), sums, highest: self.highest }
     }
 
-    /// Adds a register for the highest coefficient, which [`Polynomial::load_highest`] loads before the first sum.
+    /// Adds a register `name` for the highest coefficient, which [`Polynomial::load_highest`] loads before the first sum.
     pub fn with_highest(self, frame: &mut Frame, name: &str) -> Self {
         let format = self.it.coefficients[self.it.degree()];
         Self { highest: Some(frame.register(name, format)), ..self }
@@ -51,13 +51,13 @@ impl Polynomial {
         move |s: &mut State| s[highest] = it.words[it.place(raw(s)).word][it.degree()]
     }
 
-    /// Returns the slot with the value of the polynomial.
+    /// Returns the slot of the register that has the polynomial's value.
     pub fn q(&self) -> Slot {
         self.sums[0]
     }
 
-    /// Returns the operation of Horner's rule that adds coefficient number `coefficient`. `raw` computes the operand of the
-    /// polynomial from the state.
+    /// Returns the operation of Horner's rule that adds coefficient number `coefficient`. `raw` computes the polynomial's operand
+    /// from the state.
     pub fn step<R>(&self, coefficient: usize, raw: R) -> impl Fn(&mut State) + use<R>
     where
         R: Fn(&State) -> i64 + Send + Sync + 'static,

@@ -1,5 +1,5 @@
-//! The golden model and the accuracy contract of the device `quad-cosine`, which computes f = cosᵏ(√(n/k)·δ) for the points of a
-//! scan line.
+//! The golden model and the accuracy contract of the device `quad-cosine`, which computes f = cosᵏ(√(n/k)·δ) for a scan line's
+//! points.
 //!
 //! δ is the angle at a point of the line. The specular exponent n decides whether k is 1, 2, 4 or 16. f approximates cosⁿδ: for
 //! example, n = 4 gives k = 4 and exactly cos⁴δ. f is 0 if |δ| or |√(n/k)·δ| exceeds a right angle. The source is [seed
@@ -19,7 +19,8 @@ use glint_base::fixed::Format;
 use glint_config::Config;
 use glint_keys::quad_cosine::Keys;
 
-/// Returns the number of the table for the exponent n, by the ranges of n in seed 000: n = 5 gives 2, the table of cos⁴.
+/// Returns the number of the table for the exponent n, by the ranges of n in seed 000. For example, n = 5 gives 2, the table of
+/// cos⁴.
 #[inline]
 fn range_of(n: i64) -> usize {
     match n {
@@ -30,10 +31,9 @@ fn range_of(n: i64) -> usize {
     }
 }
 
-/// The power k of each table, by the number of [`range_of`].
+/// The power k of each table, indexed by the number from [`range_of`].
 const POWERS: [i64; 4] = [1, 2, 4, 16];
 
-/// The integer arithmetic of the device, on raw values.
 struct QuadCosineArithmetic {
     keys: Keys,
     /// The words of ROM 9, one for each n: the factor √(n/k).
@@ -54,8 +54,8 @@ impl QuadCosineArithmetic {
         }
     }
 
-    /// Returns the operand of multiplier 11: the leading bits of the magnitude of the angle in register 8, if the surface faces
-    /// the viewer.
+    /// Returns the operand of multiplier 11: the leading bits of the magnitude of `angle`, which is in register 8. Returns `None`
+    /// if the surface faces away.
     #[inline]
     fn magnitude(&self, angle: i64) -> Option<i64> {
         magnitude(angle, self.keys.angle_fraction, self.keys.angle_multiplied)
@@ -115,8 +115,8 @@ pub fn model(config: &Config) -> Box<dyn Model> {
         });
         return Box::new(frame.model(program));
     }
-    // The registers of the longer pipeline: the magnitude of the angle, whether the surface faces the viewer, and the word of
-    // ROM 9. Then the product of magnitude and root, and again whether the surface faces the viewer.
+    // The longer pipeline's registers: the angle's magnitude, whether the surface faces the viewer, and the word of ROM 9. Then
+    // the product of magnitude and root, and again whether the surface faces the viewer.
     let [magnitude, within, held_root, scaled, scaled_within] = [(); 5].map(|()| frame.hidden());
     // The address of ROM 12: the range of n, and the step. Then its word.
     let [range, step, held] = [(); 3].map(|()| frame.hidden());

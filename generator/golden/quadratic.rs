@@ -18,14 +18,13 @@ use glint_base::fixed::{Format, exp2};
 use glint_config::Config;
 use glint_keys::quadratic::{Keys, Scheme};
 
-/// The integer arithmetic of the device, on raw values.
 struct QuadraticArithmetic {
     keys: Keys,
     difference: Narrow,
     /// The coefficients a(n) in ROM(n), as exact values and as raw words.
     exact: Vec<f64>,
     words: Vec<i64>,
-    /// The numbers of zero bits that are appended to c and to the product, so that both have the same number of fraction bits.
+    /// The numbers of zero bits that are appended to c and to the product, so both have the same number of fraction bits.
     pads: (u32, u32),
     sum: Narrow,
 }
@@ -83,7 +82,7 @@ pub fn model(config: &Config) -> Box<dyn Model> {
     Box::new(products.behind(frame, intensity, program))
 }
 
-/// The control operands are `cos_gamma` and `exponent`.
+/// Returns the accuracy contract, with the control operands `cos_gamma` and `exponent`.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     let it = QuadraticArithmetic::new(Keys::of(config));
     let operands = highlight::operands(&it.keys.operands, &it.keys.domain);
@@ -98,7 +97,7 @@ impl Reflectance for QuadraticArithmetic {
         self.intensity(cosine, control[1], self.difference(cosine))
     }
 
-    /// Uses a(n) as it was before ROM(n) rounded it.
+    /// Returns the exact f, with a(n) as it was before ROM(n) rounded it.
     #[inline]
     fn reference(&self, control: &[i64]) -> f64 {
         let cosine = self.keys.operands.cosine.value(control[0]);
@@ -109,16 +108,16 @@ impl Reflectance for QuadraticArithmetic {
         Some(formulas::quadratic(cosine, self.exact[exponent as usize]))
     }
 
-    /// The slope is at most 1 + |a| for the largest |a| of the domain. If the formula is not clamped, the slope is 1 − a +
-    /// 2·a·c. At a right angle the formula is 0, so it has no jump.
+    /// Returns the largest slope and no jump. The slope is at most 1 + |a| for the largest |a| of the domain, because it is
+    /// 1 − a + 2·a·c where the formula is not clamped. At a right angle the formula is 0.
     fn variation(&self) -> Option<Variation> {
         let (least, most) = self.keys.domain.exponents();
         let exact = self.exact[least as usize..=most as usize].iter();
         Some(Variation { slope: 1.0 + exact.fold(0.0, |a: f64, it| a.max(it.abs())), jump: 0.0 })
     }
 
-    /// With the scheme `minimax` the expression reads a(n) from the list `coefficient`, because the minimax coefficient has no
-    /// closed form.
+    /// Returns the formula in Python. With the scheme `minimax` it reads a(n) from the list `coefficient`, because the minimax
+    /// coefficient has no closed form.
     fn expressions(&self) -> Vec<String> {
         let coefficient = match self.keys.scheme {
             Scheme::Taylor => "(max(exponent, 1) - 1)",
@@ -156,7 +155,7 @@ impl Reflectance for QuadraticArithmetic {
         ]
     }
 
-    /// Remarks that `minimax` would approximate cⁿ better than `taylor` at the largest n of the domain.
+    /// Returns a warning if `minimax` would approximate cⁿ better than `taylor` at the largest n of the domain.
     fn remarks(&self) -> Vec<String> {
         if self.keys.scheme != Scheme::Taylor {
             return Vec::new();
@@ -175,15 +174,15 @@ impl Reflectance for QuadraticArithmetic {
     }
 }
 
-/// Returns the largest difference between the parabola with the coefficient `a` and cⁿ, at its zero and on a grid of cosines
-/// that covers the highlight: 1 − c goes from 0 to 8/n, but at most to 1.
+/// Returns the largest difference between the parabola with the coefficient `a` and cⁿ. It is computed at the zero of the
+/// parabola and on a grid of cosines that covers the highlight: 1 − c goes from 0 to 8/n, but at most to 1.
 fn formula_error(n: i64, a: f64) -> f64 {
     const GRID: u32 = 2048;
     let n = n as f64;
     let reach = (8.0 / n).min(1.0);
     (0..=GRID)
         .map(|step| 1.0 - reach * f64::from(step) / f64::from(GRID))
-        // The zero of the parabola, where the error has its corner.
+        // The parabola's zero, where the error has its corner.
         .chain([1.0 - 1.0 / a.max(1.0)])
         .map(|cosine| (formulas::quadratic(cosine, a) - formulas::blinn(cosine, n)).abs())
         .fold(0.0, f64::max)

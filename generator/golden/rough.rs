@@ -27,7 +27,7 @@ use glint_base::fixed::{Format, exp2};
 use glint_config::Config;
 use glint_keys::rough::{ArithmeticMode as Kind, Keys, RomLayout};
 
-/// In the patent's arithmetic f has the fraction bits of the cosine, which has no sign.
+/// Returns the keys. In the patent's arithmetic, f gets the fraction bits of the cosine, and the cosine has no sign.
 fn keys_of(config: &Config) -> Keys {
     let mut keys = Keys::of(config);
     if keys.patent() {
@@ -43,8 +43,7 @@ impl Keys {
         exp2(-(self.operands.cosine.fraction as i32))
     }
 
-    /// Returns the domain of cos dγ, as raw values: from the smallest cosine whose angle is at most the key `domain.deviation`
-    /// to the largest cosine.
+    /// Returns the smallest and largest raw value of cos dγ. The smallest has an angle of at most the key `domain.deviation`.
     fn cos_dgamma_domain(&self) -> (i64, i64) {
         let largest = self.largest_cosine();
         let cosine = libm::cos(self.deviation.to_radians());
@@ -106,7 +105,7 @@ impl Keys {
         (1 << self.operands.cosine.fraction) - i64::from(self.patent())
     }
 
-    /// Register 13 contains first n/2·(cos(γ ± dγ) − 1) and then the square.
+    /// Returns the format of register 13, which contains first n/2·(cos(γ ± dγ) − 1) and then the square.
     fn result_format(&self) -> Format {
         let frac = self.f.fraction as i32;
         match (self.arithmetic, self.clamp) {
@@ -126,7 +125,8 @@ struct RoughArithmetic {
 
 enum RoughBlocks {
     Exact {
-        /// 1.0 with the fraction bits of registers 11 and 12 (the products), and of register 13 (the base and its square).
+        /// `product_one` is 1.0 with the fraction bits of registers 11 and 12 (the products). `result_one` is 1.0 with the
+        /// fraction bits of register 13 (the base and its square).
         product_one: i64,
         result_one: i64,
         clamp: bool,
@@ -219,8 +219,7 @@ impl RoughArithmetic {
         }
     }
 
-    /// Returns the second value of register 13: the square of the output of adder 16, which is register 13 + 1.0. In the exact
-    /// arithmetic, a surface that faces away gets −1.0.
+    /// Returns the second value of register 13: the square of the output of adder 16, which is register 13 + 1.0.
     #[inline]
     fn squared(&self, result: i64, cos_gamma: i64) -> i64 {
         match &self.kind {

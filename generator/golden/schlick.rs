@@ -16,7 +16,7 @@ use glint_keys::schlick::Keys;
 struct SchlickArithmetic(Keys);
 
 impl SchlickArithmetic {
-    /// Returns the divisor `n − n·cos γ + cos γ`, plus an ulp if cos γ is 0, so that it is never 0.
+    /// Returns the divisor `n − n·cos γ + cos γ`, plus an ulp if cos γ is 0, so it is never 0.
     #[inline]
     fn divisor(&self, cosine: i64, exponent: i64) -> i64 {
         exponent * self.0.operands.cosine.one() - exponent * cosine
@@ -25,8 +25,8 @@ impl SchlickArithmetic {
     }
 }
 
-/// Returns the first `bits` fraction bits of the quotient, and the remainder that they leave. A quotient of 1.0 gives all ones.
-/// 4 bits of 1/3 are 5 (1/3 is about 5/16), and the remainder is 16 − 5·3 = 1.
+/// Returns the first `bits` fraction bits of the quotient, and the remainder. A quotient of 1.0 gives all ones. For example, 4
+/// bits of 1/3 are 5 (1/3 is about 5/16), and the remainder is 16 − 5·3 = 1.
 #[inline]
 fn divide(dividend: i64, divisor: i64, bits: u32) -> (i64, i64) {
     let quotient = ((dividend << bits) / divisor).min((1 << bits) - 1);
@@ -39,9 +39,9 @@ fn products(keys: &Keys) -> Products {
         .in_turn(colours.in_turn())
 }
 
-/// The hardware divides one bit a clock; the model divides once and derives the divider's registers from that division. After k
-/// clocks, the low bits of the quotient register are the first k bits of the quotient. The remainder register has the remainder
-/// after these bits.
+/// Returns the golden model. The hardware divides one bit a clock; the model divides at once and derives the divider's registers
+/// from this division. After k clocks, the low bits of the quotient register are the first k bits of the quotient. The remainder
+/// register has the remainder after these bits.
 pub fn model(config: &Config) -> Box<dyn Model> {
     let it = SchlickArithmetic(Keys::of(config));
     let (bits, cosine_fraction) = (it.0.fraction, it.0.operands.cosine.fraction);
@@ -77,7 +77,7 @@ pub fn model(config: &Config) -> Box<dyn Model> {
     Box::new(products.behind(frame, quotient, program))
 }
 
-/// The control operands are `cos_gamma` and `exponent`.
+/// Returns the accuracy contract, with the control operands `cos_gamma` and `exponent`.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     let keys = Keys::of(config);
     let operands = highlight::operands(&keys.operands, &keys.domain);
@@ -105,16 +105,16 @@ impl Reflectance for SchlickArithmetic {
         Some(formulas::schlick(cosine, exponent as f64))
     }
 
-    /// The largest n is an upper limit of the slope n/(n − n·c + c)². The slope is largest at an end: n at c = 1, and 1/n at c
-    /// = 0. At c = 0 the formula is 0, as it is beyond a right angle. With n = 0 the formula is 1 for every c above 0, and
-    /// jumps to 0 at a right angle.
+    /// Returns how fast and by which jumps f changes. The largest n is an upper limit of the slope n/(n − n·c + c)². The slope is
+    /// largest at an end: n at c = 1, and 1/n at c = 0. At c = 0 the formula is 0, as it is beyond a right angle. With n = 0 the
+    /// formula is 1 for every c above 0, and jumps to 0 at a right angle.
     fn variation(&self) -> Option<Variation> {
         let (least, most) = self.0.domain.exponents();
         Some(Variation { slope: most as f64, jump: if least > 0 { 0.0 } else { 1.0 } })
     }
 
-    /// Only the quotient is truncated: dividend and divisor are exact. It is at most an ulp below the formula, and so is the
-    /// largest fraction, which replaces a quotient of 1.0.
+    /// Returns an ulp: dividend and divisor are exact, and the quotient is truncated. The quotient is at most an ulp below the
+    /// formula. The largest fraction, which replaces a quotient of 1.0, is an ulp below 1.0.
     fn shares(&self) -> Vec<ErrorShare> {
         let ulp = exp2(-(self.0.fraction as i32));
         vec![("intensity.fraction", "truncation of the quotient", ulp)]

@@ -1,7 +1,7 @@
 //! The golden model and the accuracy contract of the device `shading`, which computes a colour as ambient + Σ (diffuse·cos α +
 //! specular·f(cos γ)).
 //!
-//! The sum runs over the lights. α is the angle between the surface normal and the direction of a light, and f the highlight's
+//! The sum runs over the lights. α is the angle between the surface normal and a light's direction, and f the highlight's
 //! formula, for example cⁿ ([symbols](crate#symbols)). A negative cosine counts as 0, or as positive with the key `two_sided`,
 //! and a colour saturates. `shading` consists of other devices, called its parts. For each light, two `dot-product` devices
 //! compute the cosines from a normal of any length. A highlight device such as `blinn` or `function` computes f. The contract
@@ -94,7 +94,7 @@ fn vector(frame: &mut Frame, name: &str, suffix: &str, format: Format) -> [Slot;
     ["x", "y", "z"].map(|axis| frame.operand(&format!("{name}{axis}{suffix}"), format))
 }
 
-/// Returns the operand `name` of a part, with the function that computes its value: `slot`, shifted left by `places` bits.
+/// Returns the operand `name` of a part, and a function for its value: the raw value of `slot`, shifted left by `places` bits.
 fn left(
     name: &'static str,
     slot: Slot,
@@ -103,7 +103,7 @@ fn left(
     (name, move |s: &State| s[slot] << places)
 }
 
-/// Adds a part that computes the cosine between the normal and another vector.
+/// Adds a part that computes the cosine between the normal and another vector. Returns the cosine's slot.
 fn cosine(
     frame: &mut Frame,
     name: &str,
@@ -174,7 +174,7 @@ pub fn contract(config: &Config, parts: &LightParts) -> Box<dyn Contract> {
     device.contract(Shading { highlight, errors, keys })
 }
 
-/// Returns the proved error bound of a part, as a value instead of in units.
+/// Returns the proved error bound of a part as a value (not in units).
 fn error(contract: &dyn Contract) -> f64 {
     contract.bounds().governing().units * exp2(-contract.outputs()[0].format.frac)
 }
@@ -184,9 +184,9 @@ struct PartErrors {
     facing: f64,
     /// The error of the cosine between normal and half vector.
     cosine: f64,
-    /// The error of the highlight of a colour, in units of a result.
+    /// The error of the highlight for one colour, in units of a result.
     highlight: f64,
-    /// How much the formula of the highlight changes with the cosine, if this is known.
+    /// How much the formula of the highlight changes with the cosine; `None` if nobody has stated it.
     variation: Option<Variation>,
 }
 
@@ -198,7 +198,7 @@ struct Shading {
 }
 
 impl Shading {
-    /// Returns the exact f at a cosine that is not quantised, or NaN if the highlight cannot compute it.
+    /// Returns the exact f at an unrounded cosine, or NaN if the highlight cannot compute it.
     fn f(&self, cosine: f64, exponent: i64) -> f64 {
         match self.highlight.highlight() {
             Some(highlight) => highlight.at_cosine(cosine, exponent).unwrap_or(f64::NAN),
@@ -213,7 +213,8 @@ impl Shading {
         if self.keys.two_sided { sum.abs() } else { sum }.clamp(0.0, 1.0)
     }
 
-    /// Returns the cosine between the normal and the vector `vector` of a light, as a Python expression.
+    /// Returns a Python expression for the cosine between the normal and a light's vector. `vector` is `l` or `h`, and `suffix`
+    /// selects the light.
     fn cosine_expression(&self, vector: &str, suffix: &str) -> String {
         let squares = "(nx ** 2 + ny ** 2 + nz ** 2)";
         let axes = ["x", "y", "z"].map(|axis| format!("n{axis} * {vector}{axis}{suffix}"));
@@ -252,8 +253,8 @@ impl Formula for Shading {
     /// of the part, and the part adds its own error. The errors of all lights add up. If nobody has stated how f changes with
     /// the cosine, the bound is not stated.
     ///
-    /// - A colour is diffuse·cosine + specular·f(cosine), saturated. Its slope by the cosine of the light is at most the
-    ///   largest colour. Its slope by the cosine of the highlight is at most the largest colour times the slope of f.
+    /// - A colour is diffuse·cosine + specular·f(cosine), saturated. Its slope by the light's cosine is at most the largest
+    ///   colour. Its slope by the highlight's cosine is at most the largest colour times the slope of f.
     /// - If f jumps, the computed and the exact cosine may be on different sides of the jump.
     fn terms(&self, _output: usize) -> Vec<Term> {
         let PartErrors { facing, cosine, highlight, variation } = self.errors;
@@ -285,7 +286,8 @@ impl Formula for Shading {
         terms
     }
 
-    /// Returns an empty list if the highlight's formula reads a table, or if nobody has written it as an expression.
+    /// Returns the colours in Python. The list is empty if the highlight's formula reads a table, or if nobody has written it as
+    /// an expression.
     fn expressions(&self) -> Vec<String> {
         let (operand, f) = match self.highlight.highlight() {
             Some(highlight) => (COSINE, highlight.expressions()),
@@ -314,13 +316,13 @@ impl Formula for Shading {
         colours.into()
     }
 
-    /// The contract demands one unit for each light, plus half a unit for the rounding of the result.
+    /// Returns one unit for each light, plus half a unit for the result's rounding.
     fn limit(&self, _output: usize) -> f64 {
         f64::from(self.keys.lights) + 0.5
     }
 
-    /// The lights are in any direction, and the half vectors are near the normal, the nearer the larger the exponent is. The
-    /// colours are so dark that their sum does not saturate.
+    /// Returns random operands. The lights are in any direction, and the half vectors are near the normal; a larger exponent
+    /// makes them nearer. The colours are so dark that their sum does not saturate.
     fn hint(&self, unit: &mut dyn FnMut() -> f64) -> Option<Vec<i64>> {
         let Keys { normal, light, colour_bits, most, lights, .. } = self.keys;
         let direction = unit_vector(centred(unit));
@@ -383,7 +385,7 @@ impl Formula for Shading {
     }
 }
 
-/// Rounds to `fraction` fraction bits: 0.3 with 4 is 5.
+/// Rounds `value` to `fraction` fraction bits and returns it raw. For example, 0.3 with 4 fraction bits gives 5.
 fn raw(value: f64, fraction: u32) -> i64 {
     (value * exp2(fraction as i32)).round() as i64
 }

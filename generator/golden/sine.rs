@@ -1,4 +1,4 @@
-//! Makes the table of sines of the device `rough`, ROM 18, for its golden model; the hardware description computes its own.
+//! Makes the table of sines of the device `rough`, ROM 18, for its golden model.
 //!
 //! The table maps a cosine x to the sine √(1 − x²). It has one entry for each bucket (an interval of x), or straight segments
 //! that become shorter toward x = 1. x is a raw value with C fraction bits from 0 to 2^C. A sine has the format u0.S.
@@ -33,7 +33,7 @@ pub struct SineParams {
     pub scheme: TableScheme,
 }
 
-/// A set of adjacent operands, with the table's largest error among them.
+/// A set of adjacent operands, with the largest error of the table among these operands.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ErrorRange {
     /// The smallest and the largest operand, as cosines.
@@ -89,7 +89,7 @@ impl Sine {
         Self { operand_fraction: operand, fraction, table }
     }
 
-    /// Returns the sine of the raw operand `x`, 0 … 2^C.
+    /// Returns the raw sine of the raw operand `x`, which is from 0 to 2^C.
     #[inline]
     pub fn at(&self, x: i64) -> i64 {
         let one = 1i64 << self.operand_fraction;
@@ -104,8 +104,7 @@ impl Sine {
         }
     }
 
-    /// Calls `visit` with sets of adjacent operands that together contain every operand from 0 to 2^C. The sine is monotonic in a
-    /// bucket, so its error is largest at one of the ends.
+    /// Calls `visit` with sets of adjacent operands that together contain every operand from 0 to 2^C.
     pub fn for_each_piece(&self, mut visit: impl FnMut(ErrorRange)) {
         let operand = self.operand_fraction;
         let (one, ulp) = (1i64 << operand, exp2(-(self.fraction as i32)));
@@ -133,7 +132,7 @@ impl Sine {
                         (cosine(one - piece.last as i64), cosine(one - piece.start as i64));
                     visit(ErrorRange { cosines, error: piece.error, shape: piece.shape });
                 }
-                // These sines are below √7/4, so that no entry saturates.
+                // These sines are below √7/4, so no entry saturates.
                 visit(ErrorRange {
                     cosines: (cosine(one - rest + 1), 1.0),
                     error: ulp / 2.0,
@@ -144,21 +143,20 @@ impl Sine {
     }
 }
 
-/// Returns the sine `√(1 − x²)`. `u` is the raw value of 1.0 − x, from 0 to 2^C, where C is `operand`. The radicand is exact for
-/// C ≤ 26.
+/// Returns the sine `√(1 − x²)`. `u` is the raw value of 1.0 − x, from 0 to 2^C, where C is `operand`.
 fn sine_of(operand: u32, u: i64) -> f64 {
     let one = 1i64 << operand;
     let x = one - u;
     ((one * one - x * x) as f64).sqrt() * exp2(-(operand as i32))
 }
 
-/// Rounds to `fraction` fraction bits, at most 1.0 less an ulp.
+/// Rounds `sine` to `fraction` fraction bits, at most 1.0 less an ulp, and returns it raw.
 fn to_raw(sine: f64, fraction: u32) -> i64 {
     let raw = (sine * exp2(fraction as i32) + 0.5).floor() as i64;
     raw.clamp(0, (1 << fraction) - 1)
 }
 
-/// Returns the sine at the middle of bucket `a`, in a table with `address` address bits.
+/// Returns the raw sine at the middle of bucket `a`, in a table with `address` address bits.
 fn direct_entry(a: i64, address: u32, fraction: u32) -> i64 {
     let x = (a as f64 + 0.5) * exp2(-(address as i32));
     to_raw((1.0 - x * x).sqrt(), fraction)
@@ -204,7 +202,7 @@ mod tests {
         assert_eq!(sines[16], 63);
     }
 
-    /// Every operand is in a piece, and its error is at most the error of the piece.
+    /// Every operand is in a piece, and its error is at most the piece's error.
     #[test]
     fn pieces_bound_every_operand() {
         let tables = [

@@ -1,8 +1,8 @@
 //! The golden model and the accuracy contract of the device `threshold`. It computes f = (n/2·(c − 1) + 1)², or 0 if the square
 //! is below a level ([symbols](crate#symbols)).
 //!
-//! The level of n is a word of the table ROM(n): a darker highlight is invisible. f is also 0 if the base of the square is
-//! negative, or if c ≤ 0. The source is the patent UA 30041, which seed 001 cites.
+//! The level of n is a word of the table ROM(n): a darker highlight is invisible. f is also 0 if the square's base is negative,
+//! or if c ≤ 0. The source is the patent UA 30041, which seed 001 cites.
 
 #[cfg(test)]
 mod tests;
@@ -19,7 +19,6 @@ use glint_base::fixed::{Format, exp2};
 use glint_config::Config;
 use glint_keys::threshold::Keys;
 
-/// The integer arithmetic of the device, on raw values.
 struct ThresholdArithmetic {
     keys: Keys,
     /// The number 1 with the fraction bits of the base.
@@ -28,8 +27,8 @@ struct ThresholdArithmetic {
     square: Narrow,
     /// The words of ROM(n), one for each octave of n.
     thresholds: Vec<i64>,
-    /// The largest error of the square. If the exact square is nearer to the level than this, the comparison may have either
-    /// outcome.
+    /// The largest error of the square. If the exact square differs from the level by at most this error, either outcome of the
+    /// comparison is right.
     margin: f64,
 }
 
@@ -50,11 +49,12 @@ impl ThresholdArithmetic {
         it
     }
 
-    /// Returns the words of ROM(n), one for each octave of n. A word is the smallest f at which the largest colour reaches
-    /// `level / 100` units, and at most 1.0 − ulp. The level 100 gives 258 for colours of 8 bits and an f of 16 fraction bits.
+    /// Returns the words of ROM(n), one for each octave of n. A word is the smallest f at which the largest colour reaches `level
+    /// / 100` units, and at most 1.0 − ulp. For example, the level 100 gives 258 for colours of 8 bits and an f of 16 fraction
+    /// bits.
     fn thresholds(keys: &Keys) -> Vec<i64> {
-        // The smallest word with 100 · largest · word ≥ level · 2^F. The right side is less than 2^30 · 2^24, so that an `i64`
-        // holds it.
+        // The smallest word with 100 · largest · word ≥ level · 2^F. The right side is less than 2^30 · 2^24, so an `i64` holds
+        // it.
         let unit = 100 * ((1 << keys.operands.colours.bits) - 1);
         let largest = (1 << keys.f.fraction) - 1;
         let mut words = Vec::with_capacity(keys.levels.len());
@@ -72,16 +72,15 @@ impl ThresholdArithmetic {
         self.scaled.apply((cosine - self.keys.operands.cosine.one()) * exponent)
     }
 
-    /// Returns the word of ROM(n) for the octave of `exponent`: the exponents from 2^k to below 2^(k + 1). The exponent 0
-    /// counts as 1. The last word serves all octaves beyond it.
+    /// Returns the word of ROM(n) for the octave of `exponent`: the exponents from 2^k to below 2^(k + 1). The exponent 0 counts
+    /// as 1. The last word serves all larger octaves.
     #[inline]
     fn threshold(&self, exponent: i64) -> i64 {
         let octave = exponent.max(1).ilog2() as usize;
         self.thresholds[octave.min(self.thresholds.len() - 1)]
     }
 
-    /// Returns f: the square of the base, or 0 if the square is below the word of ROM(n), or if cos γ is 0. `scaled` is the
-    /// base less 1.0.
+    /// Returns f: the square of the base, or 0 if the square is below the word of ROM(n), or if cos γ is 0.
     #[inline]
     fn gated(&self, cosine: i64, exponent: i64, scaled: i64) -> i64 {
         let base = scaled + self.base_one;
@@ -114,7 +113,7 @@ pub fn model(config: &Config) -> Box<dyn Model> {
     Box::new(products.behind(frame, intensity, program))
 }
 
-/// The control operands are `cos_gamma` and `exponent`.
+/// Returns the accuracy contract, with the control operands `cos_gamma` and `exponent`.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     Box::new(highlight(ThresholdArithmetic::new(Keys::of(config))))
 }
@@ -143,9 +142,9 @@ impl Reflectance for ThresholdArithmetic {
         Some(formulas::threshold(formulas::parabola(cosine, exponent as f64), level))
     }
 
-    /// The largest n is an upper limit of the slope n·base, since the base is at most 1. The formula jumps to 0 once, since the
-    /// base falls with the cosine. It jumps from the level in ROM(n), where either side is right within the margin. If (1 −
-    /// n/2)² is above that level, the formula jumps from this value at a right angle instead.
+    /// Returns how fast and by which jumps f changes. The largest n is an upper limit of the slope n·base, because the base is at
+    /// most 1. The base falls with the cosine, so the formula jumps to 0 only once. It jumps from the level in ROM(n), plus or
+    /// minus `margin`. If (1 − n/2)² is above this level, it jumps from (1 − n/2)² at a right angle instead.
     fn variation(&self) -> Option<Variation> {
         let (least, most) = self.keys.domain.exponents();
         let mut jump: f64 = 0.0;
@@ -157,7 +156,7 @@ impl Reflectance for ThresholdArithmetic {
         Some(Variation { slope: most as f64, jump })
     }
 
-    /// The exact square and 0 are both right if the square differs from the level in ROM(n) by at most `margin`.
+    /// Returns the exact square and 0, which are both right, if the square differs from the level in ROM(n) by at most `margin`.
     #[inline]
     fn references(&self, control: &[i64]) -> [f64; 2] {
         let (square, level) = self.square_and_level(control);
@@ -182,8 +181,8 @@ impl Reflectance for ThresholdArithmetic {
             .to_vec()
     }
 
-    /// Derives the contributions to the error of f. Base, square and formula lie in 0 … 1, so that an error ε of the base is at
-    /// most 2·ε in the square.
+    /// Derives the contributions to the error of f. Base, square and formula lie in 0 … 1, so an error ε of the base is at most
+    /// 2·ε in the square.
     ///
     /// The product is rounded into the base, and limited to −1.0 where the formula is clamped. The square is rounded; the
     /// square of 1.0 is an ulp low. The comparison with ROM(n) adds no error: if the square differs from ROM(n) by at most the
@@ -201,8 +200,8 @@ impl Reflectance for ThresholdArithmetic {
         ]
     }
 
-    /// Remarks that a level hides outputs above 0, for one n of each octave. Such a level is visible as an edge around the
-    /// highlight.
+    /// Returns a warning if a level hides outputs above 0, for one n of each octave. Such a level is visible as an edge around
+    /// the highlight.
     fn remarks(&self) -> Vec<String> {
         let (f, colour_bits) = (&self.keys.f, self.keys.operands.colours.bits);
         let largest = (1 << colour_bits) - 1;

@@ -32,7 +32,7 @@ struct FunctionFormulas {
     planned: Arc<UnitPlan>,
 }
 
-/// The operands of the function that an opcode selects.
+/// The function that an opcode selects, with the raw values of its operands.
 struct SelectedFunction<'p> {
     statement: &'p ExpressionStatement,
     opcode: usize,
@@ -40,7 +40,8 @@ struct SelectedFunction<'p> {
 }
 
 impl FunctionFormulas {
-    /// Returns the function for values of the ports, the opcode first. Returns `None` if no function has the opcode.
+    /// Returns the selected function. `words` are the raw values of the ports, the opcode first. Returns `None` if no function
+    /// has this opcode.
     fn selected(&self, words: &[i64]) -> Option<SelectedFunction<'_>> {
         let (opcode, words) = words.split_first()?;
         let opcode = usize::try_from(*opcode).ok()?;
@@ -65,7 +66,8 @@ impl SelectedFunction<'_> {
         operands.all(|(operand, raw)| (operand.domain.0..=operand.domain.1).contains(raw))
     }
 
-    /// Returns whether an error is promised for result number `output`. A function promises 0 for a result that it does not have.
+    /// Returns whether the function promises anything for result number `output`. A missing result counts as promised: the output
+    /// is then 0.
     fn is_promised(&self, output: usize) -> bool {
         let Some(result) = self.statement.results.get(output) else { return true };
         self.is_in_domain() && result.is_promised(&self.enclosed()) != Some(false)
@@ -73,8 +75,8 @@ impl SelectedFunction<'_> {
 }
 
 impl Formula for FunctionFormulas {
-    /// The values are in units of the function's last place, as the words at the ports are integers. An opcode without a function
-    /// gives 0, and a formula without a value gives NaN.
+    /// Returns the exact values, in units of the function's last place, because the words at the ports are integers. An opcode
+    /// without a function gives 0, and a formula without a value gives NaN.
     fn exact(&self, operands: &[f64]) -> Vec<f64> {
         let mut values = vec![0.0; self.planned.results.len()];
         let Some(selected) = self.selected_by_values(operands) else { return values };
@@ -88,7 +90,7 @@ impl Formula for FunctionFormulas {
         values
     }
 
-    /// A word without a sign shows a value below 0 modulo the range of the word.
+    /// Returns the values that count as right. An unsigned word shows a negative value modulo the word's range.
     fn right_values(&self, value: f64, output: usize) -> [f64; 2] {
         let (_, format) = self.planned.results[output];
         match format.signed {
@@ -101,7 +103,7 @@ impl Formula for FunctionFormulas {
         self.selected_by_values(operands).is_none_or(|selected| selected.is_promised(output))
     }
 
-    /// Appends the results of the function's own plan, if it promises all of its results for the operands.
+    /// Appends the results of the function's own plan and returns true, if the function promises all results for `operands`.
     fn results(&self, operands: &[i64], raw: &mut Vec<i64>) -> bool {
         let Some(selected) = self.selected(operands) else { return false };
         let outputs = self.planned.results.len();
@@ -113,7 +115,6 @@ impl Formula for FunctionFormulas {
         true
     }
 
-    /// The bound of an output is the largest bound of a function.
     fn terms(&self, output: usize) -> Vec<Term> {
         let functions = self.planned.functions.iter();
         let bounds = functions.filter_map(|function| function.planned.bounds.get(output).copied());
@@ -155,7 +156,6 @@ impl Formula for FunctionFormulas {
         results.map(|result| result.error).fold(0.0, f64::max)
     }
 
-    /// A value below 0 wraps in a word without a sign.
     fn wraps(&self) -> bool {
         self.planned.results.iter().any(|(_, format)| !format.signed)
     }

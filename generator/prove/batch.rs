@@ -1,6 +1,6 @@
 //! Computes many points (sets of operands) at once with the emitted Verilog of a core, under Icarus Verilog or Verilator.
 //!
-//! The bench reads the points from a file and writes the results to another. The module compares the results with nothing.
+//! The test bench reads the points from a file and writes the results to a second file.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -15,11 +15,11 @@ use glint_golden::Contract;
 use glint_rtl::netlist::Design;
 use glint_tools::{BuiltBench, VerilogSimulator, Waveform};
 
-/// The bench fails if a computation takes more clocks.
+/// The most clocks that a computation may take; with more, the bench fails.
 const LIMIT: u32 = 1 << 16;
 
-/// An [`Engine`] that runs the emitted Verilog in an outside simulator, with a bench that reads points from a file. A line has
-/// the operands of a point as hexadecimal bit patterns: the raw values 5 and −1 in 8 bits are `5 ff`.
+/// An [`Engine`] that runs the emitted Verilog in an outside simulator, with a bench that reads points from a file. A line of the
+/// file has a point's operands as hexadecimal bit patterns. For example, the raw values 5 and −1 in 8 bits are `5 ff`.
 pub struct Verilog {
     bench: BuiltBench,
     limit: Duration,
@@ -30,12 +30,13 @@ pub struct Verilog {
 }
 
 impl Verilog {
-    /// Builds the test bench from the emitted `files`, pairs of a file name and contents. `limit` is the time limit of the
-    /// build, and of the simulation of each list of points.
+    /// Builds the test bench from the emitted `files`, pairs of a file name and contents. `limit` is the time limit of the build,
+    /// and of each simulation.
     ///
     /// # Errors
-    /// Fails if [`BuiltBench::build`] fails, if the design has an operand that the contract lacks, or if the contract has an
-    /// output that the design lacks.
+    ///
+    /// Fails if the simulator cannot build the bench. Fails if the design has an operand that the contract lacks, or if the
+    /// contract has an output that the design lacks.
     pub fn new(
         simulator: VerilogSimulator,
         design: &Design,

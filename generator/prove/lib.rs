@@ -1,7 +1,7 @@
 //! Proofs and searches about a core, mostly with outside tools.
 //!
-//! The modules inject faults to test the tests, prove error bounds and the equality of pipeline and core, measure area and
-//! frequency, search for cheaper configurations, and define the checks of `glint verify`.
+//! The modules inject faults to test the tests. They prove error bounds and the equality of pipeline and core, measure area and
+//! frequency. They search for cheaper configurations, and define the checks of `glint verify`.
 
 pub mod batch;
 pub mod certify;

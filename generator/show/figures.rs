@@ -51,12 +51,13 @@ pub const TARGETS: [Target; 9] = [
     Target::Osu018,
 ];
 
-/// The targets of a record of `glint synth`. A sequential core is measured for them unless the user names others.
+/// The targets of a record of `glint synth`. A sequential core is measured for these targets unless the user names different
+/// ones.
 pub const RECORDED_TARGETS: [Target; 4] =
     [Target::Ice40, Target::Ecp5, Target::Xilinx7, Target::Osu018];
 
 impl Target {
-    /// The name in options and JSON. For example, `ice40`.
+    /// Returns the name in options and JSON, for example `ice40`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Ice40 => "ice40",
@@ -71,17 +72,17 @@ impl Target {
         }
     }
 
-    /// The name in tables and messages. For example, `0.18 µm cells`.
+    /// Returns the name in tables and messages, for example `0.18 µm cells`.
     pub fn title(self) -> &'static str {
         self.family().map_or("0.18 µm cells", |family| family.title)
     }
 
-    /// Returns whether open tools time the whole of every path, so that a core has a frequency.
+    /// Returns whether open tools know all delays of the FPGA, so a core has a frequency.
     pub fn is_timed_fpga(self) -> bool {
         matches!(self, Self::Ice40 | Self::Ice40Hx | Self::Ecp5 | Self::Nexus | Self::Gatemate)
     }
 
-    /// Returns `None` for a standard-cell library.
+    /// Returns the FPGA family, or `None` for a standard-cell library.
     pub fn family(self) -> Option<&'static Family> {
         FAMILIES.iter().find(|family| family.name() == self.name())
     }
@@ -98,13 +99,13 @@ pub struct Figures {
     pub target: Target,
     /// The chip or the cell library.
     pub device: String,
-    /// Excludes the registers that the measurement adds around the core.
+    /// The area without the registers that the measurement adds around the core.
     pub area: Area,
-    /// The frequency between the registers that the measurement adds around the core. It is `None` for a target that is not
-    /// timed, and for a core that does not fit on the chip.
+    /// The frequency between the registers that the measurement adds around the core. It is `None` if the target has no timing,
+    /// or if the core does not fit on the chip.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub frequency: Option<Frequency>,
-    /// The longest path between registers in the run with the median frequency, with the names of the description.
+    /// The longest path between registers in the run with the median frequency, with the description's names.
     #[serde(skip_serializing_if = "Vec::is_empty", default)]
     pub critical_path: Vec<PathPoint>,
     /// The reason why no frequency was measured.
@@ -113,7 +114,7 @@ pub struct Figures {
     pub tools: Vec<String>,
 }
 
-/// A resource that a target does not have is `None`.
+/// A core's area. A resource that the target does not have is `None`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Area {
@@ -124,7 +125,7 @@ pub struct Area {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub block_rams: Option<u64>,
     pub flip_flops: u64,
-    /// The area of the standard cells as a multiple of a two-input NAND gate's area.
+    /// The area of the standard cells, as a multiple of the area of a two-input NAND gate.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub gates: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -135,7 +136,7 @@ pub struct Area {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Frequency {
     pub lowest: f64,
-    /// The frequency of the run in the middle. For an even number of runs, it is the slower of the two.
+    /// The frequency of the run in the middle. For an even number of runs, it is the slower of the two middle runs.
     pub median: f64,
     pub highest: f64,
     pub runs: u32,
@@ -144,14 +145,14 @@ pub struct Frequency {
 /// A net on the longest path.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PathPoint {
-    /// The name in the description, with `ROM` before a ROM's. For example, `ROM coefficient`.
+    /// The name in the description, with `ROM` before the name of a ROM, for example `ROM coefficient`.
     pub name: String,
-    /// The time in nanoseconds from the clock edge until the value of the net is stable.
+    /// The time in nanoseconds from the clock edge until the net's value is stable.
     pub ns: f64,
 }
 
 impl Figures {
-    /// `device` is the name of the chip or of the cell library.
+    /// Makes the figures, without a frequency. `device` is the name of the chip or of the cell library.
     pub fn new(target: Target, device: &str, area: Area) -> Self {
         Self {
             target,
@@ -164,7 +165,7 @@ impl Figures {
         }
     }
 
-    /// Returns a text such as `first 0.4 → second 3.1 → third 7.9 ns`. The path must have a point.
+    /// Returns the critical path as text, such as `first 0.4 → second 3.1 → third 7.9 ns`. The path must have a point.
     pub fn path_in_words(&self) -> String {
         let steps = self.critical_path.iter().map(|step| format!("{} {:.1}", step.name, step.ns));
         format!("{} ns", Vec::from_iter(steps).join(" → "))
@@ -188,7 +189,7 @@ impl Figures {
 }
 
 impl Area {
-    /// Returns `None` for an area in standard cells.
+    /// Returns the resources of an FPGA, or `None` for an area in standard cells.
     pub fn usage(&self) -> Option<Usage> {
         let flip_flops = self.flip_flops;
         let (luts, dsps, block_rams) = (self.luts?, self.dsps?, self.block_rams?);

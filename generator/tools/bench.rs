@@ -1,4 +1,4 @@
-//! Runs self-checking Verilog test benches under Icarus Verilog or Verilator, and reads their verdicts.
+//! Runs self-checking Verilog test benches under Icarus Verilog or Verilator, and reads whether they pass.
 
 use std::env;
 use std::ffi::OsStr;
@@ -21,7 +21,7 @@ pub enum VerilogSimulator {
     Verilator,
 }
 
-/// Whether the bench writes a waveform: Verilator must know this when it builds the bench.
+/// Whether the bench writes a waveform. Verilator must know this when it builds the bench.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Waveform {
     None,
@@ -33,8 +33,8 @@ pub enum Waveform {
 pub struct BenchOutcome {
     /// Whether the bench passed: it printed a PASS line and no FAIL line, and ended without an error.
     pub passed: bool,
-    /// The output of the compiler. For Icarus it is empty if there were no warnings. For Verilator it is the log of the build,
-    /// because Verilator treats a warning as an error.
+    /// The compiler's output. For Icarus it is empty if there were no warnings. For Verilator it is the build's log, because
+    /// Verilator treats a warning as an error.
     pub build: String,
     /// The text that the bench printed.
     pub transcript: String,
@@ -49,13 +49,14 @@ impl fmt::Display for VerilogSimulator {
     }
 }
 
-/// Builds the bench `top` from `files`, pairs of a plain file name and contents, in a temporary directory, and runs it there.
-/// The simulator compiles files that end in `.v` or `.sv`, in the given order. Other files, such as `.mem`, are in the same
-/// directory. The bench must print a line that begins with `PASS` or `FAIL`, and then end by itself.
+/// Builds the bench `top` from `files` in a temporary directory, and runs it there. `files` are pairs of a plain file name and
+/// contents. The simulator compiles files that end in `.v` or `.sv`, in the given order; other files, such as `.mem`, are in the
+/// same directory. The bench must print a line that begins with `PASS` or `FAIL`, and then end by itself.
 ///
 /// # Errors
-/// Fails as [`BuiltBench::build`] does. Fails if building and running take more than `limit` together, or if the bench crashes
-/// or ends without a verdict. A failing bench is no error; the outcome says so.
+///
+/// Fails if the bench cannot be built, see [`BuiltBench::build`], or if building and running take more than `limit` together.
+/// Fails if the bench crashes or ends without a verdict. A failing bench is no error; the outcome says so.
 pub fn run_bench<N: AsRef<str>, C: AsRef<[u8]>>(
     simulator: VerilogSimulator,
     files: &[(N, C)],
@@ -66,7 +67,7 @@ pub fn run_bench<N: AsRef<str>, C: AsRef<[u8]>>(
     run_bench_in(&search, simulator, files, top, limit)
 }
 
-/// Does the same as [`run_bench`], with the search path `search` instead of `PATH`.
+/// Runs [`run_bench`] with the search path `search` instead of `PATH`.
 pub(super) fn run_bench_in<N: AsRef<str>, C: AsRef<[u8]>>(
     search: &OsStr,
     simulator: VerilogSimulator,
@@ -84,19 +85,18 @@ pub struct BuiltBench {
     dir: Directory,
     simulator: VerilogSimulator,
     top: String,
-    /// The program to run and its arguments.
     program: (Tool, &'static [&'static str]),
-    /// The compiler's output.
     build: String,
 }
 
 impl BuiltBench {
-    /// Builds the bench from files as [`run_bench`] describes them. If the bench calls `$dumpvars` to write a waveform,
-    /// `waveform` must be [`Waveform::Written`].
+    /// Builds the bench from files in the form of [`run_bench`]. If the bench calls `$dumpvars` to write a waveform, `waveform`
+    /// must be [`Waveform::Written`].
     ///
     /// # Errors
-    /// Fails if the simulator is missing or rejects the sources (Verilator: or warns of them), or if building takes more than
-    /// `limit`. Fails also if no file is Verilog, or if a name contains a directory, begins with a dash, or occurs twice.
+    ///
+    /// Fails if the simulator is missing, rejects the sources, or takes more than `limit`. Verilator also rejects sources with
+    /// warnings. Fails if no file is Verilog, or if a name contains a directory, begins with a dash, or occurs twice.
     pub fn build<N: AsRef<str>, C: AsRef<[u8]>>(
         simulator: VerilogSimulator,
         files: &[(N, C)],
@@ -159,14 +159,15 @@ impl BuiltBench {
         Ok(Self { simulator, top: top.to_owned(), program, build, dir })
     }
 
-    /// The bench reads and writes its files in this directory.
+    /// Returns the directory in which the bench reads and writes its files.
     pub fn directory(&self) -> &Path {
         self.dir.path()
     }
 
-    /// A bench that fails is no error; the outcome says so.
+    /// Runs the bench. A bench that fails is no error; the outcome says so.
     ///
     /// # Errors
+    ///
     /// Fails if the bench takes more than `limit`, crashes, or ends without a verdict.
     pub fn run(&self, limit: Duration) -> Result<BenchOutcome> {
         let (top, simulator) = (&self.top, self.simulator);
@@ -194,8 +195,8 @@ impl BuiltBench {
     }
 }
 
-/// Returns the names of the files to compile, in order. Fails if a name contains a directory, begins with a dash, or occurs
-/// twice, or if no file is Verilog.
+/// Writes `files`, and returns the names of the Verilog files in order. Fails if a name contains a directory, begins with a dash,
+/// or occurs twice, or if no file is Verilog.
 fn write_files<'a, N: AsRef<str>, C: AsRef<[u8]>>(
     directory: &Path,
     files: &'a [(N, C)],
@@ -217,8 +218,8 @@ fn write_files<'a, N: AsRef<str>, C: AsRef<[u8]>>(
     Ok(sources)
 }
 
-/// Returns true for a PASS line without a FAIL line, and `None` if the transcript has neither. The word must be the first of
-/// its line: `PASS rsqrt: 9 clocks` is a PASS line, and `PASSED` is not.
+/// Returns true for a PASS line without a FAIL line, and `None` without either. The word must be the first of its line. For
+/// example, `PASS rsqrt: 9 clocks` is a PASS line, and `PASSED` is not.
 fn verdict(transcript: &str) -> Option<bool> {
     let says = |word| {
         let first = |line: &str| line.split(|c: char| !c.is_alphanumeric()).next() == Some(word);

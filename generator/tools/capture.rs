@@ -1,20 +1,19 @@
-//! Reads the output of a child process to its end, so that the process never blocks on a full pipe. If the output is long, only
-//! its beginning and its end are kept in memory.
+//! Reads the output of a child process to its end, so the process never blocks on a full pipe. If the output is long, only its
+//! beginning and its end are kept in memory.
 
 use std::collections::VecDeque;
 use std::io::Read;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// A long output keeps this number of bytes at its beginning.
+/// The number of bytes that are kept at the beginning of a long output.
 const KEEP_FIRST: usize = 64 << 10;
-/// A long output keeps this number of bytes at its end, where verdicts and errors are.
+/// The number of bytes that are kept at the end of a long output, where verdicts and errors are.
 const KEEP_LAST: usize = 1 << 20;
-/// The number of lines of output that an error quotes.
 const QUOTED_LINES: usize = 12;
 /// The largest number of characters of a line that an error quotes.
 const QUOTED_CHARACTERS: usize = 200;
 
-/// The output of a child process so far. Clones share the text, so that one thread can read output while another quotes it.
+/// The output of a child process so far. Clones share the text, so one thread can read output while another quotes it.
 #[derive(Clone, Default)]
 pub(super) struct Capture(Arc<Mutex<CaptureBuffer>>);
 
@@ -35,8 +34,8 @@ impl Capture {
         }
     }
 
-    /// Replaces bytes that are not UTF-8. If the middle of the output was dropped, a line between the two parts says how much,
-    /// as in `... 4096 bytes left out ...`.
+    /// Returns the output, with a replacement for bytes that are not UTF-8. If the middle of the output was dropped, a line such
+    /// as `... 4096 bytes left out ...` takes its place.
     pub(super) fn text(&self) -> String {
         let kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let mut bytes = kept.first.clone();
@@ -65,7 +64,7 @@ impl CaptureBuffer {
 }
 
 /// Returns the end of an error message: the last 12 non-empty lines of `output`, indented, without control characters, and cut
-/// after [`QUOTED_CHARACTERS`] characters. The output `no module` gives `; its last lines:`, followed by `no module` on a line
+/// after [`QUOTED_CHARACTERS`] characters. For example, `no module` gives `; its last lines:`, followed by `no module` on a line
 /// of its own. An output without text gives `; it printed nothing`.
 pub(super) fn quote(output: &str) -> String {
     let lines: Vec<&str> = output.lines().filter(|line| !line.trim().is_empty()).collect();

@@ -1,5 +1,5 @@
-//! Reads the first difference that a failing test bench printed, and runs the bench again to get the waveform of the clocks
-//! before it.
+//! Reads the first difference that a failing test bench printed, and runs the bench again for the waveform of the clocks before
+//! the difference.
 
 use std::fs;
 use std::time::Duration;
@@ -15,7 +15,8 @@ use crate::window::{WINDOW_FILE, window};
 pub struct BenchDifference {
     /// The number of the clock in the bench, from 0.
     pub clock: u64,
-    /// The microinstruction that the core executes in this clock, as ``microinstruction `result` ``; empty for a pipeline.
+    /// The microinstruction that the core executes in this clock, as ``microinstruction `result` ``. The text is empty for a
+    /// pipeline.
     pub during: String,
     pub signal: String,
     /// The simulated value in hexadecimal, which may contain x and z.
@@ -25,13 +26,13 @@ pub struct BenchDifference {
 }
 
 impl BenchDifference {
-    /// Returns the first difference in the transcript of a bench, or `None` if the bench printed none.
+    /// Returns the first difference in a bench's transcript, or `None` for a bench without differences.
     pub fn first(transcript: &str) -> Option<Self> {
         transcript.lines().find_map(Self::of_line)
     }
 
-    /// Parses a line such as `clock 9, microinstruction 3 (result): red_out is 1f, expected 20`. The line of a pipeline is
-    /// `clock 9: red_out is 1f, expected 20`.
+    /// Parses a line such as `clock 9, microinstruction 3 (result): red_out is 1f, expected 20`. A pipeline's line is `clock 9:
+    /// red_out is 1f, expected 20`.
     fn of_line(line: &str) -> Option<Self> {
         let rest = line.strip_prefix("clock ")?;
         let (clock, rest) = rest.split_at(rest.find([',', ':'])?);
@@ -50,11 +51,12 @@ impl BenchDifference {
     }
 }
 
-/// Builds and runs the bench `top` of `files`, and returns the waveform (VCD) of the clocks from `from` to `to`, both
-/// included. A module around the bench writes the waveform: for the bench `rsqrt_tb` it is `rsqrt_tb_window` in the file
-/// `rsqrt_tb_window.v`. Building and running may each take at most `limit`.
+/// Builds and runs the bench `top` of `files`, and returns the waveform (VCD) of the clocks from `from` to `to`, both included. A
+/// module around the bench writes the waveform, such as `rsqrt_tb_window` in `rsqrt_tb_window.v` for the bench `rsqrt_tb`.
+/// Building and running may each take at most `limit`.
 ///
 /// # Errors
+///
 /// Fails if the simulator is missing or rejects the sources. Fails if the bench crashes, takes too long or ends without a
 /// verdict, or if it writes no waveform.
 pub fn bench_waveform(

@@ -8,11 +8,12 @@ use serde_json::Value;
 use super::Tool;
 use super::sources::YosysSources;
 
-/// Returns the module `top` with everything that it instantiates, as Yosys's JSON object of this module. The cells are under
-/// the key `cells`, and the nets under `netnames`. The netlist has word-level cells, registers and memories. Yosys optimises
-/// away only logic that nothing reads. The inputs `held_low`, of one bit each, are 0 and no inputs of the result.
+/// Returns the module `top` with everything that it instantiates, as Yosys's JSON object of the module. The cells are under the
+/// key `cells`, and the nets under `netnames`. The netlist has word-level cells, registers and memories, without logic that
+/// nothing reads. The 1-bit inputs `held_low` become constants of 0.
 ///
 /// # Errors
+///
 /// Fails if a file cannot be written, or if Yosys refuses the files, takes longer than `limit`, or writes no netlist.
 pub fn elaborate(
     yosys: &Tool,

@@ -1,9 +1,7 @@
 //! Runs programs outside Glint as child processes: Verilog simulators, synthesis tools and provers.
 //!
 //! A [`Tool`] is a program found on a search path. Every run has a time limit, after which the tool and the processes that it
-//! started are killed; on Windows, only the tool. Glint reads a tool's output to the end but keeps only a part, and error
-//! messages quote the last lines. [`run_bench`] builds and runs a self-checking Verilog bench; a [`BuiltBench`] can be run
-//! repeatedly.
+//! started are killed; on Windows, only the tool. [`run_bench`] builds and runs a self-checking Verilog bench.
 //!
 //! The functions of this crate take files as pairs of a plain file name and contents.
 
@@ -42,7 +40,7 @@ pub use file_names::is_verilog;
 pub use lint::lint;
 pub use proof::{PROOF_LIMITS, prove};
 
-/// The limit is long because a WebAssembly tool is compiled in its first run.
+/// The time limit of `Tool::version`. The limit is long because a WebAssembly tool is compiled in its first run.
 const VERSION_LIMIT: Duration = Duration::from_secs(600);
 /// The longest time until the output of killed processes closes.
 const CLOSING_LIMIT: Duration = Duration::from_secs(1);
@@ -57,8 +55,8 @@ pub struct Tool {
 #[derive(Clone, Debug)]
 pub struct Run {
     pub status: ExitStatus,
-    /// Standard output and standard error together, in the order of writing. From output longer than about a megabyte the
-    /// middle is removed, and a line in its place says how many bytes.
+    /// Standard output and standard error together, in the order of writing. An output longer than about a megabyte lacks its
+    /// middle, and a line says how many bytes are missing.
     pub output: String,
 }
 
@@ -66,7 +64,8 @@ pub struct Run {
 pub struct Limits {
     /// The time after which the tool is killed.
     pub time: Duration,
-    /// The largest address space of each of the tool's processes, in bytes; `None` sets no limit. Only Linux enforces it.
+    /// The largest address space of each of the tool's processes, in bytes, or `None` for no limit. Only Linux enforces the
+    /// limit.
     pub memory: Option<u64>,
 }
 
@@ -89,10 +88,11 @@ impl fmt::Display for LimitReached {
 impl std::error::Error for LimitReached {}
 
 impl Tool {
-    /// Searches the directories of `PATH`.
+    /// Searches the directories of `PATH` for the tool `name`.
     ///
     /// # Errors
-    /// Fails if no directory of `PATH` has the tool; the message says how to install it.
+    ///
+    /// Fails if no directory of `PATH` has the tool. The message says how to install the tool.
     pub fn find(name: &str) -> Result<Self> {
         Self::find_in(name, &env::var_os("PATH").unwrap_or_default())
     }
@@ -100,7 +100,8 @@ impl Tool {
     /// Searches the directories of `search`, which is written like `PATH`. On Windows, the tool `yosys` is the file `yosys.exe`.
     ///
     /// # Errors
-    /// Fails if no directory of `search` has the tool; the message says how to install it.
+    ///
+    /// Fails if no directory of `search` has the tool. The message says how to install the tool.
     pub fn find_in(name: &str, search: &OsStr) -> Result<Self> {
         let file = format!("{name}{}", env::consts::EXE_SUFFIX);
         env::split_paths(search)
@@ -167,7 +168,7 @@ impl Tool {
         if let Some(bytes) = memory {
             limit_memory(child.id(), bytes);
         }
-        // The command holds the writing ends of the pipe. Without this drop, the reader would never find the end of the output.
+        // The command holds the writing ends of the pipe. Without this drop, the reader would never find the output's end.
         drop(command);
 
         let (sender, receiver) = mpsc::channel();
@@ -175,7 +176,7 @@ impl Tool {
         let shared = capture.clone();
         thread::spawn(move || {
             shared.drain(&mut reader);
-            // Sending fails only if the time limit is over, so that the receiver does not wait.
+            // Sending fails only if the time limit is over, so the receiver does not wait.
             let _ = sender.send(());
         });
 
@@ -194,9 +195,10 @@ impl Tool {
         )));
     }
 
-    /// Returns the output of a successful run, as [`Tool::run`] gives it.
+    /// Returns the output of a successful run of [`Tool::run`].
     ///
     /// # Errors
+    ///
     /// Fails if the tool does not start, takes longer than its time limit, or exits with a status other than 0.
     pub fn run_to_success<A: AsRef<OsStr>>(
         &self,
@@ -222,7 +224,7 @@ impl fmt::Display for Tool {
 /// status.
 fn wait_until(child: &mut Child, deadline: Instant) -> Option<ExitStatus> {
     loop {
-        // An error means that no such child exists. It is reported like a child that does not end.
+        // An error means that no such child exists. The error is reported like a child that does not end.
         if let Some(status) = child.try_wait().ok()? {
             return Some(status);
         }
@@ -242,11 +244,11 @@ fn limit_memory(process: u32, bytes: u64) {
     let _ = prlimit(Pid::from_raw(process as i32), Resource::As, limit);
 }
 
-/// Does nothing: on other systems, a process cannot be limited from outside.
+/// Does nothing, because other systems cannot limit a process from outside.
 #[cfg(not(target_os = "linux"))]
 fn limit_memory(_process: u32, _bytes: u64) {}
 
-/// The sentence is for users with a checkout of Glint and for users without one.
+/// Returns a sentence that says how to install the tool `name`, for users with and without a checkout of Glint.
 fn remedy(name: &str) -> String {
     let package = match name {
         "vvp" => "iverilog",

@@ -7,10 +7,11 @@ use anyhow::{Result, bail};
 
 use super::Tool;
 
-/// Runs the linter with its strictest warnings on the Verilog files `sources` in `directory`. The result is empty if there are
-/// no warnings. Verilator refuses sources with warnings, so its warnings are in the error.
+/// Runs the linter `tool` with its strictest warnings on the Verilog files `sources` in `directory`. The result is empty if there
+/// are no warnings. Verilator refuses sources with warnings, so the error contains its warnings.
 ///
 /// # Errors
+///
 /// Fails if `tool` is neither `iverilog` nor `verilator`, if the tool rejects the sources, or if it takes longer than `limit`.
 pub fn lint(
     tool: &Tool,

@@ -1,6 +1,5 @@
-//! Runs the formal proof of a core or a wrapper.
-//!
-//! The generated proof file lists the commands in its first lines, for users to copy; this module runs the same commands.
+//! Runs the formal proof of a core or a wrapper, with the commands in the first lines of the generated proof file. Users can copy
+//! these commands.
 
 use std::fs;
 use std::path::Path;
@@ -13,13 +12,14 @@ use super::{LimitReached, Limits, Tool, capture};
 /// The default limits of each command of a proof.
 pub const PROOF_LIMITS: Limits = Limits { time: Duration::from_secs(300), memory: Some(4 << 30) };
 
-/// Runs the commands that the first lines of the proof `file` list for users. `directory` must contain the proof and the files
-/// of its device. The list must have three commands that begin with `$ yosys`: they make the problem, prove the base case, and
-/// prove the induction. `limits` apply to each command.
+/// Runs the commands in the first lines of the proof `file`. `directory` must contain the proof and the files of its device.
+/// Three commands must begin with `$ yosys`: they make the problem, prove the base case, and prove the induction. `limits` apply
+/// to each command.
 ///
 /// # Errors
+///
 /// Fails if the file does not list three commands, if the proof does not succeed, or if a tool is missing. Fails with
-/// [`LimitReached`], which says nothing about the properties, if a command takes more time or memory than its limits.
+/// [`LimitReached`] if a command takes more time or memory than its limits. This error says nothing about the properties.
 pub fn prove(directory: &Path, file: &str, limits: impl Into<Limits>) -> Result<()> {
     let limits = limits.into();
     let file = directory.join(file);
@@ -58,8 +58,7 @@ pub fn prove(directory: &Path, file: &str, limits: impl Into<Limits>) -> Result<
     Ok(())
 }
 
-/// Recognises the messages of Yosys, Python and Z3. If the solver dies without a message, yosys-smtbmc finds its pipes closed,
-/// which counts too.
+/// Returns whether `output` has a message of Yosys, Python or Z3 about missing memory.
 fn ran_out_of_memory(output: &str) -> bool {
     const SIGNS: [&str; 5] = [
         "out of memory",

@@ -11,7 +11,7 @@ use super::Tool;
 use crate::file_names::is_verilog;
 use crate::transient::Directory;
 
-/// Verilog and memory files in a temporary directory, with the Yosys that reads them.
+/// Verilog and memory files in a temporary directory, with the Yosys that reads the files.
 pub struct YosysSources<'a> {
     directory: Directory,
     yosys: &'a Tool,
@@ -20,9 +20,10 @@ pub struct YosysSources<'a> {
 }
 
 impl<'a> YosysSources<'a> {
-    /// Each run of Yosys may take at most `limit`.
+    /// Writes `files` to a new temporary directory. Each run of Yosys may take at most `limit`.
     ///
     /// # Errors
+    ///
     /// Fails if the directory or a file cannot be written.
     pub fn new(yosys: &'a Tool, files: &[(String, String)], limit: Duration) -> Result<Self> {
         let directory = Directory::new().context("cannot make a directory for synthesis")?;
@@ -33,10 +34,11 @@ impl<'a> YosysSources<'a> {
         Ok(sources)
     }
 
-    /// Writes another file, whose `name` must not contain a path. [`YosysSources::run`] does not read the file by itself, even
+    /// Writes a further file, whose `name` must not contain a path. [`YosysSources::run`] does not read this file by itself, even
     /// if it is Verilog.
     ///
     /// # Errors
+    ///
     /// Fails if the file cannot be written.
     pub fn write(&self, name: &str, contents: &str) -> Result<()> {
         fs::write(self.path().join(name), contents)
@@ -47,8 +49,8 @@ impl<'a> YosysSources<'a> {
         self.directory.path()
     }
 
-    /// Lets Yosys read the Verilog files of [`YosysSources::new`] and then run `commands`: the commands `proc; opt` become the
-    /// script `read_verilog rsqrt.v; proc; opt`.
+    /// Lets Yosys read the Verilog files of [`YosysSources::new`] and then run `commands`. For example, the commands `proc; opt`
+    /// become the script `read_verilog rsqrt.v; proc; opt`.
     ///
     /// # Errors
     /// Fails if Yosys exits with an error, does not start, or takes longer than the limit.

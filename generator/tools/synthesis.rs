@@ -10,19 +10,19 @@ use super::sources::YosysSources;
 pub use glint_base::target::Usage;
 use glint_base::target::{Family, Kinds};
 
-/// The smallest of the netlists that the commands of a family make.
+/// The smallest of the netlists that a family's commands produce.
 pub struct SmallestNetlist {
     /// The numbers of cells.
     pub usage: Usage,
-    /// The command that made it, without the name of the top module.
+    /// The command that produced the netlist, without the top module's name.
     pub command: &'static str,
 }
 
 /// Synthesises the module `top` with each of the family's commands, and returns the flat netlist with the fewest look-up tables.
 ///
 /// # Errors
-/// Fails if the files cannot be written, or if Yosys fails or takes longer than `limit`. Fails if its statistics do not list the
-/// cells of `top`.
+/// Fails if the files cannot be written, if Yosys fails or takes longer than `limit`, or if Yosys's statistics lack the cells of
+/// `top`.
 pub fn synthesise(
     yosys: &Tool,
     files: &[(String, String)],
@@ -44,7 +44,7 @@ pub fn synthesise(
     smallest.with_context(|| format!("Glint has no commands for {}", family.title))
 }
 
-/// Returns the commands of Yosys that write the files which [`usage`] reads. A script must have them after the synthesis.
+/// Returns the commands of Yosys that write the files for [`usage`]. A script must have these commands after the synthesis.
 pub fn statistics_commands(family: &Family) -> &'static str {
     match cell_of_products(family) {
         None => "tee -q -o statistics.json stat -json",
@@ -53,12 +53,13 @@ pub fn statistics_commands(family: &Family) -> &'static str {
     }
 }
 
-/// Fails if a file does not exist, is no JSON, or does not list the cells of the module `top`.
+/// Returns the numbers of cells of the module `top`. Fails if a file does not exist, is no JSON, or does not list the cells of
+/// `top`.
 pub fn usage(sources: &YosysSources, top: &str, family: &Family) -> Result<Usage> {
     let text = sources.text("statistics.json").context("`yosys` wrote no statistics")?;
     let statistics: Value =
         serde_json::from_str(&text).context("the statistics of `yosys` are not JSON")?;
-    // The netlist is flat, so that the top module has all cells.
+    // The netlist is flat, so the top module has all cells.
     let cells =
         statistics["modules"][format!("\\{top}")]["num_cells_by_type"].as_object().with_context(
             || format!("the statistics of `yosys` do not contain the cells of `{top}`"),
@@ -83,7 +84,7 @@ pub fn usage(sources: &YosysSources, top: &str, family: &Family) -> Result<Usage
 /// The number of look-up tables of a product, from the widths of its operands in bits.
 type LutsOfProduct = fn(u64, u64) -> u64;
 
-/// Returns the cell that multiplies in a netlist of the family, if it has one that takes look-up tables.
+/// Returns the cell of a netlist of the family that multiplies in look-up tables. Returns `None` if the family has no such cell.
 fn cell_of_products(family: &Family) -> Option<(&'static str, LutsOfProduct)> {
     let product = family.fabric_product?;
     Some((product.cell?, product.luts))
@@ -110,7 +111,7 @@ fn luts_of_products(
     Ok(sum)
 }
 
-/// Yosys writes a parameter in binary: `00001001` is 9.
+/// Returns a numeric parameter of a cell. Yosys writes the parameter in binary, such as `00001001` for 9.
 fn number(cell: &Value, parameter: &str) -> Result<u64> {
     let digits = cell["parameters"][parameter].as_str();
     let value = digits.and_then(|digits| u64::from_str_radix(digits, 2).ok());
@@ -119,7 +120,7 @@ fn number(cell: &Value, parameter: &str) -> Result<u64> {
     })
 }
 
-/// Returns the major and the minor number: 0 and 70 for `Yosys 0.70 (git sha1 …)`.
+/// Returns the major and the minor number of a version. For example, `Yosys 0.70 (git sha1 …)` gives 0 and 70.
 pub fn yosys_version(text: &str) -> Option<(u32, u32)> {
     let numbers = text.strip_prefix("Yosys ")?;
     let (major, rest) = numbers.split_once('.')?;

@@ -1,4 +1,5 @@
-//! Tests how tools are run. Shell scripts take the place of tools, and misbehave in every way in which a real tool might.
+//! Tests how tools are run. Shell scripts take the place of tools, and misbehave in every way in which a real tool might
+//! misbehave.
 
 use std::io::Write;
 use std::path::PathBuf;
@@ -98,7 +99,7 @@ fn a_hanging_tool_is_killed_with_its_children() {
     assert!(text.contains("\n    started"), "{text}");
     let child = std::fs::read_to_string(fakes.file("child")).unwrap();
     let alive = || {
-        // A killed orphan may stay a zombie until whoever adopted it collects it.
+        // A killed orphan may stay a zombie until its new parent collects it.
         std::fs::read_to_string(format!("/proc/{}/stat", child.trim()))
             .is_ok_and(|stat| !stat.contains(") Z "))
     };

@@ -1,7 +1,6 @@
-//! Tests an outside tool before Glint trusts it: the tool must reject an input that is wrong.
+//! Tests an outside tool before Glint trusts it: the tool must reject a wrong input.
 //!
-//! A lint counts as passed if the tool reports nothing. A broken tool that never reports anything would let everything pass.
-//! Tools without a test in `trials.toml` are trusted.
+//! A lint counts as passed if the tool reports nothing, so a broken tool that never reports anything would accept every file.
 
 use std::fs;
 use std::time::Duration;
@@ -16,7 +15,7 @@ use crate::transient::Directory;
 #[derive(Deserialize)]
 struct Trial {
     tool: String,
-    /// The input that the tool must accept or refuse, in words, for the error message.
+    /// The input in words, for the error message.
     what: String,
     file: String,
     contents: String,
@@ -32,8 +31,8 @@ struct Trials {
 }
 
 impl Tool {
-    /// Tests a tool with an input that it must reject: `yosys` gets a false claim, and must print `proof did fail`. If the
-    /// tool answers only by its exit status, it also gets an input that it must accept. Each run may take at most `limit`. A
+    /// Tests a tool with an input that it must reject. For example, `yosys` gets a false claim, and must print `proof did fail`.
+    /// A tool that answers only by its exit status also gets an input that it must accept. Each run may take at most `limit`. A
     /// tool without such a test in `trials.toml` is not tested.
     ///
     /// # Errors
@@ -59,7 +58,7 @@ impl Tool {
     }
 }
 
-/// Finds `words` only where they do not end a longer word: the output `unsat` does not contain `sat`.
+/// Returns whether `output` contains `words`, but not as the end of a longer word. For example, `unsat` does not contain `sat`.
 fn says(output: &str, words: &str) -> bool {
     let before = |at: usize| output[..at].chars().next_back();
     let mut found = output.match_indices(words);

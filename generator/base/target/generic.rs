@@ -2,7 +2,7 @@
 
 use super::{BlockMemory, Timing};
 
-/// A level of logic takes one nanosecond. The delays belong to no real chip.
+/// The generic target, whose delays belong to no real chip. A level of logic takes one nanosecond.
 pub const GENERIC: Timing = Timing {
     name: "generic",
     multiplier: (18, 18),

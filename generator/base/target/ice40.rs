@@ -1,4 +1,4 @@
-//! Data of Lattice iCE40: UltraPlus, whose chip UP5K has multipliers, and HX, which is faster and has none.
+//! Holds the data of Lattice iCE40: UltraPlus, whose chip UP5K has multipliers, and the faster HX without multipliers.
 //!
 //! The delays of UP5K are estimates. `benches/tune/fit` computed the weights for the cost from 59 cores, highlights and expressions.
 //! For half of these cores, the estimate of look-up tables is within 8 % of the number after synthesis. The worst is the sequential
@@ -20,22 +20,23 @@
 
 use super::{BlockMemory, Chip, Estimate, FabricProduct, Family, Timing};
 
-/// Returns the number of look-up tables of a product, which Yosys makes of adders. Of products of 8 × 8 to 24 × 16 bits, most are
-/// within 3 % of the formula, and the worst is 8 % off: 8 by 8 bits take 159 tables, 16 by 16 bits 660.
+/// Returns the number of look-up tables of a product, which Yosys makes of adders. For most products of 8 × 8 to 24 × 16 bits,
+/// the formula is within 3 % of the number after synthesis, and the worst is 8 % off. For example, 8 by 8 bits take 159 tables,
+/// and 16 by 16 bits 660.
 fn product_luts(first: u64, second: u64) -> u64 {
     let hundredths = 245 * first * second + 145 * (first + second);
     hundredths.saturating_sub(2500) / 100
 }
 
-/// Puts products into DSP blocks as multipliers alone. `synth_ice40 -dsp` would move registers and adders into the blocks too.
-/// No tool knows the delays of such blocks: `icetime` treats them as the end of every path.
+/// The Yosys commands that put products into DSP blocks as multipliers alone. `synth_ice40 -dsp` would also move registers and
+/// adders into the blocks, and no tool knows the delays of such blocks.
 const PURE_MULTIPLIERS: &str = "synth_ice40 -top {top} -run begin:coarse; opt; wreduce; peepopt; opt_clean; memory_dff; \
     wreduce t:$mul; techmap -map +/mul2dsp.v -map +/ice40/dsp_map.v -D DSP_A_MAXWIDTH=16 \
     -D DSP_B_MAXWIDTH=16 -D DSP_A_MINWIDTH=2 -D DSP_B_MINWIDTH=2 -D DSP_Y_MINWIDTH=11 -D DSP_NAME=$__MUL16X16; \
     select a:mul2dsp; setattr -unset mul2dsp; opt_expr -fine; wreduce; select -clear; \
     chtype -set $mul t:$__soft_mul; ";
 
-/// The delays are for the chip UP5K.
+/// The family iCE40 UltraPlus, with delays for the chip UP5K.
 pub const ICE40: Family = Family {
     title: "iCE40",
     timing: Timing {
@@ -81,12 +82,12 @@ pub const ICE40: Family = Family {
     },
 };
 
-/// The delays are for the chip HX8K.
+/// The family iCE40 HX, with delays for the chip HX8K.
 pub const ICE40_HX: Family = Family {
     title: "iCE40 HX",
     timing: Timing {
         name: "ice40-hx",
-        // The delay of a product grows with the widths of its operands, so that wide products are split.
+        // The delay of a product grows with the widths of its operands, so wide products are split.
         multiplier: (9, 9),
         row_bits: 66,
         register: 1.95,

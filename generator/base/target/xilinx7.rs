@@ -1,10 +1,10 @@
-//! Data of the AMD 7 series. The delays are estimates. `benches/tune/fit` computed the weights for the cost from 59 cores, highlights and
-//! expressions. For half of these cores, the estimated number of look-up tables is within 14 % of the number after synthesis. The
-//! worst is the sequential `lyon` (112 tables estimated, and 73 measured).
+//! Holds the data of the AMD 7 series. The delays are estimates. `benches/tune/fit` computed the weights for the cost from 59
+//! cores, highlights and expressions. For half of these cores, the estimated number of look-up tables is within 14 % of the
+//! number after synthesis. The worst is the sequential `lyon` (112 tables estimated, and 73 measured).
 
 use super::{BlockMemory, Chip, Estimate, Family, Timing};
 
-/// The delays are for speed grade −1.
+/// The family of the AMD 7 series, with delays for speed grade −1.
 pub const XILINX7: Family = Family {
     title: "Xilinx 7",
     timing: Timing {

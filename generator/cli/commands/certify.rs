@@ -54,10 +54,11 @@ pub struct Arguments {
 /// The first words of a script that Glint wrote.
 const MARKER: &str = "# Certificate by Glint: ";
 
-/// This text begins the second line of a script, before a point at which the hypotheses of the statement hold.
+/// The beginning of the second line of a script; a point follows at which the hypotheses of the statement hold.
 const WITNESS: &str = "# The hypotheses hold at ";
 
-/// Helps the reader of a failed proof. If a device consists of parts, the bounds of the parts are among the terms.
+/// Prints the bound's terms, to help the reader of a failed proof. If a device has parts, the terms include the bounds of the
+/// parts.
 fn tell_terms(bound: &Bound) {
     if bound.is_stated() {
         say!(
@@ -71,6 +72,10 @@ fn tell_terms(bound: &Bound) {
     }
 }
 
+/// Runs the command. Returns whether all statements are proved.
+///
+/// # Errors
+///
 /// Fails if a configuration has problems or is a named pipeline, if Gappa or Coq is missing, or if a file was edited or cannot
 /// be written.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
@@ -155,7 +160,7 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     Ok(whole)
 }
 
-/// `certified` says whether all statements in `stated` were proved. `bound` is in output units.
+/// Returns a certificate's record. `certified` says whether all statements in `stated` were proved. `bound` is in output units.
 fn certificate(one: &Loaded, bound: f64, certified: bool, stated: &[Statement]) -> Certificate {
     Certificate {
         glint: env!("CARGO_PKG_VERSION").to_owned(),
@@ -197,11 +202,11 @@ struct Certification<'a> {
     one: &'a Loaded,
     /// The bound is in output units.
     bound: f64,
-    /// Whether the contract states the bound. Otherwise Gappa has found it.
+    /// Whether the contract states the bound. Otherwise Gappa found it.
     is_stated: bool,
     with_coq: bool,
     statements: usize,
-    /// The number of proved statements whose hypotheses contradict each other, so that they say nothing.
+    /// The number of proved statements with hypotheses that contradict each other, so that these statements say nothing.
     contradictory: usize,
     /// The number of proved statements for which no point was found at which the hypotheses hold.
     without_witness: usize,
@@ -294,8 +299,8 @@ impl CommandReport for Certification<'_> {
     }
 }
 
-/// Lets Gappa find an error bound for a contract that states none, in output units. The inner error is a phrase about a step
-/// that cannot be a part of a statement, or about a bound that was not found.
+/// Lets Gappa find an error bound, in output units, for a contract without a bound. The inner error is a phrase about a step that
+/// cannot be a part of a statement, or about a bound that was not found.
 fn found(
     design: &Design,
     contract: &dyn Contract,
@@ -310,11 +315,12 @@ fn found(
     Ok(bound.map(|bound| (asked.iter().map(|one| one.within(bound)).collect(), bound)))
 }
 
-/// Writes each script into a file: the accepted script of a proved statement, or the first script of another. For example,
-/// `red_out_3.g` has statement 3 of the output `red_out`.
+/// Writes each script into a file: the accepted script of a proved statement, or the first script of an open statement. For
+/// example, `red_out_3.g` has statement 3 of the output `red_out`.
 ///
-/// The function deletes scripts of an earlier run with more statements, if they still have the name in their first line. A
-/// copy under another name, or an edited script, belongs to the user and stays. A file that Glint did not write is an error.
+/// The function also deletes scripts of an earlier run with more statements, if the first line of a script still names its file.
+/// A copy under a different name, or an edited script, belongs to the user and stays. A file that Glint did not write is an
+/// error.
 fn write(
     directory: &Path,
     config: &str,
@@ -342,8 +348,7 @@ fn write(
             format!("{MARKER}{}, {outputs}, statement {number}: {state}.", input::label(config));
         let script = &scripts[chosen];
         let text = format!("{head} To check: gappa {name}\n{witness}\n{script}");
-        // All files are opened before the first is written, so that the command changes nothing if Glint did not write one of
-        // them.
+        // All files are opened before the first is written, so the command changes nothing if Glint did not write one of them.
         let file = OwnFile::new(directory, &name, Seal::Hash)?;
         files.push((file, text));
         names.push(name);

@@ -71,23 +71,24 @@ struct ComparisonEntry {
     label: String,
     core: Core,
     figures: ModelFigures,
-    /// The resources for each family in `COMPARED`, or the message of a failed synthesis. Empty if neither a record nor Yosys
-    /// states them.
+    /// The resources for each family in `COMPARED`, or the message of a failed synthesis. Empty if no record has them and Yosys
+    /// did not count them.
     usage: Vec<Result<Usage, String>>,
     record: Option<SynthesisRecord>,
 }
 
-/// What needs no outside tool.
+/// The figures that need no outside tool.
 struct ModelFigures {
-    /// The errors against cosⁿγ. `None` if the exponent is outside the device's domain.
+    /// The errors against cosⁿγ; `None` if the exponent is outside the device's domain.
     accuracy: Option<Accuracy>,
     clocks_per_point: f64,
     multipliers: Vec<MultiplierSize>,
 }
 
-/// Returns whether every synthesis run succeeded.
+/// Runs the command. Returns whether every synthesis run succeeded.
 ///
 /// # Errors
+///
 /// Fails if a configuration has problems, if the exponent is outside the domains of all devices, or if a record cannot be
 /// read.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
@@ -182,8 +183,8 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     Ok(failures.is_empty())
 }
 
-/// Returns the device's defaults with the values in `widths` for keys that the device has. If the device refuses a value, it
-/// keeps its default, and a note says so.
+/// Returns the device's defaults with the values in `widths`, for keys that the device has. If the device refuses a value, the
+/// key keeps its default, and `notes` gets a note about it.
 fn with_widths(device: &Device, widths: &[(&str, Option<i64>)], notes: &mut Vec<String>) -> Config {
     let schema: Schema = (device.schema)();
     let name = schema.module();
@@ -225,7 +226,7 @@ fn figures(core: &Core, n: f64) -> Result<ModelFigures> {
     })
 }
 
-/// Returns the resources in a record for every family in `COMPARED`, or an empty list if one is missing.
+/// Returns the resources in a record for every family in `COMPARED`, or an empty list if the record lacks a family.
 fn recorded(record: Option<&SynthesisRecord>) -> Vec<Result<Usage, String>> {
     let Some(record) = record else { return Vec::new() };
     let mut usage = Vec::new();
@@ -242,7 +243,7 @@ fn usage_of_family(record: &SynthesisRecord, family: &Family) -> Option<Usage> {
     figures.area.usage()
 }
 
-/// Returns, for each core and family in `COMPARED`, the resources or the message of the failure. Calls `done` after each run.
+/// Returns, for each core and family in `COMPARED`, the resources or the failure's message. Calls `done` after each run of Yosys.
 fn synthesise(
     cores: &[&(String, Core)],
     yosys: &Tool,
@@ -270,7 +271,7 @@ fn synthesise(
     Ok(runs.chunks(COMPARED.len()).map(<[_]>::to_vec).collect())
 }
 
-/// Says why no errors are shown. For example, `my_core.toml: n = 300 is not in its domain, n = 1 to 255`.
+/// Says why no errors are shown. For example, `my_core.toml: n = 300 is outside the device's domain, n = 1 to 255`.
 fn outside(entry: &ComparisonEntry, n: u32) -> String {
     let label = &entry.label;
     match domain(&entry.core) {
@@ -283,7 +284,7 @@ fn outside(entry: &ComparisonEntry, n: u32) -> String {
     }
 }
 
-/// Returns the smallest and the largest exponent of a device, if it has an operand for it.
+/// Returns the smallest and the largest exponent of a device, or `None` if it has no operand `exponent`.
 fn domain(core: &Core) -> Option<(f64, f64)> {
     let operands = core.contract.operands();
     let exponent = operands.iter().find(|operand| operand.name == contract::EXPONENT)?;

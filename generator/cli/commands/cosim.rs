@@ -1,6 +1,5 @@
 //! `glint cosim`: compares the golden model of a configuration with the simulated hardware at every clock. It compares every
-//! output, and every architectural register or, in a pipeline, every checkpoint. The options `--exhaustive` and `--simulator`
-//! select other checks.
+//! output, and every architectural register or, in a pipeline, every checkpoint.
 
 mod benches;
 pub mod exhaustive;
@@ -84,10 +83,11 @@ pub struct SweepValues {
 }
 
 impl SweepValues {
-    /// The user's values replace the values of some operands in the contract's sweep.
+    /// Returns the contract's sweep, in which the user's values replace the values of some operands.
     ///
     /// # Errors
-    /// Fails with wrong usage as [`axis::sweep`] does.
+    ///
+    /// Fails with wrong usage if an operand is unknown or a value is not valid ([`axis::sweep`]).
     pub fn of(&self, one: &Loaded) -> Result<Sweep> {
         let sweep = axis::sweep(one.core.contract.as_ref(), &self.others);
         sweep.map_err(|error| {
@@ -106,6 +106,10 @@ pub enum SimulatorChoice {
     Verilator,
 }
 
+/// Runs the command. Returns whether all checks hold.
+///
+/// # Errors
+///
 /// Fails if a configuration has problems, if options contradict each other, if a tool is missing, or if a file cannot be
 /// written.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
@@ -221,7 +225,7 @@ fn outcome(
     mismatch::traced(one, &lockstep, destination, points, 0)
 }
 
-/// Lists the operands in the form `red_out for cos_gamma=0.99 exponent=20`.
+/// Returns the output and the largest error's operands, for example `red_out for cos_gamma=0.99 exponent=20`.
 pub fn worst_operands(one: &Loaded, worst: &Worst) -> String {
     let operands = one.core.contract.operands();
     let values: Vec<String> = worst
@@ -240,10 +244,11 @@ pub(super) fn terms(bound: &Bound) -> Vec<Value> {
     bound.terms.iter().map(one).collect()
 }
 
-/// If model and hardware differ, the function also writes a waveform into the working directory. `failed` has the messages
-/// about requirements that the outcome does not meet.
+/// Returns a run's result as JSON. If model and hardware differ, also writes a waveform into the working directory. `failed` has
+/// the messages about requirements that the outcome does not meet.
 ///
 /// # Errors
+///
 /// Fails if the waveform cannot be recorded or written.
 pub fn as_json(
     one: &Loaded,

@@ -58,6 +58,10 @@ pub struct Arguments {
     time_limit: TimeLimit,
 }
 
+/// Writes the datasheets.
+///
+/// # Errors
+///
 /// Fails if a configuration has problems, if a record cannot be read, or if a file was edited or cannot be written.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
@@ -118,7 +122,7 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     Ok(true)
 }
 
-/// The usual path has the form `datasheets/rough.html`. With `single`, the path is the file that the user named.
+/// Returns a datasheet's path, usually of the form `datasheets/rough.html`. With `single`, it is the file that the user named.
 fn path(arguments: &Arguments, one: &Loaded, single: bool) -> PathBuf {
     if single {
         arguments.out.clone()

@@ -36,6 +36,10 @@ pub struct Arguments {
     force: bool,
 }
 
+/// Prints or writes the pages.
+///
+/// # Errors
+///
 /// Fails if a configuration has problems, if a page cannot be made, or if a page on disk was edited or cannot be written.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;

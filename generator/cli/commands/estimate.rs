@@ -31,11 +31,15 @@ pub struct Arguments {
 struct EstimateRow {
     target: Target,
     cost: Cost,
-    /// The resources that the smallest chip of the family lacks, as a phrase such as `it does not fit the LFE5U-25F: it takes
-    /// 30 of 28 DSP blocks`; empty if the core fits.
+    /// The resources that the smallest chip of the family lacks, as a phrase such as `the core does not fit the LFE5U-25F: it
+    /// takes 30 of 28 DSP blocks`; empty if the core fits.
     excess: String,
 }
 
+/// Prints the estimates.
+///
+/// # Errors
+///
 /// Fails if a configuration has problems, or if two configurations name the same module.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;

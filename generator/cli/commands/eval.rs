@@ -53,9 +53,13 @@ pub struct Arguments {
     typical: bool,
 }
 
-/// The number of clocks after which a computation counts as one that gives no result.
+/// The number of clocks after which a computation counts as without result.
 const LIMIT: u64 = 1 << 16;
 
+/// Computes the points and reports them.
+///
+/// # Errors
+///
 /// Fails if the configuration has problems, if an operand is unknown or has no valid value, or if the CSV file cannot be read.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let one = load_one(registry, &arguments.config)?;
@@ -84,8 +88,8 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     }
 }
 
-/// Returns a phrase for each operand outside the domain of the contract, such as `exponent = 300 is not in 1 to 255`. An
-/// operand that the device limits to its domain is never outside.
+/// Returns a phrase for each operand outside the contract's domain, such as `exponent = 300 is not between 1 and 255`. An operand
+/// that the device limits to its domain is never outside.
 fn outside(operands: &[Operand], raw: &[i64]) -> Vec<String> {
     let mut outside = Vec::new();
     for (operand, &raw) in operands.iter().zip(raw) {
@@ -99,8 +103,8 @@ fn outside(operands: &[Operand], raw: &[i64]) -> Vec<String> {
     outside
 }
 
-/// Reports one point with every signal of the golden model. `given` has the raw operands that the user gave, in the order of
-/// the contract. The operands and results of a `function` that the user named are reported in its own formats, too.
+/// Reports one point with every signal of the golden model. `given` has the raw operands that the user gave, in the contract's
+/// order. If the user named a `function` of a unit, its operands and results are also reported in its own formats.
 fn point(
     output: OutputOptions,
     one: &Loaded,
@@ -139,7 +143,7 @@ struct EvaluatedPoint<'a> {
     /// The operands and results of the function that the user named, in its own formats.
     of_function: Option<(Vec<SignalValue>, Vec<ResultComparison>)>,
     operands: Vec<SignalValue>,
-    /// The operands that were not given, with the values that the command chose.
+    /// The operands that the user did not give, with the values that the command chose.
     missing: Vec<String>,
     outside: Vec<String>,
     signals: Vec<SignalValue>,
@@ -200,9 +204,9 @@ fn print_results(results: &[ResultComparison]) {
     tables::print("result | value: | formula in f64: | error in last places:", rows);
 }
 
-/// Returns the signals of the golden model in the clock of the first result. The golden model of a pipeline is the model of
-/// its sequential core; only its checkpoints, and the signals that the pipeline has too, are returned. The formats come from
-/// the nets of the sequential core.
+/// Returns the signals of the golden model in the first result's clock. The golden model of a pipeline is the model of its
+/// sequential core; the result has only its checkpoints and the signals that the pipeline also has. The formats come from the
+/// sequential core's nets.
 fn signal_values(one: &Loaded, operands: &[Operand], raw: &[i64]) -> Result<Vec<SignalValue>> {
     let core = &one.core;
     let mut signals = signals(core.opened.golden(), operands, raw)?;
@@ -232,7 +236,7 @@ fn signal_values(one: &Loaded, operands: &[Operand], raw: &[i64]) -> Result<Vec<
     Ok(values)
 }
 
-/// A result of a point, `f` of a highlight or an output, with the value of the formula.
+/// A result of a point (an output, or `f` of a highlight) with the value of the formula.
 struct ResultComparison {
     name: String,
     /// The number of fraction bits, which decides the unit of the error.
@@ -266,8 +270,8 @@ fn results(contract: &dyn Contract, raw: &[i64]) -> Vec<ResultComparison> {
 }
 
 impl ResultComparison {
-    /// `exact` has the formula's values on the two sides of a jump, or [`ANY_VALUE`] if nothing is promised; without a jump,
-    /// the two values are equal. `value` is the value of the formula, or NaN.
+    /// Compares `raw` with `exact`, the formula's values on the two sides of a jump, or [`ANY_VALUE`] if nothing is promised.
+    /// Without a jump, the two values are equal. `value` is the formula's value, or NaN.
     fn new(name: &str, format: Format, raw: i64, exact: [f64; 2], value: f64) -> Self {
         let unit = format.to_f64(1);
         let error = golden::nearer(raw as f64, exact.map(|side| side / unit));
@@ -280,7 +284,7 @@ impl ResultComparison {
         }
     }
 
-    /// The reflectance `f` is no output, so its name in the table has the unit of its error.
+    /// Returns the name of the result in the table. `f` is no output, so its name states the unit of its error.
     fn label(&self) -> String {
         match self.name.as_str() {
             F => format!("f (last place 2^{})", -self.fraction),
@@ -313,7 +317,7 @@ struct SignalValue {
     name: String,
     raw: i128,
     value: f64,
-    /// The text is empty for a signal that is no net of the design.
+    /// The format; empty for a signal that is no net of the design.
     format: String,
 }
 

@@ -21,7 +21,7 @@ pub struct Arguments {
     code: Option<String>,
 }
 
-/// Fails if the code does not exist.
+/// Prints the explanation, or the list. Fails if the code does not exist.
 pub fn run(_: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let wanted =
         |code: &str| arguments.code.as_ref().is_none_or(|it| it.eq_ignore_ascii_case(code));

@@ -1,5 +1,5 @@
-//! `glint generate`: writes the files of each configuration, such as Verilog, ROM contents, manifest, FuseSoC core and test
-//! bench. With `--check` it writes nothing, and compares the files on disk.
+//! `glint generate`: writes each configuration's files, such as Verilog, ROM contents, manifest, FuseSoC core and test bench.
+//! With `--check` it writes nothing, and compares the files on disk.
 
 use std::path::{Path, PathBuf};
 
@@ -48,9 +48,10 @@ pub struct Arguments {
     force: bool,
 }
 
-/// With `--check`, returns whether the files on disk equal the generated files, and writes nothing.
+/// Writes the files. With `--check`, writes nothing, and returns whether the files on disk equal the generated files.
 ///
 /// # Errors
+///
 /// Fails if a configuration has problems, or if a file was edited or cannot be written.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
@@ -133,8 +134,8 @@ fn print_next_step(out: &Path, loaded: &[Loaded], with_bench: bool) {
     );
 }
 
-/// Returns the resources that the smallest chip of a pipeline's target lacks, as a phrase such as `it does not fit the iCE40
-/// UP5K: it takes 9 of 8 DSP blocks`. Returns `None` if the core fits, or is no pipeline for a known target.
+/// Returns the resources that the smallest chip of a pipeline's target lacks, as a phrase such as `the core does not fit the
+/// iCE40 UP5K: it takes 9 of 8 DSP blocks`. Returns `None` if the core fits, or is no pipeline for a known target.
 fn misfit(one: &Loaded) -> Option<String> {
     let pipeline = one.core.design.pipeline.as_ref()?;
     let target = TARGETS.into_iter().find(|target| target.name() == pipeline.target)?;
@@ -148,10 +149,11 @@ pub struct Made {
     word_stride: usize,
 }
 
-/// Makes every file of each configuration, in parallel, in the order of `loaded`.
+/// Makes every file of each configuration in parallel, and returns them in the order of `loaded`.
 ///
 /// # Errors
-/// Fails if the files of a configuration cannot be made, or if two configurations have modules of the same name.
+///
+/// Fails if a configuration's files cannot be made, or if two configurations have modules of the same name.
 pub fn all_files(output: OutputOptions, loaded: &[Loaded], with_bench: bool) -> Result<Vec<Made>> {
     let bar = progress::bar(output, loaded.len() as u64, "generating");
     let known = ComputationCache::default();
@@ -171,7 +173,7 @@ pub fn all_files(output: OutputOptions, loaded: &[Loaded], with_bench: bool) -> 
     Ok(made)
 }
 
-/// `known` is a cache of chosen computations.
+/// Makes a configuration's files. `known` is a cache of chosen computations.
 fn files(one: &Loaded, known: &ComputationCache, with_bench: bool) -> Result<Made> {
     let vectors = with_bench.then(|| one.core.shipped_vectors_of(known)).transpose();
     let vectors = vectors.with_context(|| format!("`{}`", one.path))?;
@@ -180,8 +182,8 @@ fn files(one: &Loaded, known: &ComputationCache, with_bench: bool) -> Result<Mad
 }
 
 /// Writes the files of a configuration into `out`, and the Python driver that its bench shares with other benches. Without
-/// `force`, it refuses to replace edited files. Returns whether a file of the configuration has changed; the driver does not
-/// count.
+/// `force`, the function refuses to replace edited files. Returns whether a file of the configuration has changed; the driver
+/// does not count.
 ///
 /// # Errors
 /// Fails if a file was edited, or cannot be written.

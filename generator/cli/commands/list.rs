@@ -38,8 +38,7 @@ struct Inventory<'a> {
 }
 
 impl Inventory<'_> {
-    /// Prints the devices whose pipeline with the longest interval dominates their sequential core. A pipeline dominates if
-    /// the estimate for ECP5 gives it no more DSP blocks and no lower rate, and an advantage in at least one of both.
+    /// Prints the devices whose pipeline with the longest interval dominates the sequential core, by the estimate for ECP5.
     fn print_longest_intervals(&self) {
         let rows: Vec<Option<Vec<String>>> =
             self.devices.par_iter().map(longest_interval).collect();
@@ -58,8 +57,8 @@ impl Inventory<'_> {
     }
 }
 
-/// Compares the sequential core with the pipeline with the longest interval, if the pipeline dominates. The row has the DSP
-/// blocks of both, and their rates in million points per second.
+/// Returns a row that compares a sequential core with the pipeline with the longest interval, or `None` if the pipeline does not
+/// dominate.
 fn longest_interval(device: &Device) -> Option<Vec<String>> {
     let opened = device.open(device.defaults()).ok()?;
     let sequential = architectures::sequential(&opened, Target::Ecp5).ok()?;

@@ -26,8 +26,8 @@ struct MainJobResult {
     failures: Vec<String>,
 }
 
-/// Returns whether every configuration has passed. With `details` it also prints where the largest error of each configuration
-/// is, and the remarks on its formula.
+/// Returns whether every configuration has passed. With `details`, also prints the operands of the largest error of each
+/// configuration, and the remarks on its formula.
 ///
 /// # Errors
 /// Fails if a configuration has problems, if files cannot be written, or if a simulation cannot be run.
@@ -78,7 +78,7 @@ fn finding(one: &Loaded, bar: &indicatif::ProgressBar) -> Result<MainJobResult> 
     Ok(MainJobResult { timing: one.core.timing()?, bounds, outcome, failures })
 }
 
-/// On the screen, only the line with the counts follows the table.
+/// The columns of the table. Only a line with counts follows the table.
 const COLUMNS: &str = "configuration | device;6 | clocks/point:2 | points:4 | clocks:7 | registers, outputs:8 | ROM bits:3 | \
                        bound:1 | largest error: | verdict";
 
@@ -135,15 +135,14 @@ fn print(loaded: &[Loaded], findings: &[MainJobResult], details: bool) -> Result
     Ok(())
 }
 
-/// Returns the short name of a configuration in `configs/`, such as `rough` for `configs/rough.toml`, and the whole path of
-/// any other.
+/// Returns the short name of a configuration in `configs/`, such as `rough` for `configs/rough.toml`, and the whole path of any
+/// other configuration.
 fn short(path: &str) -> &str {
     let name = path.strip_prefix(CONFIGS).and_then(|name| name.strip_prefix('/'));
     name.and_then(|name| name.strip_suffix(".toml")).unwrap_or(path)
 }
 
-/// Returns a sentence such as `19 of 21 hold; 2 FAIL.` A configuration whose contract states no bound counts only in the
-/// total.
+/// Returns a sentence such as `19 of 21 hold; 2 FAIL.` A configuration whose contract has no bound counts only in the total.
 fn counts(findings: &[MainJobResult]) -> String {
     let (mut hold, mut outside, mut fail) = (0, 0, 0);
     for finding in findings {

@@ -29,9 +29,10 @@ pub struct Arguments {
     sweep: SweepValues,
 }
 
-/// Returns whether the joined check holds.
+/// Joins the shards. Returns whether the whole check holds.
 ///
 /// # Errors
+///
 /// Fails if a file cannot be read, or if the files are not the complete shards of this configuration and build.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let Arguments { config, files, .. } = arguments;

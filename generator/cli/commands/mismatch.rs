@@ -27,10 +27,11 @@ pub struct Reproducer {
 }
 
 impl Reproducer {
-    /// Simulates the stream of `mismatch` again, for which golden model and hardware of the core `one` differ. Writes a waveform
-    /// that ends with the difference, at most 64 clocks before it, into the file of [`waveform_of`].
+    /// Simulates the stream of `mismatch` again, in which golden model and hardware of the core `one` differ. Writes a waveform
+    /// that ends with the difference and begins at most 64 clocks earlier, into the file of [`waveform_of`].
     ///
     /// # Errors
+    ///
     /// Fails if the run fails, or if the waveform cannot be written.
     pub fn of_run(one: &Loaded, mismatch: &Mismatch) -> Result<Self> {
         let (vcd, from) = window(one, mismatch);
@@ -49,9 +50,10 @@ impl Reproducer {
     }
 
     /// Simulates the combination of `difference` again, for which golden model and hardware of the core `one` differ. Writes a
-    /// waveform that ends with the difference, at most 64 clocks before it, into the file of [`waveform_of`].
+    /// waveform that ends with the difference and begins at most 64 clocks earlier, into the file of [`waveform_of`].
     ///
     /// # Errors
+    ///
     /// Fails if the run fails, or if the waveform cannot be written.
     pub fn of_combination(
         one: &Loaded,
@@ -83,8 +85,8 @@ impl Reproducer {
     }
 }
 
-/// Bit patterns are written as text, such as `0x1f`, because they may have 64 bits, and many JSON readers lose digits of such
-/// numbers.
+/// Returns a difference as JSON. Bit patterns are text, such as `0x1f`: they may have 64 bits, and many JSON readers lose digits
+/// of such numbers.
 pub fn as_json(mismatch: &Mismatch) -> Value {
     json!({
         "seed": mismatch.seed,
@@ -101,7 +103,7 @@ fn window(one: &Loaded, mismatch: &Mismatch) -> (PathBuf, u64) {
     (waveform_of(one), first_clock(mismatch.clock))
 }
 
-/// Returns a path in the working directory, for example `rough_mismatch.vcd`.
+/// Returns the path of the waveform file in the working directory, for example `rough_mismatch.vcd`.
 pub fn waveform_of(one: &Loaded) -> PathBuf {
     PathBuf::from(format!("{}_mismatch.vcd", one.core.config().name))
 }
@@ -115,7 +117,7 @@ pub fn first_clock(clock: u64) -> u64 {
 /// file is written under a temporary name, and renamed when it is complete.
 ///
 /// # Errors
-/// Fails if [`Lockstep::trace`] fails, or if the file cannot be written.
+/// Fails if the simulation fails, or if the file cannot be written.
 pub fn traced(
     one: &Loaded,
     lockstep: &Lockstep<'_>,
@@ -127,7 +129,7 @@ pub fn traced(
 }
 
 /// Lets `trace` write a waveform under a temporary name, and renames the file when it is complete. Also writes a view for each
-/// waveform viewer, unless one exists, which may be the user's. A view that cannot be written causes only a warning.
+/// waveform viewer, unless a view exists, which may be the user's. A view that cannot be written causes only a warning.
 fn write<T>(
     one: &Loaded,
     destination: Destination,

@@ -1,7 +1,6 @@
 //! Defines the commands of `glint`, one in each module, and the code that they share.
 //!
-//! The function `run` of a command returns whether everything that the command checks holds. A command that checks nothing
-//! returns true.
+//! The function `run` of a command returns whether everything that the command checks holds.
 
 pub mod certify;
 
@@ -50,17 +49,17 @@ use glint_golden::Bounds;
 use glint_show::evidence::advice;
 use glint_tools::Tool;
 
-/// The configurations here are used if the user names none.
+/// The directory of the configurations that a command uses if the user names none.
 const CONFIGS: &str = "configs";
 
 pub struct Loaded {
-    /// The path on the command line, with `/` as the separator. For example, `configs/rough.toml`.
+    /// The path on the command line, with `/` as the separator, for example `configs/rough.toml`.
     path: String,
     core: Core,
     source: ConfigSource,
 }
 
-/// Returns the files in `named`, or all TOML files in `configs/`, sorted, if it is empty.
+/// Returns the files in `named`. If `named` is empty, returns all TOML files in `configs/`, sorted.
 fn paths(named: &[PathBuf]) -> Result<Vec<PathBuf>> {
     if !named.is_empty() {
         return Ok(named.to_vec());
@@ -86,8 +85,8 @@ fn paths(named: &[PathBuf]) -> Result<Vec<PathBuf>> {
     Ok(paths)
 }
 
-/// Reads the configurations `named`, or all in `configs/` if it is empty, and builds their designs. The function reports the
-/// problems of all files before it fails. It also fails if two files name the same module, for example `rough`.
+/// Reads the configurations `named`, or all in `configs/` if `named` is empty, and builds their designs. Reports the problems of
+/// all files before it fails. Fails if two files name the same module, for example `rough`.
 fn load(registry: &Registry, named: &[PathBuf]) -> Result<Vec<Loaded>> {
     if named.iter().filter(|path| path.as_path() == Path::new(input::STDIN)).count() > 1 {
         wrong_usage!("standard input can be read only once: name `-` only once");
@@ -115,8 +114,8 @@ fn load(registry: &Registry, named: &[PathBuf]) -> Result<Vec<Loaded>> {
     if failed.is_empty() { Ok(loaded) } else { Err(Failure::Several(failed).into()) }
 }
 
-/// Does the same as [`load`] for a command that works only on cores with a microprogram. If `named` is empty, the pipelines in
-/// `configs/` are left out; a pipeline in `named` is an error.
+/// Loads configurations like [`load`], for the command `command`, which works only on cores with a microprogram. If `named` is
+/// empty, the pipelines in `configs/` are left out; a pipeline in `named` is an error.
 fn load_sequential(registry: &Registry, named: &[PathBuf], command: &str) -> Result<Vec<Loaded>> {
     let (pipelines, loaded): (Vec<Loaded>, Vec<Loaded>) =
         load(registry, named)?.into_iter().partition(|one| one.core.design.pipeline.is_some());
@@ -152,7 +151,7 @@ fn load_one(registry: &Registry, path: &Path) -> Result<Loaded> {
     Ok(Loaded { path: name, core, source })
 }
 
-/// Adds the location of the key in the file to an error of a key, and otherwise the name of the file. `source` has the
+/// Adds the location of the key in `file` to an error of a key, and the file's name to any other error. `source` has the
 /// locations of the keys.
 fn located(error: anyhow::Error, file: &str, source: &ConfigSource) -> anyhow::Error {
     match source.located(error) {
@@ -161,7 +160,7 @@ fn located(error: anyhow::Error, file: &str, source: &ConfigSource) -> anyhow::E
     }
 }
 
-/// Returns a text for a message about a name that is not in `names`: the most similar name, and a list of all names. `what` is
+/// Returns the end of a message about a name that is not in `names`: the most similar name, and a list of all names. `what` is
 /// the plural noun for such names. For example, the text for `exponnt` begins with "; did you mean `exponent`?".
 fn none_of(name: &str, what: &str, names: &[&str]) -> String {
     let near = config::nearest(name, names.iter().copied())
@@ -169,7 +168,8 @@ fn none_of(name: &str, what: &str, names: &[&str]) -> String {
     format!("{near} The {what} are: {}", names.join(", "))
 }
 
-/// Returns `None` if Yosys is missing, and adds a note with the text `without`, which must describe the command without Yosys.
+/// Finds Yosys. If Yosys is missing, returns `None` and adds a note with the text `without`, which describes the command without
+/// Yosys.
 fn yosys(without: &str, notes: &mut Vec<String>) -> Option<Tool> {
     Tool::find("yosys").map_err(|missing| notes.push(format!("{missing}: {without}"))).ok()
 }
@@ -195,15 +195,15 @@ fn verdict(bounds: &Bounds, failures: &[String]) -> &'static str {
 }
 
 impl Loaded {
-    /// If a key asks for something that the core cannot have, the error has the location of the key in the file.
+    /// Makes the core's files. If a key asks for something that the core cannot have, the error has the location of the key in
+    /// the file.
     fn files(&self, vectors: impl Into<Option<Vectors>>) -> Result<OutputFiles> {
         let files = self.core.files(&self.path, vectors);
         files.map_err(|error| located(error, &self.path, &self.source))
     }
 
-    /// Does the same as [`Loaded::bound`], and warns about a module name with `__`. If the device's own keys are not all at
-    /// their defaults, it also prints the contract's remarks on the formula as warnings. For the defaults, the page of the
-    /// catalogue has them.
+    /// Checks the bound with [`Loaded::bound`], and warns about a module name with `__`. If the device's own keys are not all at
+    /// their defaults, also prints the contract's remarks on the formula as warnings.
     fn contract(&self) -> Result<()> {
         self.bound()?;
         let config = self.core.config();
@@ -226,8 +226,8 @@ impl Loaded {
         Ok(())
     }
 
-    /// Warns if the configuration does not keep the accuracy contract, or if the contract states no bound. With `strict =
-    /// true`, it fails instead.
+    /// Warns if the configuration does not keep the accuracy contract, or if the contract states no bound. With `strict = true`,
+    /// fails instead.
     fn bound(&self) -> Result<()> {
         let bounds = self.core.contract.bounds();
         let bound = bounds.governing();

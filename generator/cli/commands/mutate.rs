@@ -68,7 +68,6 @@ struct Scored {
 }
 
 impl Scored {
-    /// Counts the faults of the netlist and of the Verilog.
     fn share_undecided(&self) -> f64 {
         let (mut planted, mut undecided) = (self.netlist.all.planted, self.netlist.all.undecided);
         if let Some(text) = &self.verilog {
@@ -83,6 +82,10 @@ impl Scored {
     }
 }
 
+/// Runs the command. Returns whether few enough faults are undecided.
+///
+/// # Errors
+///
 /// Fails if a configuration has problems, if the named fault does not exist, if a tool is missing, or if a record cannot be
 /// written.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
@@ -223,7 +226,7 @@ fn only(output: OutputOptions, one: &Loaded, id: &str) -> Result<bool> {
 struct PlantedFault<'a> {
     one: &'a Loaded,
     found: &'a FaultResult,
-    /// The file with the waveform of a fault that is caught, and its first and last clock.
+    /// The file with the waveform of a caught fault, and its first and last clock.
     waveform: Option<(PathBuf, u64, u64)>,
 }
 
@@ -255,7 +258,7 @@ impl CommandReport for PlantedFault<'_> {
     }
 }
 
-/// Returns a phrase that begins, for example, with `seed 3, with exponent=#5, after clock 120`.
+/// Describes the difference that a fault causes. For example, the phrase begins with `seed 3, with exponent=#5, after clock 120`.
 fn shown_by(SignalDifference { held, mismatch }: &SignalDifference) -> String {
     let mut holding = String::new();
     for (name, raw) in held {
@@ -349,7 +352,8 @@ fn print_undecided(ids: &[String]) {
     }
 }
 
-/// Prints how many of the faults that any test notices the shipped bench notices too, and whether this reaches the goal.
+/// Prints the share of faults that the shipped bench notices, among the faults that any test notices, and whether this share
+/// reaches the goal.
 fn print_shipped(faults: &str, share: Share, goal: Option<f64>) {
     let verdict = match goal {
         Some(goal) => {

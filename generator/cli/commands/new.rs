@@ -1,5 +1,4 @@
-//! `glint new`: prints a configuration file for a device, or for a function or an expression that the user gives by name. For
-//! example, `glint new rsqrt` configures the device `function`, and `glint new atan2` the device `expression`.
+//! `glint new`: prints a configuration file for a device, or for a function or an expression that the user gives by name.
 
 use anyhow::Result;
 use clap::Args;
@@ -61,14 +60,15 @@ pub struct Arguments {
     target: Option<String>,
 }
 
-/// Editors find the JSON Schema of the keys by this comment.
+/// The head of a file with all keys. Editors find the JSON Schema of the keys by this comment.
 const SCHEMA: &str = "#:schema glint.schema.json\n# Editors check keys with this schema. To write the \
                       schema: glint schema > glint.schema.json\n\n";
 
-/// Fails if no device or function has the name, or if an option has a value that a configuration cannot have.
+/// Prints the configuration. Fails if no device or function has the name, or if an option has a value that a configuration cannot
+/// have.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let device = &arguments.device;
-    // A device of the user's own may have the name of a preset, such as `fresnel`.
+    // A device of the user's own may have a preset's name, such as `fresnel`.
     let is_hidden =
         |preset: &presets::Preset| preset.device != device && registry.device(device).is_some();
     let preset = presets::find(device).filter(|preset| !is_hidden(preset));
@@ -118,7 +118,8 @@ const REGISTERED: &str = "registered";
 /// multipliers.
 ///
 /// # Errors
-/// Fails if the pipeline does not reach its clock with registers either, or if no netlist can be made.
+///
+/// Fails if even registers do not let the pipeline reach its clock, or if no netlist can be made.
 fn needs_registered_multipliers(opened: &OpenedConfig, settings: &[KeyAssignment]) -> Result<bool> {
     let Err(DesignError::Key(error)) = opened.design() else { return Ok(false) };
     let is_chosen = settings.iter().any(|setting| setting.key == MULTIPLIERS);
@@ -132,9 +133,9 @@ fn needs_registered_multipliers(opened: &OpenedConfig, settings: &[KeyAssignment
     Err(Failure::WrongUsage(format!("{}; {}", error.message, error.remedy)).into())
 }
 
-/// Returns a comment about the pipeline with the longest interval, if it dominates the sequential core. By the estimate, such
-/// a pipeline has no more DSP blocks and no lower rate, and an advantage in at least one of both. Returns `None` if the user
-/// has chosen an architecture.
+/// Returns a comment about the pipeline with the longest interval, if it dominates the sequential core: by the estimate, it has
+/// no more DSP blocks and no lower rate, and an advantage in one of them. Returns `None` if it does not, or if the user has
+/// chosen an architecture.
 fn hint(opened: &OpenedConfig, given: &[String]) -> Option<String> {
     if given.iter().any(|key| key == "architecture") {
         return None;
@@ -153,7 +154,7 @@ fn hint(opened: &OpenedConfig, given: &[String]) -> Option<String> {
 }
 
 struct NewConfiguration<'a> {
-    /// The name of the device or of the function, as the user gave it.
+    /// The name of the device or of the function that the user gave.
     device: &'a str,
     name: String,
     text: String,
@@ -203,7 +204,7 @@ impl Arguments {
     }
 }
 
-/// Fails if a file with the name and the settings would be refused.
+/// Opens the configuration. Fails if the reader would refuse a file with this name and these settings.
 fn opened(
     registry: &Registry,
     schema: &Schema,

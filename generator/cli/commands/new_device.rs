@@ -34,7 +34,7 @@ pub struct Arguments {
     glint: String,
 }
 
-/// The template, the crate of the device `parabola`: paths in the crate, and contents.
+/// The template, the crate of the device `parabola`: the path of each file in the crate, and its contents.
 const FILES: [(&str, &str); 6] = [
     ("Cargo.toml", include_str!("../new_device/manifest.toml")),
     ("src/lib.rs", include_str!("../new_device/lib.rs")),
@@ -44,7 +44,7 @@ const FILES: [(&str, &str); 6] = [
     ("tests/device.rs", include_str!("../new_device/test.rs")),
 ];
 
-/// Fails if the name cannot be the name of a new device, or if the crate cannot be written.
+/// Writes the crate. Fails if the name cannot be a new device's name, or if the crate cannot be written.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let name = &arguments.name;
     check_name(registry, name)?;
@@ -77,7 +77,7 @@ impl CommandReport for NewCrate<'_> {
     }
 }
 
-/// Writes all files below a new directory, or nothing.
+/// Writes all files below a new directory, or none.
 fn write(directory: &Path, files: &[(&str, String)]) -> Result<()> {
     if directory.symlink_metadata().is_ok() {
         bail!(
@@ -100,12 +100,13 @@ fn write(directory: &Path, files: &[(&str, String)]) -> Result<()> {
     fs::rename(&made, directory).with_context(cannot)
 }
 
-/// For example, `sine-wave` can be a name, and `Sine`, `2x` and `sine--wave` cannot.
+/// Checks a new device's name. For example, `sine-wave` is a possible name, and `Sine`, `2x` and `sine--wave` are not.
 ///
 /// # Errors
-/// Fails if the name does not begin with a lower-case letter, or has other characters than lower-case letters, digits and
-/// single `-`. Fails also if the name is a reserved word of Verilog, or if a device in `registry` or a crate that the new crate
-/// uses already has it.
+///
+/// Fails if the name does not begin with a lower-case letter, or has other characters than lower-case letters, digits and single
+/// `-`. Fails if the name is a reserved word of Verilog, or the name of a device in `registry` or of a crate that the new crate
+/// uses.
 fn check_name(registry: &Registry, name: &str) -> Result<()> {
     let is_letter = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-';
     let begins = name.starts_with(|c: char| c.is_ascii_lowercase());

@@ -5,7 +5,7 @@ use anyhow::Result;
 use glint_show::evidence::chart::Chart;
 use glint_show::pages::plots;
 
-/// In a page, its style sheet has these rules.
+/// The style sheet of the file. In a page, the style sheet of the page has these rules.
 const STYLE: &str = "<style>svg{background:#fcfcfb}text{fill:#1c1d1f;font-family:sans-serif}.ink{stroke:#5b5f66}text.ink{stroke:#fcfcfb;stroke-width:16;paint-order:stroke}\
                      .grid{stroke:#e6e8ea;stroke-width:4}.s1{stroke:#1b4fa8;stroke-width:8;stroke-linejoin:round}circle.s2{fill:#b3410b}\
                      @media(prefers-color-scheme:dark){svg{background:#16181b}text{fill:#e6e8ea}.ink{stroke:#9aa0a8}text.ink{stroke:#16181b}\
@@ -14,9 +14,10 @@ const STYLE: &str = "<style>svg{background:#fcfcfb}text{fill:#1c1d1f;font-family
 /// The height of the heading above the plot, in units of the drawing.
 const HEADING: u32 = 110;
 
-/// In the page of a report, title and axis label are next to the plot; in this file they are inside.
+/// Plots `chart` as a file of its own, with title and axis label inside. In a page, both are next to the plot.
 ///
 /// # Errors
+///
 /// Fails if the plotting library fails.
 pub fn svg_file(chart: &Chart) -> Result<String> {
     let svg = plots::svg(chart)?;

@@ -24,7 +24,7 @@ use glint_show::render::{
 };
 use glint_tools::VerilogSimulator;
 
-/// The limit is in bytes. The OBJ file of the largest mesh is about as large.
+/// The largest size of a file in bytes, about the size of the OBJ file of the largest mesh.
 const LARGEST_FILE: u64 = 4 << 30;
 
 /// Draw a picture whose highlights are bit-accurate results of the device
@@ -139,7 +139,11 @@ enum Through {
     Verilator,
 }
 
-/// Fails if the configuration has problems, if an option or an input file is not valid, if Verilator is missing, or if the
+/// Draws the picture and writes it.
+///
+/// # Errors
+///
+/// Fails if the configuration has problems, if an option or an input file is not valid. Fails if Verilator is missing, or if the
 /// picture cannot be written.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let (name, core) = core(registry, arguments.config.as_deref())?;
@@ -215,7 +219,7 @@ fn settings(core: &Core, arguments: &Arguments) -> Result<Settings> {
     })
 }
 
-/// If `coarse` is true, built-in shapes consist of large triangles, for a device that computes lines of points.
+/// Returns the scene. With `coarse`, built-in shapes consist of large triangles, for a device that computes lines of points.
 fn scene(arguments: &Arguments, coarse: bool) -> Result<Scene> {
     let objects = match &arguments.mesh {
         Some(path) => {
@@ -403,7 +407,7 @@ fn numbers(text: &str) -> Result<Vec<f64>, String> {
         .collect()
 }
 
-/// Parses for example `alpha2=0.04` or `c=nh`; the value must be one finite number, or the name of a cosine.
+/// Parses a setting such as `alpha2=0.04` or `c=nh`. The value must be one finite number, or a cosine's name.
 fn operand(text: &str) -> Result<(String, GivenOperand), String> {
     let (name, value) =
         text.split_once('=').ok_or("expected NAME=VALUE, for example alpha2=0.04 or c=nh")?;
@@ -429,7 +433,7 @@ fn colour(text: &str) -> Result<Vector, String> {
     of_light(vector(text)?)
 }
 
-/// The three components must be from 0 to 1.
+/// Checks that the three components are from 0 to 1.
 fn of_light(colour: Vector) -> Result<Vector, String> {
     let is_colour = colour.0.iter().all(|part| (0.0..=1.0).contains(part));
     is_colour.then_some(colour).ok_or_else(|| "a colour is three numbers from 0 to 1".to_owned())
@@ -447,7 +451,7 @@ fn light(text: &str) -> Result<Light, String> {
     Ok(Light { direction: direction.ok_or("0,0,0 is not a direction")?, colour })
 }
 
-/// Both limits are allowed. `wanted` is the message for anything else.
+/// Parses a number from `low` to `high`, both included. `wanted` is the message for any other text.
 fn between(text: &str, low: f64, high: f64, wanted: &str) -> Result<f64, String> {
     let number = text.parse().ok().filter(|number| (low..=high).contains(number));
     number.ok_or_else(|| wanted.to_owned())

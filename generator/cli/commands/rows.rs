@@ -8,12 +8,12 @@ use csv::{ReaderBuilder, StringRecord, Trim};
 
 use glint_base::input;
 
-/// Reads a CSV file, or standard input if the path is `-`. `columns` interprets the headings, and `of_row` converts each row.
-/// Returns the converted rows in the order of the file.
+/// Reads a CSV file, or standard input if the path is `-`. `columns` interprets the headings, and `of_row` converts a row.
+/// Returns the converted rows in the file's order.
 ///
 /// # Errors
-/// Fails if the file cannot be read, has a quote that is not closed, or has no row below the headings. Fails also if `columns`
-/// or `of_row` fails; the error then names the first row or the line of the row.
+/// Fails if the file cannot be read, has a quote that is not closed, or has no row below the headings. Fails if `columns` or
+/// `of_row` fails; the error then names the first row or the row's line.
 pub fn read<C, T>(
     path: &Path,
     columns: impl FnOnce(&StringRecord) -> Result<C>,

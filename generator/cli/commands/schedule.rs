@@ -47,8 +47,12 @@ pub struct Arguments {
     after: Option<String>,
 }
 
-/// Fails if a configuration has problems, if a named configuration is sequential, or if no configuration is a pipeline. Fails
-/// also if no pass has the name in `--after`, or if a drawing was edited or cannot be written.
+/// Shows the stages, the passes, or the computation after a pass.
+///
+/// # Errors
+///
+/// Fails if a configuration has problems, if a named configuration is sequential, or if no configuration is a pipeline. Fails if
+/// no pass has the name in `--after`, or if a drawing was edited or cannot be written.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let named = paths(&arguments.configs.paths)?;
     let mut list = output.list();
@@ -136,7 +140,7 @@ struct PassText<'a> {
 }
 
 impl<'a> PassText<'a> {
-    /// Fails if no pass that rewrites this computation has the name `pass`.
+    /// Prints the computation to a text. Fails if no pass that rewrites this computation has the name `pass`.
     fn new(one: &'a Loaded, pass: &'a str) -> Result<Self> {
         let results = one.core.opened.pass_results()?;
         let Some(result) = results.iter().find(|result| result.name == pass) else {
@@ -229,7 +233,7 @@ fn print(one: &Loaded, pipeline: &Pipeline) {
     tables::print(&headings, rows);
 }
 
-/// The list is empty if every clock takes a point, because each product then has a multiplier of its own.
+/// Returns the product that each shared multiplier computes in each slot.
 fn multiplier_slots(one: &Loaded, pipeline: &Pipeline) -> Vec<(String, Vec<Option<String>>)> {
     match pipeline.interval {
         1 => Vec::new(),

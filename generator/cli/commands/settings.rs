@@ -35,12 +35,12 @@ impl KeyAssignment {
         Ok(KeyAssignment { key: key.to_owned(), value })
     }
 
-    /// `word` is a text without quotes.
+    /// Makes a setting of `key` to the text `word`, given without quotes.
     pub fn word(key: &str, word: &str) -> KeyAssignment {
         KeyAssignment { key: key.to_owned(), value: quoted(word) }
     }
 
-    /// Returns TOML with a newline, for example `cosine.fraction = 16`.
+    /// Returns the setting as a line of TOML, for example `cosine.fraction = 16`.
     pub fn line(&self) -> String {
         format!("{} = {}\n", self.key, self.value)
     }

@@ -16,7 +16,7 @@ use glint_core::registry::Registry;
 use glint_show::render::setup::{Arc, direction, half};
 use glint_show::render::{self, Feed, Point, Vector};
 
-/// `setup` writes real values into columns with this prefix, which `eval` ignores.
+/// The prefix of columns with real values, which `setup` writes and `eval` ignores.
 pub const REAL: &str = "real_";
 
 /// Compute a device's operands from vectors or angles, as a host does before it starts
@@ -116,7 +116,7 @@ struct SetUp {
 /// Computes the operands of one line or point, or of all rows of a CSV file.
 ///
 /// # Errors
-/// Fails if the configuration has problems, if an input is unknown, missing or not valid, if an operand would exceed its
+/// Fails if the configuration has problems, if an input is unknown, missing or not valid. Fails if an operand would exceed its
 /// domain, or if the CSV file cannot be read. Fails also for a device without operands to set up, such as `shading`.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let one = load_one(registry, &arguments.config)?;
@@ -216,7 +216,7 @@ impl<'a> HostInputs<'a> {
         }
     }
 
-    /// Returns the index of an input, and the index of the component if `name` names one, as `normal_1_y` does.
+    /// Returns the index of an input, and the component's index if `name` names a component, such as `normal_1_y`.
     fn place(&self, name: &str) -> Result<(usize, Option<usize>), String> {
         if let Some(index) = self.index(name)
             && self.concerns(name)
@@ -241,17 +241,17 @@ impl<'a> HostInputs<'a> {
         Err(format!("there is no input `{name}` of `{device}`{}", none_of(name, "inputs", &names)))
     }
 
-    /// Finds the input of each column of a CSV file, in the form of [`Self::place`].
+    /// Returns the input of each column of a CSV file, in the form of [`Self::place`].
     fn places(&self, headings: &StringRecord) -> Result<Vec<(usize, Option<usize>)>, String> {
         headings.iter().map(|heading| self.place(heading)).collect()
     }
 
-    /// Returns the index of an input, even if the device ignores it.
+    /// Returns an input's index, even if the device ignores it.
     fn index(&self, name: &str) -> Option<usize> {
         self.inputs.iter().position(|input| input.name == name)
     }
 
-    /// Parses the numbers for an input into `given`. Fails if the input has a value already.
+    /// Parses the numbers for an input into `given`. Fails if the input already has a value.
     fn put(
         &self,
         given: &mut Given,
@@ -300,7 +300,7 @@ impl<'a> HostInputs<'a> {
         Ok(value as u32)
     }
 
-    /// An input that is not given has the share 1.
+    /// Returns a share of light, from 0 to 1. An input that the user does not give has the share 1.
     fn share(&self, given: &Given, name: &str) -> Result<f64, String> {
         let value = self.number(given, name).unwrap_or(1.0);
         if !(0.0..=1.0).contains(&value) {
@@ -311,7 +311,7 @@ impl<'a> HostInputs<'a> {
         Ok(value)
     }
 
-    /// The user gives the angle in degrees, between the two limits. The result is in radians.
+    /// Returns an angle in radians. The user gives it in degrees, from `low` to `high`.
     fn angle(&self, given: &Given, name: &str, (low, high): (f64, f64)) -> Result<f64, String> {
         let degrees = self.needed(given, name)?;
         if !(low..=high).contains(&degrees) {
@@ -335,8 +335,9 @@ impl<'a> HostInputs<'a> {
         }
     }
 
-    /// The array has the names of four inputs: the normal, the half vector, and the directions toward light and viewer. The
-    /// vectors may have any length. Fails if a vector is missing, or if both the half vector and the light are given.
+    /// Returns the normal and the half vector at a point, of any length. The array has the names of four inputs: the normal, the
+    /// half vector, and the directions toward light and viewer. Fails if a vector is missing, or if the user gives a half vector
+    /// and a light.
     fn pair(
         &self,
         given: &Given,
@@ -366,7 +367,7 @@ impl<'a> HostInputs<'a> {
         vector.ok_or_else(|| missing_vector(name, ""))
     }
 
-    /// Fails if both angles and vectors are given.
+    /// Returns whether the user gives angles in place of vectors. Fails if the user gives angles and vectors.
     fn by_angles(&self, given: &Given, angles: &[&str]) -> Result<bool, String> {
         let angle = angles.iter().find(|name| self.number(given, name).is_some());
         let mut vectors = self.inputs.iter().zip(given).filter(|(input, _)| input.vector);
@@ -572,7 +573,7 @@ fn components(text: &str) -> Vec<&str> {
     separated.filter(|part| !part.is_empty()).collect()
 }
 
-/// `or` names other inputs that may replace the vector.
+/// Returns the message about a missing vector. `or` names inputs that may replace the vector.
 fn missing_vector(name: &str, or: &str) -> String {
     format!("input `{name}` is missing; give it{or}, or angles in place of vectors")
 }
@@ -581,7 +582,7 @@ fn unit_vector(name: &'static str, vector: Vector) -> Result<Vector, String> {
     direction(name, vector).map_err(|error| error.to_string())
 }
 
-/// The angle is in radians, from the z axis toward the x axis.
+/// Returns the unit vector in the direction `angle`, in radians, from the z axis toward the x axis.
 fn from_z(angle: f64) -> Vector {
     Vector::new(libm::sin(angle), 0.0, libm::cos(angle))
 }

@@ -1,5 +1,5 @@
-//! `glint synth`: measures area and frequency of a core by synthesis, placement and routing. For targets that no open tool
-//! times, it measures only the area.
+//! `glint synth`: measures area and frequency of a core by synthesis, placement and routing. For a target without an open tool
+//! that knows its delays, it measures only the area.
 
 mod cache;
 mod front;
@@ -102,6 +102,10 @@ struct FigureRecord<'a> {
     estimated_mhz: f64,
 }
 
+/// Runs the measurements and reports them.
+///
+/// # Errors
+///
 /// Fails if a configuration has problems, if the tools are missing or fail, or if a record cannot be written.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
@@ -140,8 +144,8 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     Ok(true)
 }
 
-/// Returns the targets for which the pipelines are scheduled. The list is empty if any configuration is no pipeline with a
-/// known target.
+/// Returns the targets for which the pipelines are scheduled. The list is empty if a configuration is no pipeline, or its target
+/// is unknown.
 fn targets_of_pipelines(loaded: &[Loaded]) -> Vec<Target> {
     let mut targets = Vec::new();
     for one in loaded {
@@ -154,8 +158,8 @@ fn targets_of_pipelines(loaded: &[Loaded]) -> Vec<Target> {
     targets
 }
 
-/// Returns the tools for each target that is measured, and a note about each target whose tools are missing. Fails if the user
-/// names such a target, if no target can be measured, or if a record would lack a target.
+/// Returns the tools for each target that is measured, and a note about each target with missing tools. Fails if the user names
+/// such a target, if no target can be measured, or if a record would lack a target.
 fn flows(arguments: &Arguments, loaded: &[Loaded]) -> Result<(Vec<Flow>, Vec<String>)> {
     let search = std::env::var_os("PATH").unwrap_or_default();
     let find = |target: Target| {
@@ -187,7 +191,8 @@ fn flows(arguments: &Arguments, loaded: &[Loaded]) -> Result<(Vec<Flow>, Vec<Str
     Ok((flows, notes))
 }
 
-/// Calls `done` with the number of finished steps, and `tell` with the figures of each target.
+/// Measures a configuration on all targets. Calls `done` with the number of finished steps, and `tell` with each target's
+/// figures.
 fn measure<'a>(
     one: &'a Loaded,
     flows: &[Flow],
@@ -207,8 +212,8 @@ fn measure<'a>(
     Ok(Measurement { one, clocks_per_point, figures: figures.collect::<Result<_>>()? })
 }
 
-/// Takes the figures from the cache next to the configuration `path`, if it has them under `name` for the same Verilog and
-/// tools. Otherwise measures the core.
+/// Returns the figures of a core on a target. They come from the cache next to the configuration `path`, if it has them under
+/// `name` for the same Verilog and tools. Otherwise the core is measured.
 fn figures(
     core: &Core,
     name: &str,

@@ -1,4 +1,4 @@
-//! `glint table`: finds the words with which the writable table of a core computes another function, and proves their error.
+//! `glint table`: finds the words with which the writable table of a core computes a different function, and proves their error.
 
 use std::path::{Path, PathBuf};
 
@@ -52,11 +52,16 @@ pub struct Arguments {
     force: bool,
 }
 
-/// The largest number of operands that the command simulates. It takes evenly spaced ones of a larger domain.
+/// The largest number of operands that the command simulates. In a larger domain, they are evenly spaced.
 const MOST_SIMULATED: u64 = 1 << 16;
 
-/// Fails if the configuration has problems or no writable table, if the table cannot hold the function with the allowed error, or if a
-/// file cannot be written. Returns whether the simulated core, loaded with the image, equals the golden model.
+/// Finds the image, simulates it and writes it. Returns whether the simulated core, loaded with the image, equals the golden
+/// model.
+///
+/// # Errors
+///
+/// Fails if the configuration has problems or no writable table. Fails if the table cannot hold the function with the allowed
+/// error, or if a file cannot be written.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let one = load_one(registry, &arguments.config)?;
     let Some(layout) = TableLayout::of(&one.core.design) else {
@@ -84,7 +89,7 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
     Ok(holds)
 }
 
-/// Returns the error of a function that the table cannot hold. Its place in the formula is marked.
+/// Returns the error for a function that the table cannot hold. A line of carets marks the place in the formula.
 fn unheld(formula: &str, error: &ConfigError) -> anyhow::Error {
     let mut text = format!("the table cannot hold `{formula}`: {}", error.message);
     if let Some(place) = error.place.as_ref().filter(|place| formula.is_char_boundary(place.start))
@@ -96,11 +101,12 @@ fn unheld(formula: &str, error: &ConfigError) -> anyhow::Error {
     anyhow::anyhow!("{text}\n  = help: {}", error.remedy)
 }
 
-/// Returns the image that the arguments name, or one with the formula of the arguments.
+/// Returns the image that the arguments name, or an image with the formula of the arguments.
 ///
 /// # Errors
-/// Fails if the arguments name another function than the one with the table, if the allowed error is not between 0.5 and 1024 units, or if the
-/// name of the image is no identifier.
+///
+/// Fails if the arguments name a function without a writable table. Fails if the allowed error is not between 0.5 and 1024 units,
+/// or if the image's name is no identifier.
 fn wanted_image(one: &Loaded, arguments: &Arguments) -> Result<StatedImage> {
     let opened = &one.core.opened;
     let (function, formula) = match &arguments.formula[..] {
@@ -184,7 +190,8 @@ fn simulate(base: &Core, with_image: &Core, image: &TableImage) -> Result<Simula
 /// Writes the image, and returns the paths of the files.
 ///
 /// # Errors
-/// Without `--force`, fails if a file is there already with other contents. Nothing is written then.
+///
+/// Fails without `--force` if a file already exists with other contents; then nothing is written.
 fn write(
     out: &Path,
     arguments: &Arguments,

@@ -1,5 +1,5 @@
-//! `glint tune`: searches for the configuration of a device that has the smallest estimated area, or another cost, and an error
-//! bound of at most a given limit. The search changes one or two keys at a time, so a better configuration may exist.
+//! `glint tune`: searches for the configuration of a device with the smallest estimated area or other cost, and an error bound of
+//! at most a given limit. The search changes one or two keys at a time, so a better configuration may exist.
 
 mod plot;
 
@@ -86,9 +86,10 @@ pub struct Arguments {
     csv: bool,
 }
 
-/// The search does not try every configuration, so a smaller one may exist.
+/// Searches for a configuration and reports it.
 ///
 /// # Errors
+///
 /// Fails if an option is not valid, if no configuration reaches the goal, or if a file cannot be written.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     if arguments.csv && !output.is_for_people() {
@@ -173,7 +174,7 @@ impl CommandReport for TunedConfiguration<'_> {
     }
 }
 
-/// Returns `None` without the option. Fails if the file exists and `--force` is not given.
+/// Opens an option's file, or returns `None` without the option. Fails if the file exists and `--force` is not given.
 fn fresh_file(path: Option<&Path>, force: Force) -> Result<Option<Destination>> {
     match path {
         Some(path) => Ok(Some(Destination::fresh(path, force.force)?)),
@@ -193,7 +194,7 @@ fn base(registry: &Registry, arguments: &Arguments) -> Result<(Device, Config, V
         bail!("there is no device `{}`; {hint}devices: {}", arguments.device, names.join(", "));
     };
     let name = arguments.name.clone().unwrap_or_else(|| (device.schema)().module());
-    // This uses the reader of configuration files, so that the messages are the same.
+    // This uses the reader of configuration files, so the messages are the same.
     let mut given_text = format!("device = \"{}\"\nname = \"{name}\"\n", device.name);
     let mut fixed = Vec::new();
     for given in &arguments.set {
@@ -209,7 +210,7 @@ fn origin(device: &Device) -> &'static str {
     if device.proved { "proved" } else { "stated by its author" }
 }
 
-/// Comments at the beginning of the file state the result of the search.
+/// Returns the configuration as TOML. Comments at the beginning state the search's result.
 fn toml(device: &Device, best: &Candidate, arguments: &Arguments) -> String {
     let cost = &best.cost;
     let clocks = match best.clocks {
@@ -240,7 +241,7 @@ fn toml(device: &Device, best: &Candidate, arguments: &Arguments) -> String {
     head + &best.config.to_toml(&(device.schema)())
 }
 
-/// Shows the keys that the search varied, in the form `cosine.fraction = 16, exponent.bits = 8`.
+/// Returns the keys that the search varied, for example `cosine.fraction = 16, exponent.bits = 8`.
 fn widths(answer: &Answer, candidate: &Candidate) -> String {
     let mut shown = Vec::new();
     for key in &answer.free {

@@ -88,9 +88,11 @@ impl Files {
     }
 }
 
-/// Returns whether every configuration is verified, with or without the checks that `--without-tools` leaves out.
+/// Runs the checks. Returns whether every configuration is verified, with or without the checks that `--without-tools` leaves
+/// out.
 ///
 /// # Errors
+///
 /// Fails if a configuration has problems, or if a file was not written by Glint or cannot be written. A missing tool is no
 /// error, but a part of the result.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
@@ -158,7 +160,7 @@ fn one_configuration(
     Ok((VerificationRecord::new(&subject, answers), timings))
 }
 
-/// Also prints the titles of all checks that neither hold nor fail, and the commands that complete the verification.
+/// Prints the conclusion, the titles of all checks that neither hold nor fail, and the commands that complete the verification.
 fn print_conclusion(one: &Loaded, record: &VerificationRecord) {
     let mut counts: Vec<String> = Vec::new();
     for (verdict, count) in &record.counts {
@@ -190,7 +192,7 @@ fn print_conclusion(one: &Loaded, record: &VerificationRecord) {
     }
 }
 
-/// Prints the answer as soon as the check has ended.
+/// Prints the answer of a check that has just ended.
 fn print(one: &Loaded, answer: &CheckAnswer) {
     let finding = &answer.finding;
     let domain =

@@ -44,10 +44,10 @@ pub struct Arguments {
     out: Option<PathBuf>,
 }
 
-/// The largest error that a search has found, as a record states it.
+/// The largest error that a search has found, in the form of a record.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct LargestError {
-    /// The version of Glint. A record begins with it.
+    /// The version of Glint, with which a record begins.
     glint: String,
     config: String,
     /// A digest of everything on which the contract depends.
@@ -71,17 +71,18 @@ struct WorstReport<'a> {
     one: &'a Loaded,
     #[serde(flatten)]
     found: LargestError,
-    /// The error that the contract states, in output units.
+    /// The bound of the contract, in output units.
     bound: f64,
     holds: bool,
-    /// The record on disk, if it stays because its error is at least as large.
+    /// The record on disk, if its error is at least as large, so that it stays.
     recorded: Option<LargestError>,
 }
 
-/// Returns whether the errors of all configurations are within their bounds. If a contract states no bound, a finite error is
-/// within it.
+/// Searches for the largest errors. Returns whether all errors are within their bounds. If a contract states no bound, it is
+/// enough that the error is finite.
 ///
 /// # Errors
+///
 /// Fails if a configuration has problems or no output, or if a record cannot be read or written.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
@@ -172,9 +173,9 @@ fn climbs(starts: u64) -> String {
     format!("{} climb{}", text::grouped(starts), if starts == 1 { "" } else { "s" })
 }
 
-/// Returns the file of the record, such as `rough.json` for `configs/rough.toml`, and the record in it if it belongs to the
-/// same contract. Returns `None` without `--out`. Fails if Glint did not write the file, or if the file was edited, cannot be
-/// written or is no such record.
+/// Returns the record's file, such as `rough.json` for `configs/rough.toml`, and the record in it if it belongs to the same
+/// contract. Returns `None` without `--out`. Fails if Glint did not write the file, or if the file was edited, cannot be written
+/// or contains no such record.
 fn record(one: &Loaded, arguments: &Arguments) -> Result<Option<(OwnFile, Option<LargestError>)>> {
     let Some(directory) = &arguments.out else { return Ok(None) };
     let name = format!("{}.json", one.core.config().name);

@@ -1,7 +1,7 @@
 //! Writes new files completely in a temporary directory, and then moves each to its place.
 //!
-//! If a run is killed, some files may have been moved already and have their new contents, and the next run generates all files
-//! again. The manifest, which lists the digests of all other files, is moved last.
+//! If a run is killed, some files may have been moved already, and the next run generates all files again. The manifest, which
+//! lists the digests of all other files, is moved last.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -12,14 +12,14 @@ use crate::directories::{create_directory, create_parent};
 use glint_core::package::OutputFile;
 use glint_tools::transient::{self, Directory};
 
-/// A temporary directory with complete new files. It is next to the directories to which they will be moved.
+/// A temporary directory with complete new files, next to the directories to which the files will be moved.
 pub struct Staging {
     directory: Directory,
     made: Vec<String>,
 }
 
 impl Staging {
-    /// Fails if `out` cannot be written. The temporary directory is then removed.
+    /// Writes `files` to a temporary directory beside their places. Fails if `out` cannot be written.
     pub fn new(out: &Path, files: &[OutputFile]) -> Result<Self> {
         let cannot =
             || format!("cannot write to `{}`; choose another directory with --out", out.display());
@@ -38,8 +38,8 @@ impl Staging {
     /// must have checked that the files in these places may be replaced.
     ///
     /// # Errors
-    /// Fails if a directory cannot be made, or is a symbolic link; then no file was changed. Fails if a file cannot be deleted
-    /// or moved; then some files are new, and the next run writes the rest.
+    /// Fails if a directory cannot be made or is a symbolic link, and then changes no file. Fails if a file cannot be deleted or
+    /// moved. Some files are then new, and the next run writes the rest.
     pub fn place(self, out: &Path, stale: &[PathBuf]) -> Result<()> {
         for path in &self.made {
             // `rtl_out/<name>/…`
@@ -58,7 +58,7 @@ impl Staging {
             for path in stale {
                 fs::remove_file(path)
                     .with_context(|| format!("cannot delete `{}`", path.display()))?;
-                // With the last file, the directories of the configuration are removed. The directories above them must stay.
+                // With the last file, the configuration's directories are removed. The directories above them must stay.
                 let parents = path.ancestors().skip(1);
                 let below = parents
                     .take_while(|it| it.strip_prefix(out).is_ok_and(|it| it.iter().count() > 1));
@@ -81,8 +81,8 @@ fn place(out: &Path, staging: &Path, made: &[String]) -> Result<()> {
     Ok(())
 }
 
-/// Deletes everything that is in the way of a file: a directory in its place, or a file in the place of one of its
-/// directories. A file `rtl_out/rough`, for instance, is in the way of `rtl_out/rough/rough.v`.
+/// Deletes everything in the way of the file `path`: a directory in its place, or a file in the place of one of its directories.
+/// For example, a file `rtl_out/rough` is in the way of `rtl_out/rough/rough.v`.
 fn make_room(out: &Path, path: &str) -> Result<()> {
     let cannot = |path: &Path| format!("cannot delete `{}`, which is in the way", path.display());
     let ends = path.match_indices('/').map(|(at, _)| at).skip(1);

@@ -1,5 +1,5 @@
-//! Finds the files in the directories of a configuration. The module decides for each file whether Glint wrote it, or whether
-//! the user edited a file of Glint. A file that Glint never wrote is foreign.
+//! Decides for each file in the directories of a configuration whether Glint wrote it, whether a user edited it, or whether it is
+//! foreign.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -13,11 +13,10 @@ use super::{differs, directories};
 use glint_core::package::{OutputFile, digest};
 use glint_tools::transient::{files_below, relative_name};
 
-/// The differences between the files that are in the directories of a configuration and the files that should be there. All
-/// lists are sorted.
+/// The differences between the files in the directories of a configuration and the files that should be there. All lists are
+/// sorted.
 pub struct Survey {
-    /// The paths below `out` of the files that must be written or replaced, and of the files that must be deleted because Glint
-    /// wrote them earlier.
+    /// The paths below `out` of the files that must be written or replaced, and of outdated files that must be deleted.
     pub different: Vec<String>,
     /// The files that Glint wrote and somebody edited, and foreign files in the place of a file to be written.
     pub edited: Vec<PathBuf>,
@@ -26,9 +25,10 @@ pub struct Survey {
 }
 
 impl Survey {
-    /// `files` are the files that should be there.
+    /// Compares `files`, which should be there, with the directories of the configuration `name` below `out`.
     ///
     /// # Errors
+    ///
     /// Fails if a file or a directory cannot be read.
     pub fn new(out: &Path, name: &str, files: &[OutputFile]) -> Result<Self> {
         let manifest = out.join("rtl_out").join(name).join(format!("{name}.json"));
@@ -44,7 +44,7 @@ impl Survey {
             let wanted = files.iter().any(|file| file.path == relative);
             let below = format!("{relative}/");
             let in_the_way = files.iter().any(|file| file.path.starts_with(&below));
-            // A symbolic link to a file with the right text is no file of Glint, and would be replaced with the others.
+            // A symbolic link to a file with the right text is no file of Glint, and would be replaced like an edited file.
             if wanted && !path.is_symlink() && !survey.different.contains(&relative) {
                 continue;
             }
@@ -79,11 +79,11 @@ enum Owner {
     Glint,
     /// Glint wrote the file, and somebody edited it.
     Editor,
-    /// A symbolic link counts as such a file.
+    /// A foreign file. A symbolic link counts as a foreign file.
     Other,
 }
 
-/// The digests in a manifest such as `rtl_out/rough/rough.json`; `None` if the file is missing or no manifest of Glint.
+/// The digests in a manifest such as `rtl_out/rough/rough.json`, or `None` if the file is missing or is no manifest of Glint.
 struct Digests {
     manifest: String,
     digests: Option<BTreeMap<String, String>>,
@@ -94,7 +94,8 @@ impl Digests {
         Self { manifest: relative_name(out, manifest), digests: parsed(manifest) }
     }
 
-    /// `relative` is the path below `out`, and `path` the path on disk. Without a manifest of Glint, every file is foreign.
+    /// Returns who wrote the file at `path`, which has the path `relative` below `out`. Without a manifest of Glint, every file
+    /// is foreign.
     fn owner(&self, relative: &str, path: &Path) -> Owner {
         let Some(digests) = &self.digests else {
             return Owner::Other;
@@ -121,7 +122,8 @@ fn parsed(manifest: &Path) -> Option<BTreeMap<String, String>> {
     digests.iter().map(|(path, digest)| Some((path.clone(), digest.as_str()?.to_owned()))).collect()
 }
 
-/// Returns the files at any depth, sorted. A file in the place of one of the directories is included.
+/// Returns the files in the directories of the configuration `name`, at any depth and sorted. A file in the place of one of these
+/// directories is included.
 fn present(out: &Path, name: &str) -> Result<Vec<PathBuf>> {
     let mut found = Vec::new();
     for directory in directories(out, name) {

@@ -1,4 +1,4 @@
-//! Tests the writing of generated files after a killed run, and next to files that are outdated or foreign.
+//! Tests that generated files are written correctly after a killed run, and next to outdated or foreign files.
 
 use std::fs;
 use std::path::Path;
@@ -6,7 +6,7 @@ use std::path::Path;
 use super::*;
 use glint_core::package::{FileKind, digest};
 
-/// Returns a manifest that vouches for the other files, last.
+/// Returns files with `text`. The last is a manifest with the digests of the other files.
 fn files(text: &str) -> Vec<OutputFile> {
     let mut files = vec![
         OutputFile::new(FileKind::CoreVerilog, "rtl_out/core/core.v", text),
@@ -28,7 +28,7 @@ fn written(text: &str) -> tempfile::TempDir {
     dir
 }
 
-/// Nothing but the new files and the foreign one is there.
+/// Checks that `out` has only the new files and the foreign one.
 #[track_caller]
 fn assert_renewed(out: &Path) {
     assert_eq!(differences(out, "core", &files("new")).unwrap(), Vec::<String>::new());
@@ -39,7 +39,7 @@ fn assert_renewed(out: &Path) {
     assert_eq!(entries, ["rtl_out", "testbench"]);
 }
 
-/// Runs that write other files into the same directory at the same time find Glint's own files there, one after the other.
+/// Starts several runs in one directory at the same time. Each run must recognise the files of the run before it as Glint's.
 #[test]
 fn runs_at_the_same_time_wait_for_each_other() {
     let dir = tempfile::tempdir().unwrap();
@@ -55,7 +55,6 @@ fn runs_at_the_same_time_wait_for_each_other() {
     });
 }
 
-/// Files that are in their places already are no reason to refuse.
 #[test]
 fn a_run_that_was_killed_between_the_moves_is_done_again() {
     for moves in 0..=3 {
@@ -68,7 +67,6 @@ fn a_run_that_was_killed_between_the_moves_is_done_again() {
     }
 }
 
-/// A file that is no longer asked for is deleted. With `force`, anything in the way is deleted too, and nothing else.
 #[test]
 fn what_is_stale_goes_and_what_is_foreign_stays() {
     let dir = written("old");

@@ -54,7 +54,7 @@ fn tables_are_near_what_they_stand_for() {
             assert!((it.ratio.result(u) as f64 - exact).abs() < 1.0, "{of:?} {u}");
         }
     }
-    // The table of 2^−x holds the value at the middle of each quarter: at 1/8, 3/8, 5/8 and 7/8.
+    // The table of 2^−x holds the value at each quarter's middle: at 1/8, 3/8, 5/8 and 7/8.
     let it = small(Decay::Angle);
     for x in 0..4 {
         let exact = libm::exp2(-(x as f64 + 0.5) / 4.0) * 64.0;

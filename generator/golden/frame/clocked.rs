@@ -8,7 +8,7 @@ use super::{Does, Frame, FrameOperand, FrameStep, Next, Slot, State, Value, idle
 use crate::Model;
 use glint_base::fixed::mask;
 
-/// The signals of the handshake, which come before the signals of the device.
+/// The handshake's signals, which precede the device's signals.
 const HANDSHAKE: [&str; 5] = ["valid", "busy", "done", "run", "word_address"];
 
 /// The last signal of the handshake of a device whose tables can be written.
@@ -18,20 +18,19 @@ const TABLE_READY: &str = "table_ready";
 pub(super) struct ModelConstants {
     pub(super) program: Vec<FrameStep>,
     pub(super) operands: Vec<FrameOperand>,
-    /// The signals with masks of their widths, the outputs first.
+    /// The slots of the signals with masks of the signals' widths, the outputs first.
     pub(super) shown: Vec<(Slot, u64)>,
     /// The number of outputs in `shown`.
     pub(super) outputs: usize,
     /// The outputs that are combinational logic.
     pub(super) logic: Vec<(Slot, Value)>,
     pub(super) edges: Vec<Does>,
-    /// Pairs of a result that is combinational logic and the register that loads it.
+    /// Pairs of slots: a result that is combinational logic, and the output register that loads it.
     pub(super) taken: Vec<(Slot, Slot)>,
-    /// The operand registers, or the buffers in front of them.
+    /// The registers that a strobe loads: the operand registers, or the buffers in front of them.
     written: Vec<Slot>,
     buffered: bool,
     flags: Vec<Slot>,
-    /// The number of signals of the handshake, which come first.
     handshake: usize,
     pub(super) valid_delay: u32,
     inputs: Vec<String>,
@@ -103,8 +102,8 @@ impl Frame {
 }
 
 impl ModelConstants {
-    /// Loads the operand registers, or the buffers in front of them, from the data and the strobe of each operand in turn.
-    /// Returns whether anything was loaded.
+    /// Loads the operand registers, or the buffers in front of them, from `ports`: the data and the strobe of each operand in
+    /// turn. Returns whether anything was loaded.
     fn write(&self, state: &mut State, ports: &[u64]) -> bool {
         let mut taken = false;
         let registers = self.operands.iter().zip(&self.written);
@@ -137,7 +136,8 @@ impl ClockedModel {
         self.values[0] == 1
     }
 
-    /// Returns the variant of [`Model::with_output_registers`], if it exists.
+    /// Returns a variant with a register behind each output that is combinational logic ([`Model::with_output_registers`]).
+    /// Returns `None` if `taking` does.
     pub(crate) fn registered(&self) -> Option<Self> {
         let mut it = ModelConstants::clone(&self.fixed);
         let mut slots = self.state.len();
@@ -166,7 +166,7 @@ impl ClockedModel {
         Some(Self::at_power_up(it, slots))
     }
 
-    /// Computes the values of the signals after an edge. If `still`, neither registers nor outputs have changed, and only the
+    /// Computes the values of the signals after an edge. `still` states that no register and no output has changed; then only the
     /// handshake is updated.
     #[inline]
     fn settle(&mut self, still: bool) {
@@ -277,8 +277,9 @@ impl Model for ClockedModel {
     }
 }
 
-/// Returns the program of a device with output registers, which each microinstruction that raised `valid` loads instead; an
-/// added one after it raises `valid`. Returns `None` if a microinstruction with `valid` decides by a condition what follows.
+/// Returns the program of a device with output registers. Each microinstruction that raised `valid` loads the output registers
+/// instead, and an added microinstruction after it raises `valid`. Returns `None` if a microinstruction with `valid` selects its
+/// successor by a condition or a dispatch.
 fn taking(program: &[FrameStep]) -> Option<Vec<FrameStep>> {
     let mut longer = Vec::new();
     // The number of microinstructions in front of `at`, with the added ones.

@@ -42,8 +42,8 @@ use glint_base::fixed::Format;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Slot(usize);
 
-/// The raw values of all operands, registers and outputs of a golden model. The values of a part are adjacent, in the order of
-/// the part's own golden model.
+/// The raw values of all operands, registers and outputs of a golden model. A part's values are adjacent, in the order of the
+/// part's own golden model.
 pub type State = [i64];
 
 impl Slot {
@@ -83,18 +83,18 @@ enum Next {
     End,
 }
 
-/// A microinstruction: the operation on the registers, the flags that it sets, and its successor.
+/// A microinstruction: the operation on the registers, the flags that it sets, and the next microinstruction.
 #[derive(Clone)]
 pub struct FrameStep {
     does: Option<Does>,
     next: Next,
     valid: bool,
     asserts: Vec<Slot>,
-    /// Whether the registers behind the outputs load the results.
+    /// Whether the output registers load the results in this microinstruction.
     takes_results: bool,
 }
 
-/// Returns a microinstruction that changes no register itself. Operations of every edge run nevertheless.
+/// Returns a microinstruction that changes no register. Operations of `Frame::every_edge` run nevertheless.
 pub fn idle() -> FrameStep {
     FrameStep {
         does: None,
@@ -105,12 +105,13 @@ pub fn idle() -> FrameStep {
     }
 }
 
-/// Applies `does` to the registers at the rising edge that ends the microinstruction.
+/// Returns a microinstruction that applies `does` to the registers, at the rising edge that ends it.
 pub fn step(does: impl Fn(&mut State) + Send + Sync + 'static) -> FrameStep {
     FrameStep { does: Some(Arc::new(does)), ..idle() }
 }
 
-/// Like [`step`], with data that several microinstructions share, such as the tables of the device.
+/// Returns a microinstruction like [`step`], but `does` also gets `arithmetic`: data that several microinstructions share, such
+/// as the device's tables.
 pub fn step_by<A: Send + Sync + 'static>(
     arithmetic: &Arc<A>,
     does: impl Fn(&A, &mut State) + Send + Sync + 'static,
@@ -120,7 +121,7 @@ pub fn step_by<A: Send + Sync + 'static>(
 }
 
 impl FrameStep {
-    /// Raises `valid`: the outputs have a result.
+    /// Raises `valid` during the microinstruction: the outputs have a result.
     pub fn valid(self) -> Self {
         Self { valid: true, ..self }
     }
@@ -149,7 +150,7 @@ impl FrameStep {
         Self { next: Next::Dispatch(selector, to.into()), ..self }
     }
 
-    /// Makes a flag that [`Frame::flag`] declared 1.
+    /// Sets `flag`, which [`Frame::flag`] declared, to 1 during the microinstruction.
     pub fn asserts(mut self, flag: Slot) -> Self {
         self.asserts.push(flag);
         self
@@ -196,7 +197,8 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// Adds a state value that corresponds to no signal of the hardware.
+    /// Adds a value to the state that corresponds to no signal of the hardware. For example, it is the word that a ROM read at
+    /// the latest edge.
     pub fn hidden(&mut self) -> Slot {
         self.slots += 1;
         Slot(self.slots - 1)
@@ -208,7 +210,7 @@ impl Frame {
         slot
     }
 
-    /// Adds a register. Checks see only as many low bits of its value as `format` has.
+    /// Adds a register. Checks compare only as many low bits of its value as `format` has.
     pub fn register(&mut self, name: &str, format: Format) -> Slot {
         self.shown(name.to_owned(), format, false)
     }
@@ -224,8 +226,8 @@ impl Frame {
         self.logic.push((slot, Arc::new(value)));
     }
 
-    /// Adds an output that has the value of a register. Panics if `register` is not the slot of a predicted signal, for example
-    /// a slot of [`Frame::hidden`]; an output that is logic must use [`Frame::output`].
+    /// Adds an output that has a register's value. Panics if `register` was not returned by `Frame::register` or another method
+    /// that adds a signal. An output that is logic must use [`Frame::output`].
     pub fn shows(&mut self, name: &str, register: Slot) {
         let of = self.shown.iter().find(|shown| shown.slot == register);
         let format = of.expect("a register that is shown").format;
@@ -256,9 +258,9 @@ impl Frame {
         slot
     }
 
-    /// Adds an operation that runs at every rising edge, such as the read of a synchronous ROM. It runs before the operation of
-    /// the microinstruction, and after the operations that earlier calls added. It sees the values before the edge, except in
-    /// slots that an earlier operation wrote at the same edge.
+    /// Adds an operation that runs at every rising edge, such as the read of a synchronous ROM. It runs before the
+    /// microinstruction's operation, and after the operations that earlier calls added. It sees the values before the edge,
+    /// except in slots that an earlier operation wrote at the same edge.
     pub fn every_edge(&mut self, does: impl Fn(&mut State) + Send + Sync + 'static) {
         self.edges.push(Arc::new(does));
     }
@@ -279,7 +281,8 @@ impl Frame {
         self.valid_delay = clocks;
     }
 
-    /// Adds the output `table_ready`, which is 1 while no computation runs. The model itself never writes a table.
+    /// Adds the output `table_ready` of a device whose tables can be written: it is 1 while no computation runs. The model itself
+    /// never writes a table.
     pub fn write_port(&mut self) {
         self.has_write_port = true;
     }

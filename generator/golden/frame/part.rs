@@ -1,8 +1,8 @@
 //! Builds the golden model of a device that contains other devices as parts, from the golden models of the parts.
 //!
-//! The parts run one after the other in one microprogram, and each works on its own registers. The microinstruction before a
-//! part's first one loads the part's operand registers, and its results remain in registers. For example, here a device uses two
-//! copies of a doubler:
+//! The parts run one after the other in one microprogram, and each works on its own registers. The microinstruction before the
+//! first one of a part loads the operand registers of the part. The results of the part remain in registers. For example, this
+//! device uses two copies of a doubler:
 //!
 //! ```
 //! use glint_base::fixed::Format;
@@ -34,14 +34,14 @@ use super::{Condition, Does, Frame, FrameSignal, FrameStep, Next, Slot, State, i
 use crate::Model;
 use glint_base::fixed::Format;
 
-/// The outputs of a part, as slots of the whole device.
+/// A part's outputs, as slots of the whole device.
 pub struct Part {
     name: String,
     outputs: Vec<(String, Slot)>,
 }
 
 impl Part {
-    /// Returns the slot of the part's output. Panics if the part has no such output.
+    /// Returns the slot of the part's output `name`. Panics if the part has no such output.
     pub fn out(&self, name: &str) -> Slot {
         let found = self.outputs.iter().find(|(output, _)| output == name);
         found.unwrap_or_else(|| panic!("`{}` has no output `{name}`", self.name)).1
@@ -129,19 +129,20 @@ impl Frame {
     }
 }
 
-/// Converts an operation on the state of a part, which begins at `base`, to one on the state of the whole device.
+/// Converts an operation on a part's state, which begins at `base`, to one on the whole device's state.
 fn within(base: usize, does: &Does) -> Does {
     let of_part = does.clone();
     Arc::new(move |s| of_part(&mut s[base..]))
 }
 
-/// Converts a condition on the state of a part, which begins at `base`.
+/// Converts a condition on a part's state, which begins at `base`, to a condition on the whole device's state.
 fn condition_within(base: usize, holds: &Condition) -> Condition {
     let of_part = holds.clone();
     Arc::new(move |s| of_part(&s[base..]))
 }
 
-/// Loads the results of a part, whose state begins at `base`, into their registers: `taken` has both slots.
+/// Loads a part's results, whose state begins at `base`, into output registers. `taken` has the slot of each result and of its
+/// register.
 fn takes_results(base: usize, taken: &[(Slot, Slot)]) -> Does {
     let mut pairs = Vec::new();
     for (result, register) in taken {
@@ -154,7 +155,7 @@ fn takes_results(base: usize, taken: &[(Slot, Slot)]) -> Does {
     })
 }
 
-/// Does `first` and then `second`. Neither may read a slot that the other writes.
+/// Returns an operation that does `first` and then `second`. Neither may read a slot that the second one writes.
 fn then(first: Does, second: Option<Does>) -> Does {
     let Some(second) = second else { return first };
     Arc::new(move |s| {

@@ -20,7 +20,7 @@ pub fn operands(keys: &Operands, domain: &Domain) -> Vec<Operand> {
     ]
 }
 
-/// Adds the operands `cos_gamma`, limited to 0 … 1.0, and `exponent`.
+/// Adds the operands `cos_gamma`, limited to 0 … 1.0, and `exponent` to `frame`. Returns their slots.
 pub fn slots(keys: &Operands, frame: &mut Frame) -> [Slot; 2] {
     let cosine = frame.clamped("cos_gamma", keys.cosine.format(), 0, keys.cosine.one());
     [cosine, frame.operand("exponent", keys.exponent_format())]

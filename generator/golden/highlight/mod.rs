@@ -20,10 +20,10 @@ use glint_base::fixed::{Format, exp2};
 
 /// The reflectance f of one highlight device, from 0 to 1, as a function of its control operands.
 pub trait Reflectance: Send + Sync {
-    /// Returns the raw f that the device computes.
+    /// Returns the raw f that the device computes from the raw control operands.
     fn f(&self, control: &[i64]) -> i64;
 
-    /// Returns the exact f: the source's formula in f64, unrounded.
+    /// Returns the exact f: the formula of the source in f64, unrounded.
     fn reference(&self, control: &[i64]) -> f64;
 
     /// Returns the two values that count as correct for `f`, normally both the exact f. If the formula jumps and rounding may
@@ -32,8 +32,8 @@ pub trait Reflectance: Send + Sync {
         [self.reference(control); 2]
     }
 
-    /// Returns the values of [`Reflectance::references`] as Python expressions, if somebody has written them. Test benches use
-    /// them as an independent second opinion.
+    /// Returns the values of [`Reflectance::references`] as Python expressions, or nothing if the author has not written any.
+    /// Test benches use them as an independent second opinion.
     ///
     /// The expressions may use the names of control operands (as values, not raw), and `index` (the number of the result, from
     /// 0). They may also use the words of a ROM (as values, by the ROM's name), and the functions of `math`.
@@ -41,8 +41,8 @@ pub trait Reflectance: Send + Sync {
         Vec::new()
     }
 
-    /// Changes the raw control operands of a computation to the operands of its result number `index`, counted from 0. A device
-    /// that computes a line of points, such as `quad-cosine`, must set the angle of that point.
+    /// Replaces the raw control operands of a computation by the operands of its result number `index`, counted from 0. A device
+    /// that computes a line of points, such as `quad-cosine`, must set the angle of point number `index`.
     fn point(&self, control: &mut [i64], index: u64) {
         let _ = (control, index);
     }
@@ -57,34 +57,34 @@ pub trait Reflectance: Send + Sync {
         None
     }
 
-    /// Returns the control operands of a line from a first to a last point. `first` and `last` are the control operands there,
-    /// and `first` also has the length of the line. A line from the angle 0 to the angle 300 in 3 steps gets the step 100. A
-    /// step that is no integer is rounded toward 0, so the line may end before `last`. A device with one result for each `start`
-    /// returns `first`.
+    /// Returns the control operands of a line from the point `first` to the point `last`. Each point has its control operands,
+    /// and `first` also has the line's length. For example, a line from the angle 0 to the angle 300 in 3 steps gets the step
+    /// 100. A step that is no integer is rounded toward 0, so the line may end before `last`. A device with one result for each
+    /// `start` returns `first`.
     fn line(&self, first: &[i64], last: &[i64]) -> Vec<i64> {
         let _ = last;
         first.to_vec()
     }
 
-    /// Returns the exact f at a raw exponent and at a cosine that is not rounded to the operand's format. A device without these
-    /// operands, or without an own version of this method, returns `None`.
+    /// Returns the exact f at `cosine`, which need not fit the operand's format, and at the raw `exponent`. Returns `None` if the
+    /// device has no such operands or does not override this method.
     fn at_cosine(&self, cosine: f64, exponent: i64) -> Option<f64> {
         let _ = (cosine, exponent);
         None
     }
 
-    /// Returns proven limits on how much the formula changes with the cosine, if somebody has stated them.
+    /// Returns proved limits on how much the formula changes with the cosine; `None` if the author has not stated them.
     fn variation(&self) -> Option<Variation> {
         None
     }
 
-    /// See [`Contract::length`].
+    /// Returns the operand for [`Contract::length`], by default none.
     fn length(&self) -> Option<&str> {
         None
     }
 
     /// Returns the control operands that come nearest to the angle `gamma`, in radians from 0 to π/2, and to the specular
-    /// exponent `n`. The domain must represent this exponent. `operands` are the operands of the contract.
+    /// exponent `n`. The domain must represent this exponent.
     ///
     /// By default the device must have the operands `cos_gamma` and `exponent`; any other operand gets the value of its domain
     /// that is nearest to 0. A device with other operands must override this.
@@ -92,8 +92,8 @@ pub trait Reflectance: Send + Sync {
         contract::operands_at(operands, gamma, n, &[])
     }
 
-    /// Returns cos γ, as the raw control operands represent it, limited to 0 … 1. By default it is the value of the operand
-    /// `cos_gamma`, if there is one. `operands` are the operands of the contract.
+    /// Returns cos γ for the raw operands `control`, limited to 0 … 1. By default it is the value of the operand `cos_gamma`;
+    /// `None` without this operand.
     fn cosine(&self, operands: &[Operand], control: &[i64]) -> Option<f64> {
         let (operand, raw) =
             operands.iter().zip(control).find(|(operand, _)| operand.name == COSINE)?;
@@ -105,27 +105,27 @@ pub trait Reflectance: Send + Sync {
         None
     }
 
-    /// Returns the absolute error of `f`, as a value, in one case of the check. `place` has the value on each axis of the sweep.
-    /// `None` if a case is a set of control operands; the caller then computes the error itself.
+    /// Returns the absolute error of `f`, as a value, in one case of the sweep. `place` has the value on each axis. Returns
+    /// `None` if a case is a set of control operands; the caller then computes the error.
     #[inline]
     fn sweep_error(&self, place: &[i64]) -> Option<f64> {
         let _ = place;
         None
     }
 
-    /// Returns the contributions to the error of f, each a proven upper limit; none if the bound is not known yet.
+    /// Returns the contributions to the error of f, each a proved upper limit; none if no bound is known.
     fn shares(&self) -> Vec<ErrorShare> {
         Vec::new()
     }
 
-    /// See [`Contract::remarks`].
+    /// Returns the remarks for [`Contract::remarks`], by default none.
     fn remarks(&self) -> Vec<String> {
         Vec::new()
     }
 }
 
-/// Limits the difference of two values of a formula, at two cosines from −1 to 1, to `slope` times the distance of the cosines,
-/// plus `jump`.
+/// An upper limit of the difference of two values of a formula, at two cosines from −1 to 1: `slope` times the distance of the
+/// cosines, plus `jump`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Variation {
     /// The largest slope, apart from the jump.
@@ -136,7 +136,7 @@ pub struct Variation {
 
 pub struct Highlight {
     reflectance: Box<dyn Reflectance>,
-    /// Whether a computation has one result, unlike a line of points.
+    /// Whether a computation has a single result, not a line of points.
     single: bool,
     products: Products,
     operands: Vec<Operand>,
@@ -144,7 +144,7 @@ pub struct Highlight {
     bounds: OnceLock<Bounds>,
 }
 
-/// The methods of the reflectance need only the control operands.
+/// Makes the methods of [`Reflectance`] available, which take only the control operands.
 impl Deref for Highlight {
     type Target = dyn Reflectance;
 
@@ -154,8 +154,8 @@ impl Deref for Highlight {
 }
 
 impl Highlight {
-    /// `control` are the operands in the order in which the `Reflectance` takes them. The colour operands of the products come
-    /// after them.
+    /// Makes the contract. `control` are the control operands in the order in which `reflectance` takes them; the colour operands
+    /// of `products` follow.
     pub fn new(
         reflectance: impl Reflectance + 'static,
         control: Vec<Operand>,
@@ -177,7 +177,7 @@ impl Highlight {
         self.products.f
     }
 
-    /// Returns the raw colour output: the product, rounded to the output's format.
+    /// Returns the raw colour output: the product of the raw `f` and `colour`, rounded to the output's format.
     #[inline]
     pub fn colour(&self, f: i64, colour: i64) -> i64 {
         self.products.narrow.apply(f * colour)
@@ -197,8 +197,8 @@ impl Highlight {
         point
     }
 
-    /// Returns the raw f of result number `index` (from 0). Appends the exact values, as [`Contract::exact`] gives them, to
-    /// `exact`, and replaces `point` by the control operands of that result.
+    /// Returns the raw f of result number `index` (from 0). Replaces `point` by the control operands of this result, and appends
+    /// its exact values ([`Contract::exact`]) to `exact`.
     #[inline]
     pub fn measured(
         &self,
@@ -225,13 +225,13 @@ impl Highlight {
         }));
     }
 
-    /// See [`Reflectance::at`], with the operands of this contract.
+    /// Returns the control operands for the angle `gamma` and the exponent `n` ([`Reflectance::at`]).
     pub fn at(&self, gamma: f64, n: f64) -> Option<Vec<i64>> {
         self.reflectance.at(&self.operands, gamma, n)
     }
 
-    /// Returns cos γ, limited to 0 … 1, for the raw control operands `control` ([`Reflectance::cosine`]); `None` if they
-    /// determine no cosine.
+    /// Returns cos γ, limited to 0 … 1, for the raw operands `control`; `None` if they determine no cosine
+    /// ([`Reflectance::cosine`]).
     pub fn cosine(&self, control: &[i64]) -> Option<f64> {
         self.reflectance.cosine(&self.operands, control)
     }
@@ -265,7 +265,6 @@ impl Contract for Highlight {
         self.reflectance.length()
     }
 
-    /// The check is of f alone. The products with colours are checked in addition.
     fn sweep(&self) -> Sweep {
         let control = &self.operands[..self.control()];
         self.reflectance.sweep().unwrap_or_else(|| Sweep::all(control.iter()))

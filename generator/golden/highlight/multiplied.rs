@@ -48,7 +48,7 @@ impl Products {
         Self::new(f, bits, rounding, operand, vec!["intensity_out".to_owned()])
     }
 
-    /// Makes no products, for a device that outputs f itself. The contract then covers f alone.
+    /// Makes no products, for a device that outputs f. The contract then covers f alone.
     pub fn none(f: Format) -> Self {
         Self::new(f, 1, Rounding::Nearest, Vec::new(), Vec::new())
     }
@@ -78,14 +78,15 @@ impl Products {
         }
     }
 
-    /// If `in_turn`, one multiplier makes the products one after the other, each in a microinstruction of its own. Otherwise
-    /// they are combinational logic.
+    /// Selects one multiplier that computes the products one after the other, each in its own microinstruction. With `in_turn`
+    /// false, the products are combinational logic.
     #[must_use]
     pub fn in_turn(self, in_turn: bool) -> Self {
         Self { schedule: if in_turn { ProductOrder::InTurn } else { ProductOrder::AtOnce }, ..self }
     }
 
-    /// If `at_edges`, registers take the products at every rising edge. Otherwise they are combinational logic.
+    /// Selects registers that take the products at every rising edge. With `at_edges` false, the products are combinational
+    /// logic.
     #[must_use]
     pub fn at_edges(self, at_edges: bool) -> Self {
         Self {
@@ -94,8 +95,8 @@ impl Products {
         }
     }
 
-    /// Adds the colour operands and the outputs to a golden model that has the raw f in the slot `f`. Returns the
-    /// microinstructions that compute the products one after the other, if any.
+    /// Adds the colour operands and the outputs to `frame`, in which the slot `f` has the raw f. Returns the microinstructions
+    /// that compute the products one after the other; none if no microinstruction is necessary.
     pub fn slots(&self, frame: &mut Frame, f: Slot) -> Vec<FrameStep> {
         let mut program = Vec::new();
         for (operand, output) in self.operands.iter().zip(&self.outputs) {

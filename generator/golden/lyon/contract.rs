@@ -1,5 +1,4 @@
-//! The accuracy contract of the device `lyon`: the exact formula, the terms of the error bound with the keys that govern them,
-//! and the operands that an exhaustive check visits.
+//! The accuracy contract of the device `lyon`: formula, terms of the error bound, and cases of the exhaustive check.
 
 use super::{Derived as _, Keys, LyonArithmetic, Scale};
 use crate::contract::{self as shared, ErrorShare};
@@ -13,7 +12,7 @@ use glint_config::Config;
 /// The largest D²: each of the three components is at least −2.0, so its square is at most 4.
 const FARTHEST: i64 = 12;
 
-/// The control operands are `dx`, `dy`, `dz`, and `shift` or `exponent`.
+/// Returns the accuracy contract. The control operands are `dx`, `dy`, `dz`, and `shift` or `exponent`.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     Box::new(of_keys(Keys::of(config)))
 }
@@ -75,7 +74,8 @@ impl Reflectance for LyonArithmetic {
         vec![format!("{} ** {power}", shared::clamped_at_0(&base))]
     }
 
-    /// Returns the operands for the normal (0, 0, 1) and the half vector (sin γ, 0, cos γ), if `n` is an integer in the domain.
+    /// Returns the operands for the normal (0, 0, 1) and the half vector (sin γ, 0, cos γ). Returns `None` if `n` is no integer
+    /// or not in the domain.
     fn at(&self, operands: &[Operand], gamma: f64, n: f64) -> Option<Vec<i64>> {
         let (first, last) = self.keys.domain.exponents();
         let exponent = n as i64;
@@ -108,8 +108,7 @@ impl Reflectance for LyonArithmetic {
         ]))
     }
 
-    /// Returns the largest error of f over every exact D² that is rounded to the word. The formula falls as D² grows, so the
-    /// error is largest at an end of this interval.
+    /// Returns the largest error of f over every exact D² that is rounded to the word of `place`.
     #[inline]
     fn sweep_error(&self, place: &[i64]) -> Option<f64> {
         let (operand, word) = (place[0], place[1]);
@@ -124,14 +123,14 @@ impl Reflectance for LyonArithmetic {
         };
         let formula = |at: f64| self.formula(at.max(0.0) * ulp, operand);
         let nearest = formula(low);
-        // Most words are beyond the zero of the formula, where the error is 0.
+        // Most words are beyond the formula's zero, where the error is 0.
         if f == 0.0 && nearest == 0.0 {
             return Some(0.0);
         }
         Some((f - nearest).abs().max((f - formula(high)).abs()))
     }
 
-    /// Derives the contributions to the error of f. Base and powers lie in 0 … 1, hardware's and formula's alike. By the mean
+    /// Derives the contributions to the error of f. Base and powers lie in 0 … 1, in the hardware and in the formula. By the mean
     /// value theorem, an error ε before a power p therefore grows to at most p·ε.
     ///
     /// - An error of D² is multiplied by β = n/(2·m), and by at most m when the base is raised to m: n/2 in all.
@@ -170,8 +169,7 @@ impl Reflectance for LyonArithmetic {
         }
     }
 
-    /// Remarks that `scale = "shift"` makes the formula worse, because n is rounded to a power of two. Only the two n next to
-    /// the geometric mean of each two adjacent powers of two are compared; the remark states the worst of them.
+    /// Returns a warning if `scale = "shift"` makes the formula worse, because n is rounded to a power of two.
     fn remarks(&self) -> Vec<String> {
         let (keys, (first, last)) = (&self.keys, self.keys.domain.exponents());
         if keys.scale == Scale::Multiplier {

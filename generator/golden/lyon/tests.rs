@@ -6,8 +6,8 @@ use crate::Contract;
 use glint_base::fixed::Rounding;
 use glint_keys::common::{ColourKeys, Domain, Intensity};
 
-/// Components, f and colours have few bits, so that a reader can work out results by hand. Components and f have 4 fraction
-/// bits, D² has 6, and colours have 4 bits.
+/// Returns keys with few bits, so a reader can work out results by hand. Components and f have 4 fraction bits, D² has 6, and
+/// colours have 4 bits.
 fn small(power: u32, scale: Scale) -> Keys {
     Keys {
         power,

@@ -1,5 +1,4 @@
-//! The accuracy contract of the device `quad-cosine`: the exact formula, the terms of the error bound with the keys that govern
-//! them, and the operands that an exhaustive check visits.
+//! The accuracy contract of the device `quad-cosine`: formula, terms of the error bound, and cases of the exhaustive check.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -12,9 +11,8 @@ use crate::{Contract, Operand, Sweep};
 use glint_base::fixed::{Format, exp2};
 use glint_config::Config;
 
-/// The control operands are `delta_zeta` (the angle from a point to the next), `zeta_start` (the first angle), `exponent` and
-/// `length` (the number of intervals). To state a single point of a line, the contract sets `zeta_start` to the angle of that
-/// point.
+/// Returns the accuracy contract. The control operands are `delta_zeta` (the angle from a point to the next), `zeta_start` (the
+/// first angle), `exponent` and `length` (the number of intervals).
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     let keys = Keys::of(config);
     let mut operands = line::angle_operands(keys.angle_format()).to_vec();
@@ -28,8 +26,8 @@ pub fn contract(config: &Config) -> Box<dyn Contract> {
 }
 
 impl QuadCosineArithmetic {
-    /// Returns two upper limits of the error of the stretched angle √(n/k)·δ for n, in right angles. One is from the low bits
-    /// that multiplier 11 does not read, and one from the rounding of ROM 9.
+    /// Returns two upper limits of the error of the stretched angle √(n/k)·δ for n, in right angles. The first comes from the low
+    /// bits that multiplier 11 does not read, the second from the rounding of ROM 9.
     ///
     /// The magnitude m denotes angles from m to m + u. Let s = √(n/k), and s' be ROM 9's word. s'·m is less than s·(m + u) by
     /// at most s·u + (s − s')·m, and more than s·m by at most (s' − s)·m. An angle beyond 1/s is in the table's last word
@@ -50,8 +48,8 @@ impl Reflectance for QuadCosineArithmetic {
         self.cosine_of(n, self.magnitude(angle), self.root(n))
     }
 
-    /// The surface faces the viewer for angles from −90° to below 90°; the hardware treats these two ends differently, as two's
-    /// complement does.
+    /// Returns the formula's value. The surface faces the viewer from −90° to below 90°; the hardware treats these two ends
+    /// differently, as two's complement does.
     #[inline]
     fn reference(&self, control: &[i64]) -> f64 {
         let (angle, n) = (control[1], control[2]);
@@ -79,7 +77,7 @@ impl Reflectance for QuadCosineArithmetic {
         vec![line::interval(angle, last[1], length, first[0]), angle, first[2], length]
     }
 
-    /// Returns the operands of a line of one point, at the angle `gamma`, if the domain represents `n`.
+    /// Returns the operands of a line with one point, at the angle `gamma`. Returns `None` if the domain does not contain `n`.
     fn at(&self, operands: &[Operand], gamma: f64, n: f64) -> Option<Vec<i64>> {
         let angle = line::raw_angle(&operands[1], gamma);
         Some(vec![0, angle, shared::exponent_at(&operands[2], n)?, 0])
@@ -94,8 +92,7 @@ impl Reflectance for QuadCosineArithmetic {
         Some("length")
     }
 
-    /// Visits every n with every magnitude that multiplier 11 can read, which covers every angle that a line can reach. If the
-    /// surface faces away, the word of ROM 12 and the formula are both 0 for every n.
+    /// Visits every n with every magnitude that multiplier 11 can read, which covers every angle that a line can reach.
     fn sweep(&self) -> Option<Sweep> {
         let magnitudes = 1i64 << self.keys.angle_multiplied;
         Some(Sweep::ranges([
@@ -104,8 +101,7 @@ impl Reflectance for QuadCosineArithmetic {
         ]))
     }
 
-    /// Returns the largest error over all angles with this magnitude, of either sign. The formula falls from one end of these
-    /// angles to the other, so the error is largest at an end.
+    /// Returns the largest error, positive or negative, over all angles with the magnitude of `place`.
     fn sweep_error(&self, place: &[i64]) -> Option<f64> {
         let (n, magnitude) = (place[0], place[1]);
         let word = self.cosine_of(n, Some(magnitude), self.root(n));
@@ -115,8 +111,9 @@ impl Reflectance for QuadCosineArithmetic {
         Some((end(magnitude) - f).max(f - end(magnitude + 1)))
     }
 
-    /// Returns the contributions for the n with the largest sum. They are the distance of ROM 12 from the formula within a
-    /// step, the rounding of ROM 12, and two errors of the stretched angle, times the steepest slope of the power.
+    /// Returns the contributions for the n with the largest sum. They are the distance of ROM 12 from the formula within a step,
+    /// the rounding of ROM 12, and two errors of the stretched angle. The steepest slope of the power multiplies these two
+    /// errors.
     fn shares(&self) -> Vec<ErrorShare> {
         let keys = &self.keys;
         let (low, high) = keys.domain.exponents();

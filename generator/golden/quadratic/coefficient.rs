@@ -17,7 +17,8 @@ pub fn table(scheme: Scheme, count: u32) -> Vec<f64> {
         .collect()
 }
 
-/// Finds a(n) for n > 2, by Newton's iteration on the difference of the two errors.
+/// Returns the minimax a(n) for n > 2, by Newton's iteration. The iteration makes the maximum of h equal to the error at the
+/// zero.
 fn minimax(n: f64) -> f64 {
     // For large n the solution of 1 + α·ln α − α = exp(−1/α) is a/n.
     let mut a = 0.513 * (n - 1.0) + 0.5;
@@ -36,8 +37,7 @@ fn minimax(n: f64) -> f64 {
     a
 }
 
-/// Returns the x at which h is largest, by Newton's iteration from x = 0. From there on, h′ falls and is convex, so the
-/// iteration approaches the zero of h′ from the left.
+/// Returns the x at which h is largest, by Newton's iteration from x = 0.
 fn summit(n: f64, a: f64) -> f64 {
     let mut x = 0.0;
     for _ in 0..60 {

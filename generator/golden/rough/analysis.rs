@@ -10,9 +10,9 @@ use crate::narrow::rounding_error;
 use crate::sine::{ErrorRange, Sine};
 use glint_base::fixed::{Rounding, exp2};
 
-/// A bin is small compared with the narrowest highlight, which is 3.6° wide at n = 1000.
+/// The number of bins of a quarter circle. A bin is small compared with the narrowest highlight, which is 3.6° wide at n = 1000.
 const BINS: usize = 512;
-/// The width of a bin, in radians.
+/// A bin's width, in radians.
 pub const BIN: f64 = FRAC_PI_2 / BINS as f64;
 
 /// A margin, in radians, that covers the rounding of angles in f64.
@@ -49,8 +49,8 @@ impl Errors {
         self.part(i, j, |error, _| error)
     }
 
-    /// Returns the share of [`Self::product`] that comes from one part of every entry's error. `part` gets the error of an entry
-    /// and its shape.
+    /// Returns the share of [`Self::product`] that comes from one cause. `part` returns this cause's share of a table entry's
+    /// error, from the entry's error and shape.
     pub fn part(&self, i: usize, j: usize, part: impl Fn(f64, f64) -> f64) -> f64 {
         let (gamma, dgamma) = (self.errors[i], self.errors[j]);
         self.sines[i] * part(dgamma.0, dgamma.1)
@@ -58,7 +58,7 @@ impl Errors {
     }
 }
 
-/// The factor n·b by which an error of cos(γ ± dγ) changes f, for bins of γ and dγ that are a certain number of bins apart.
+/// The factor n·b by which an error of cos(γ ± dγ) changes f, for a bin of γ and a bin of dγ with a certain distance.
 pub struct Weight {
     /// The largest weight n·b for any n of the domain and any angles in these bins. With the base b = n/2·(cos(γ ± dγ) − 1) + 1,
     /// an error of cos(γ ± dγ) changes f = b² by at most this factor.
@@ -68,8 +68,8 @@ pub struct Weight {
 }
 
 impl Weight {
-    /// Makes the weight for pairs of bins that are `distance` bins apart: 0 if the square is constant for every n of the domain.
-    /// `anywhere` is the largest error of the base at any angles.
+    /// Returns the weight for pairs of bins that are `distance` bins apart: 0 if the square is constant for every n of the
+    /// domain. `anywhere` is the largest error of the base at any angles.
     fn new(keys: &Keys, distance: usize, anywhere: f64) -> Self {
         let (least, most) = exponents(keys);
         let sine = libm::sin((distance.saturating_sub(1)) as f64 * BIN / 2.0);
@@ -116,7 +116,7 @@ pub struct Analysis {
 }
 
 impl Analysis {
-    /// `sine` is the table of the configuration `keys`.
+    /// Analyses the configuration `keys` with its table `sine`.
     pub fn new(keys: &Keys, sine: &Sine) -> Self {
         let errors = Errors::new(sine);
         let deviation = bin(keys.deviation.to_radians() + SLACK);
@@ -166,7 +166,8 @@ impl Analysis {
         self.bound_of(i, j, negative, self.errors.product(i, j))
     }
 
-    /// Like [`Self::bound`], but `error` replaces the amount by which the bins' table errors change register 12.
+    /// Returns the bound like [`Self::bound`], but `error` replaces the amount by which the bins' table errors change register
+    /// 12.
     pub fn bound_of(&self, i: usize, j: usize, negative: bool, error: f64) -> f64 {
         let apart = if negative { i.abs_diff(j) } else { i + j };
         self.rounded(self.weights[apart].linear * (error + self.products))

@@ -25,9 +25,9 @@
 //!
 //! **The maximum.** The quarter circle is cut into equal bins, and the largest error of the table's entries is known in each bin.
 //! The smallest γ − dγ of two bins depends only on their distance, and the smallest γ + dγ only on the sum of their numbers. The
-//! code tries all pairs of bins, and the terms are the terms of the worst pair. With the clamp, [`super::pairs`] finds a smaller
-//! bound, because the largest errors of table and roundings do not occur at the same operands. All terms are then multiplied by one
-//! factor, so that their sum is this smaller bound.
+//! code tries all pairs of bins, and the terms are the worst pair's terms. With the clamp, [`super::pairs`] finds a smaller
+//! bound, because the largest errors of table and roundings do not occur at the same operands. All terms are then multiplied by
+//! one factor, so their sum is this smaller bound.
 
 use super::analysis::Analysis;
 use super::{Keys, Kind, RomLayout, RoughArithmetic, pairs};
@@ -96,8 +96,8 @@ fn sine_terms(keys: &Keys) -> &'static [(&'static str, &'static str)] {
     }
 }
 
-/// Splits the error of an entry in proportion to the largest possible errors of three parts. They are the rounding (with the
-/// floor after interpolation), the shape and the slope's rounding.
+/// Splits the error of a table entry in proportion to the largest possible errors of three causes. They are the rounding (with
+/// the floor after interpolation), the shape, and the slope's rounding.
 fn split(keys: &Keys, error: f64, shape: f64) -> [f64; 3] {
     let ulp = exp2(-(keys.sine_fraction as i32));
     let most = match keys.scheme {

@@ -8,8 +8,9 @@ use crate::frame::{Frame, idle, step_by};
 use glint_base::fixed::Format;
 use glint_config::Config;
 
-/// The model has no address register for a synchronous ROM 18 (the table of sines). The hardware sets the ROM's address one
-/// microinstruction before it uses the sine. The operands do not change in between, so both kinds of ROM show the same sine.
+/// Returns the golden model. It has no address register for a synchronous ROM 18 (the table of sines). The hardware sets the
+/// ROM's address one microinstruction before it uses the sine. The operands do not change in between, so a synchronous and an
+/// asynchronous ROM 18 show the same sine.
 pub fn model(config: &Config) -> Box<dyn Model> {
     let it = Arc::new(RoughArithmetic::new(keys_of(config)));
     let keys = &it.keys;

@@ -8,10 +8,11 @@ use crate::highlight::{Highlight, Reflectance};
 use crate::{Axis, Contract, Operand, Sweep, Values};
 use glint_config::Config;
 
-/// Deviations dγ in degrees. An exhaustive check visits the ones below the largest dγ of the domain, and this largest one.
+/// Deviations dγ in degrees. An exhaustive check visits those entries that are below the largest dγ of the domain, and the
+/// largest dγ.
 const SWEPT_DEVIATIONS: [f64; 4] = [0.0, 1.0, 5.0, 15.0];
 
-/// The control operands are `cos_gamma`, `cos_dgamma`, `exponent` and `dgamma_negative`.
+/// Returns the accuracy contract. The control operands are `cos_gamma`, `cos_dgamma`, `exponent` and `dgamma_negative`.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     let keys = keys_of(config);
     let (control, products) = (keys.control(), keys.products());
@@ -30,7 +31,8 @@ impl Reflectance for RoughArithmetic {
         it.f_of(it.squared(scaled, cos_gamma))
     }
 
-    /// The patent's arithmetic is compared with the clamped formula too, so that its error shows the cost of that arithmetic.
+    /// Returns the formula's value. The patent's arithmetic is also compared with the clamped formula, so its error shows the
+    /// cost of this arithmetic.
     #[inline]
     fn reference(&self, control: &[i64]) -> f64 {
         let cosine = |raw| self.keys.clamped(raw) as f64 * self.keys.ulp();
@@ -54,14 +56,14 @@ impl Reflectance for RoughArithmetic {
         })]
     }
 
-    /// Returns the operands of γ and n with dγ = 0, if the domain represents `n`. The patent's arithmetic has no cosine 1.0,
-    /// and so has the largest cosine instead.
+    /// Returns the operands of γ and n with dγ = 0, or `None` if the domain does not contain `n`. The patent's arithmetic has no
+    /// cosine 1.0, so it gets the largest cosine instead.
     fn at(&self, operands: &[Operand], gamma: f64, n: f64) -> Option<Vec<i64>> {
         let no_deviation = [("cos_dgamma", self.keys.largest_cosine())];
         shared::operands_at(operands, gamma, n, &no_deviation)
     }
 
-    /// cos(γ ± dγ) is largest if γ becomes dγ where dγ is subtracted, and if both become 0 where it is added.
+    /// Returns the operands with the largest cos(γ ± dγ). If dγ is subtracted, γ becomes dγ; if dγ is added, both become 0.
     fn peak(&self, control: &[i64]) -> Option<Vec<i64>> {
         let deviation = if control[3] == 1 { control[1] } else { self.keys.largest_cosine() };
         Some(vec![deviation, deviation, control[2], control[3]])

@@ -1,16 +1,16 @@
 //! Finds a bound on the error of f of the device `rough` by branch and bound over pairs of angles γ and dγ.
 //!
-//! **Bounds.** A bin is a small interval of angles. The analysis in [`super::bound`] gives a bound for each pair of bins, one
-//! for γ and one for dγ. For a pair of operands in these bins, the same formula gives a smaller bound. The reason is that the
-//! errors of the table of sines are known at these operands. If the output of the hardware's adder 15 is computed too, its
-//! distance D from cos(γ ± dγ) − 1 is known. The error of f is then at most n·b·D plus the roundings of register 13. Here b is
-//! the base of the square. n·b is largest at n = 1/(1 − cos(γ − dγ)) or at an end of the domain of n. For a pair of operands
-//! and one n, the error itself is computed, with the hardware's roundings.
+//! **Bounds.** A bin is a small interval of angles. The analysis in [`super::bound`] gives a bound for each pair of bins, one for
+//! γ and one for dγ. For a pair of operands in these bins, the same formula gives a smaller bound. The reason is that the errors
+//! of the table of sines are known at these operands. If the output of the hardware's adder 15 is computed too, its distance D
+//! from cos(γ ± dγ) − 1 is known. The error of f is then at most n·b·D plus the roundings of register 13. Here b is the square's
+//! base. n·b is largest at n = 1/(1 − cos(γ − dγ)) or at an end of the domain of n. For a pair of operands and one n, the error
+//! itself is computed, with the hardware's roundings.
 //!
 //! **The search.** The search remembers the largest error that it has computed. It skips every pair whose bound is no larger,
 //! because such a pair has no larger error, and examines all other pairs. If that takes more than 2²¹ steps, the result is the
-//! largest bound of the remaining pairs. The result is never below half of the bound of the worst pair of bins, so that the
-//! search spends no time on smaller errors.
+//! largest bound of the remaining pairs. The result is never below half of the bound of the worst pair of bins, so the search
+//! spends no time on smaller errors.
 
 use std::collections::BTreeMap;
 
@@ -22,15 +22,15 @@ use glint_base::fixed::exp2;
 /// A step examines a pair of operands, or one exponent of a pair.
 const STEPS: u64 = 1 << 21;
 
-/// The search ignores errors below this fraction of the first bound.
+/// The search ignores errors below this fraction of the largest bound of a pair of bins.
 const LEAST: f64 = 0.5;
 
-/// An upper limit of the rounding of f64 in the error of a sine.
+/// An upper limit of the f64 rounding error in a sine's error.
 const F64: f64 = 1e-15;
 
 struct RawCosine {
     raw: i64,
-    /// The exact sine of the operand, and the distance of the table's sine from it.
+    /// The exact sine of the angle with this cosine, and the error of the table's sine.
     sine: f64,
     error: f64,
 }
@@ -49,7 +49,7 @@ struct PairSearch<'a> {
     analysis: &'a Analysis,
     /// The cosine operands in each bin of angles, from the largest error of their sine to the smallest.
     cosines: BTreeMap<usize, Vec<RawCosine>>,
-    /// The largest error found so far, or half of the first bound if that is larger.
+    /// The largest error found so far, or half of the largest bound of a pair of bins if that is larger.
     largest: f64,
     steps: u64,
 }
@@ -152,8 +152,8 @@ impl PairSearch<'_> {
         Some(OperandPair { bound, control, distance, below })
     }
 
-    /// Computes the error of the pair for every n of the domain whose bound is above the largest error so far, and updates that
-    /// error. Returns false if this takes too many steps.
+    /// Computes the error of `pair` for every n of the domain whose bound is above the largest error so far, and updates the
+    /// largest error. Returns false if the steps run out.
     fn go_through_exponents(&mut self, pair: &OperandPair) -> bool {
         let (least, most) = self.it.keys.domain.exponents();
         let [x, y, _, negative] = pair.control;

@@ -5,7 +5,8 @@ use crate::highlight::Reflectance;
 use glint_base::fixed::Rounding;
 use glint_keys::common::{Domain, Intensity, Operands};
 
-/// Cosines and f have 4 fraction bits, sines and products 6. A test in `sine.rs` works out the sine table by hand.
+/// Returns keys with few bits: cosines and f have 4 fraction bits, sines and products 6. A test in `sine.rs` works out the sine
+/// table by hand.
 fn small() -> Keys {
     Keys {
         arithmetic: Kind::Exact,

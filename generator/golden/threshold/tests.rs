@@ -3,7 +3,7 @@
 use super::*;
 use glint_keys::common::{Domain, Intensity, Operands};
 
-/// Cosines and f have 4 fraction bits and colours 4 bits, so that results can be worked out by hand.
+/// Cosines and f have 4 fraction bits and colours 4 bits, so results can be worked out by hand.
 fn small(levels: &[u32]) -> ThresholdArithmetic {
     let (operands, f, domain) = (Operands::small(), Intensity::small(), Domain::small());
     ThresholdArithmetic::new(Keys { operands, f, levels: levels.to_vec(), domain })

@@ -2,8 +2,7 @@
 //! multiplexers, and the carries of sums.
 //!
 //! For example, a saturation with one limit has two cases: the value is inside the limit, or the limit replaces it. For each
-//! case, the module finds the interval of raw values of every node on which the results depend. Statements about the error
-//! bound are then written case by case.
+//! case, the module finds the interval of raw values of every node on which the results depend.
 
 use std::collections::BTreeMap;
 
@@ -17,17 +16,17 @@ use glint_rtl::pipeline::{Cell, Graph, NodeId, NodeOp};
 /// The largest number of cases that are examined, including impossible ones.
 const MOST: usize = 4096;
 
-/// Intervals of raw values that narrow the intervals which follow from the operands alone.
+/// For some nodes, an interval of raw values that is narrower than the interval from the operands alone.
 pub type NodeIntervals = BTreeMap<NodeId, Interval>;
 
 /// A case of a computation: one combination of outcomes of its conditions.
 #[derive(Clone, Debug)]
 pub struct Case {
-    /// The hypotheses: intervals of nodes that follow from the outcomes of the conditions.
+    /// The case's hypotheses: intervals of nodes that follow from the outcomes of the conditions.
     pub known: NodeIntervals,
     /// The interval of raw values of every node in this case.
     pub ranges: Vec<Interval>,
-    /// The nodes whose value is a quadratic polynomial in one operand, if the polynomial narrows the interval.
+    /// The nodes with a value that is a quadratic polynomial in one operand, if the polynomial narrows the node's interval.
     pub parabolas: BTreeMap<NodeId, RawPolynomial>,
 }
 
@@ -39,13 +38,13 @@ pub struct UnrolledComputation<'a> {
     pub graph: &'a Graph,
     /// A function that returns the word of a ROM at an address, as a raw value.
     pub words: WordLookup<'a>,
-    /// The dividers, each by the node that concatenates the bits of its quotient.
+    /// The dividers. A divider's key is the node that concatenates the bits of its quotient.
     pub quotients: &'a BTreeMap<NodeId, Quotient>,
 }
 
 impl UnrolledComputation<'_> {
-    /// Returns `roots` and every node that they depend on, in the order of the graph. The bits of a quotient are left out: a
-    /// quotient depends directly on its dividend and divisor.
+    /// Returns `roots` and every node that they depend on, in the graph's order. A quotient's bits are left out: a quotient
+    /// depends directly on its dividend and divisor.
     fn cone(&self, roots: &[NodeId]) -> Vec<NodeId> {
         let operands = |at| self.operands(NodeId(at as u32)).into_iter().map(NodeId::index);
         let roots = roots.iter().map(|root| root.index());
@@ -106,8 +105,8 @@ pub fn cases(
     Ok(found)
 }
 
-/// Returns the interval of raw values of a node. Returns `None` if the value depends on a condition whose outcome is not
-/// decided, or if no operands lie in the intervals `known`.
+/// Returns the interval of raw values of `node`. Returns `None` if the value depends on an undecided condition, or if no operands
+/// lie in the intervals `known`.
 pub fn range(view: UnrolledComputation, node: NodeId, known: &NodeIntervals) -> Option<Interval> {
     let ranges = view.graph.nodes.iter().map(|node| node.range).collect();
     let mut case = Case { known: known.clone(), ranges, parabolas: BTreeMap::new() };
@@ -118,17 +117,17 @@ pub fn range(view: UnrolledComputation, node: NodeId, known: &NodeIntervals) -> 
 }
 
 enum Decision {
-    /// Every selection is decided, so the intervals of all nodes are known.
+    /// Every condition is decided, so the intervals of all nodes are known.
     Whole,
     /// No operands satisfy the hypotheses.
     Never,
-    /// A selection depends on this node, which still has several values.
+    /// A condition depends on this node, which still has several values: the interval.
     Splits(NodeId, Interval),
 }
 
 impl Case {
-    /// Computes the intervals of the nodes in `cone`, in order. The function ends at the first selection that is not decided,
-    /// or at the first node that has no possible value.
+    /// Computes the intervals of the nodes in `cone`, in order. Ends at the first undecided condition, or at the first node that
+    /// has no possible value.
     fn follow(&mut self, view: UnrolledComputation, cone: &[NodeId]) -> Decision {
         let graph = view.graph;
         let mut polynomials: BTreeMap<NodeId, RawPolynomial> = BTreeMap::new();
@@ -163,7 +162,8 @@ impl Case {
         Decision::Whole
     }
 
-    /// Computes the interval of a node from the intervals of its operands. A selection at the node must be decided.
+    /// Computes a node's interval from the intervals of its operands. If the node is a mux or a sum with a carry, its condition
+    /// must be decided.
     fn computed(&self, view: UnrolledComputation, id: NodeId) -> Interval {
         let graph = view.graph;
         let node = graph.node(id);
@@ -194,7 +194,7 @@ impl Case {
     }
 }
 
-/// Returns the node whose value must be known before a cell is computed: the select of a mux, or the carry of a sum.
+/// Returns a cell's condition: the select of a mux, or a sum's carry. Its value must be known before the cell is computed.
 fn selection(cell: &Cell) -> Option<NodeId> {
     match cell {
         Cell::Op(NodeOp::Mux { select, .. }) => Some(*select),
@@ -213,8 +213,8 @@ fn selected(select: NodeId, inputs: &[NodeId], ranges: &[Interval]) -> NodeId {
     inputs[(number as usize).min(inputs.len() - 1)]
 }
 
-/// Returns the raw value of a node as a polynomial in the raw value of an operand. `polynomials` has the polynomials of
-/// earlier nodes. A node that drops bits must do so in the same way for its whole interval.
+/// Returns the raw value of a node as a polynomial in the raw value of an operand. `polynomials` has the polynomials of earlier
+/// nodes. Returns `None` if there is no such polynomial, or if the node drops bits differently within its interval.
 fn polynomial(
     graph: &Graph,
     id: NodeId,
@@ -266,8 +266,8 @@ fn polynomial(
     }
 }
 
-/// Returns the condition whose values must be distinguished first, so that the undecided selection `id` becomes decided. For
-/// example, it is `b` for the select `a & b` of one bit, if only `b` is undecided.
+/// Returns the node with values that must be distinguished first to decide the condition `id`. For example, it is `b` for the
+/// select `a & b` of one bit, if only `b` is undecided.
 fn decider(graph: &Graph, id: NodeId, ranges: &[Interval]) -> NodeId {
     let operands =
         match &graph.node(id).cell {
@@ -284,9 +284,9 @@ fn decider(graph: &Graph, id: NodeId, ranges: &[Interval]) -> NodeId {
     id
 }
 
-/// Narrows the interval of node `id` in `known` to `range`, and the intervals of the nodes from which it is computed
-/// accordingly. Returns false if no value is left. `ranges` are the intervals without this restriction. For example, if the
-/// inverse of an 8-bit node `a` is 0, then `a` is 255.
+/// Narrows the interval of node `id` in `known` to `range`. Also narrows the intervals of the nodes from which `id` is computed,
+/// if the operation allows it. For example, if the inverse of an 8-bit node `a` is 0, then `a` is 255. `ranges` are the intervals
+/// without this restriction. Returns false if no value is left.
 pub fn learn(
     graph: &Graph,
     known: &mut NodeIntervals,
@@ -340,7 +340,7 @@ pub fn learn(
             let range = (base + (range.0 << low), base + ((range.1 + 1) << low) - 1);
             learn(graph, known, ranges, *of, range)
         }
-        // If the select of a mux is decided, the interval narrows the input that the mux passes on.
+        // If a mux's select is decided, the interval narrows the input that the mux passes on.
         (NodeOp::Mux { select, inputs }, _) => match value(known, *select) {
             (low, high) if low == high => {
                 let input = inputs[(low as usize).min(inputs.len() - 1)];

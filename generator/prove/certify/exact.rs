@@ -1,9 +1,9 @@
-//! Translates the formula of a contract to real expressions for the prover Gappa.
+//! Translates a contract's formula to real expressions for the prover Gappa.
 //!
 //! A formula with `max`, `min` or `if` becomes several branches, each with conditions under which it applies. For example,
-//! `max(a, b)` has two branches: `a` where a − b ≥ 0, and `b` where a − b ≤ 0. The module fails for any other function, such
-//! as `sqrt`, for a constant such as `pi`, and for the operator `%`. It also fails for a number that no `f64` represents, such
-//! as 0.1, and for an exponent that varies.
+//! `max(a, b)` has two branches: `a` where a − b ≥ 0, and `b` where a − b ≤ 0. The module fails for any other function, such as
+//! `sqrt`, for a constant such as `pi`, and for the operator `%`. It also fails for a number that no `f64` represents, such as
+//! 0.1, and for a varying exponent.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -12,7 +12,7 @@ use glint_base::fixed::exp2;
 use glint_formula::{Comparison, Expression, Function, Kind, Literal, Operator};
 use glint_golden::Operand;
 
-/// The largest exponent of a power that has a translation.
+/// The largest exponent of a power that can be translated.
 const MOST_EXPONENT: f64 = 1000.0;
 
 /// One branch of a formula: a term, and the conditions under which this term is the formula's value.
@@ -23,13 +23,13 @@ pub struct Branch {
     /// Terms that must be at most 0 for the branch to apply.
     pub at_most: Vec<RealTermId>,
     pub term: RealTermId,
-    /// For every choice that the branch has made, whether its condition holds. The key is the term that is compared with 0,
-    /// and the kind of comparison.
+    /// Whether each condition that the branch has decided holds. The key is the term that is compared with 0, and the kind of
+    /// comparison.
     chosen: BTreeMap<(RealTermId, Choice), bool>,
 }
 
-/// The kind of a comparison of a term with 0. A branch never decides the same kind for the same term in two ways, so two uses
-/// of `max(a, b)` in a formula take the same side.
+/// The kind of a comparison of a term with 0. A branch decides the same kind for the same term only once, so two uses of `max(a,
+/// b)` in a formula take the same side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Choice {
     Larger,
@@ -38,7 +38,7 @@ enum Choice {
 }
 
 impl Branch {
-    /// Returns whether a constant violates one of the conditions.
+    /// Returns whether a constant violates a condition of the branch, so the branch never applies.
     pub fn is_never(&self, terms: &RealTerms) -> bool {
         for &id in &self.at_least {
             if matches!(terms.get(id), RealTerm::Number(value) if *value < 0.0) {
@@ -53,8 +53,8 @@ impl Branch {
         false
     }
 
-    /// Combines the conditions of both branches, and takes the term of `other`. Returns `None` if the branches decide the same
-    /// condition differently.
+    /// Returns a branch with the conditions of `self` and `other` and the term of `other`. Returns `None` if the two branches
+    /// decide a condition differently.
     pub fn and(&self, other: &Self) -> Option<Self> {
         let mut both = self.clone();
         both.term = other.term;
@@ -76,8 +76,8 @@ impl Branch {
         Some(both)
     }
 
-    /// Adds a condition: `difference` must be at least 0 if `taken` is set, and at most 0 otherwise. Returns `None` if the
-    /// branch has decided this choice differently.
+    /// Adds the condition that `difference` is at least 0 (if `taken`) or at most 0. Returns `None` if the branch has already
+    /// decided this condition differently.
     fn choosing(&self, difference: RealTermId, choice: Choice, taken: bool) -> Option<Self> {
         let mut condition = Self { term: self.term, ..Self::default() };
         condition.chosen.insert((difference, choice), taken);
@@ -90,7 +90,7 @@ impl Branch {
     }
 }
 
-/// Everything about a case that the translation of a formula needs.
+/// The names and values of a case that the translation of a formula needs.
 pub struct FormulaContext<'a> {
     /// For each operand, the name of its variable in the script, and the power of two by which the operand is divided. For
     /// example, the variable `exponent_over_8` has the power 3.
@@ -108,8 +108,8 @@ pub fn word_variable(rom: &str, variable: &str) -> String {
     format!("{rom}_at_{variable}")
 }
 
-/// Stores in `found` the power of two by which the formula divides each operand, or 0 if the power is not the same everywhere.
-/// For example, `exponent` has 0 in `exponent / 8 + exponent`.
+/// Stores in `found`, for each operand, the power of two by which `formula` divides the operand. The power is 0 if it is not the
+/// same everywhere. For example, `exponent` has 0 in `exponent / 8 + exponent`.
 pub fn divisors(formula: &Expression, found: &mut HashMap<String, Option<i32>>) {
     if let Some((name, power)) = quotient(formula) {
         return note_divisor(name, power, found);
@@ -126,7 +126,7 @@ pub fn divisors(formula: &Expression, found: &mut HashMap<String, Option<i32>>) 
     }
 }
 
-/// Stores 0 if another power is already stored.
+/// Stores `power` for the operand `name`, or 0 if a different power is already stored.
 fn note_divisor(name: &str, power: i32, found: &mut HashMap<String, Option<i32>>) {
     let noted = found.entry(name.to_owned()).or_insert(Some(power));
     if *noted != Some(power) {
@@ -134,7 +134,7 @@ fn note_divisor(name: &str, power: i32, found: &mut HashMap<String, Option<i32>>
     }
 }
 
-/// Returns the operand and the power if a formula divides an operand by a power of two from 2⁰ to 2³⁰. For example, `exponent
+/// Returns the operand and the power if `formula` is an operand divided by a power of two from 2⁰ to 2³⁰. For example, `exponent
 /// / 8` gives `exponent` and 3.
 fn quotient(formula: &Expression) -> Option<(&str, i32)> {
     let Kind::Binary(Operator::Div, a, b) = &formula.kind else { return None };
@@ -150,9 +150,10 @@ pub fn untranslated(function: Function) -> String {
     format!("the function `{}` cannot be written for Gappa", function.name())
 }
 
-/// A formula without conditions has one branch.
+/// Translates `formula` to branches. A formula without conditions has one branch.
 ///
 /// # Errors
+///
 /// Fails if the formula has a part without a translation, an unknown operand or table, or an exponent that varies in this case.
 /// A number that no `f64` represents, such as 0.1, has no translation. A power needs a natural exponent, or the base 2.
 pub fn branches(
@@ -249,8 +250,8 @@ fn unconditional(term: RealTermId) -> Vec<Branch> {
     vec![Branch { term, ..Branch::default() }]
 }
 
-/// Combines each branch of `a` with each branch of `b`, unless their choices contradict each other. A combination has the
-/// conditions of both, the term of `a` and the term of `b`.
+/// Combines each branch of `a` with each branch of `b`, unless they decide a condition differently. A combination has the
+/// conditions of both branches, the term of `a` and the term of `b`.
 fn pairs(
     [a, b]: [&Expression; 2],
     setting: &FormulaContext,
@@ -268,7 +269,7 @@ fn pairs(
     Ok(pairs)
 }
 
-/// `make` returns the term of the operation.
+/// Returns the branches of an operation with two operands. `make` makes the operation's term.
 fn operation(
     operands: [&Expression; 2],
     make: fn(RealTermId, RealTermId) -> RealTerm,
@@ -283,7 +284,7 @@ fn operation(
     Ok(found)
 }
 
-/// Returns the branches in which a comparison is true, or false if `taken` is false.
+/// Returns the branches in which the comparison is true (if `taken`) or false.
 fn conditions(
     comparison: &Comparison,
     taken: bool,
@@ -299,10 +300,11 @@ fn conditions(
     Ok(conditions)
 }
 
-/// Returns the word of a table at an address. The word is a number if it is the same at all addresses of this case, and
-/// otherwise a variable.
+/// Returns the word of the table `rom` at the address `place`. The word is a number if it is the same at all addresses of this
+/// case, and otherwise a variable.
 ///
 /// # Errors
+///
 /// Fails if the address is neither a number nor an operand without fraction bits, or if the table has no such word.
 fn word(
     rom: &str,
@@ -365,22 +367,22 @@ fn variable_of(
     }
 }
 
-/// Returns a power of 2 with an integer exponent from −1000 to 1000, which an `f64` represents exactly. Returns `None` for any
-/// other power.
+/// Returns the power if `base` is 2 and `exponent` is an integer from −1000 to 1000: an `f64` represents such a power exactly.
+/// Returns `None` for any other power.
 fn scaling(base: Option<f64>, exponent: f64) -> Option<f64> {
     let is_power_of_two =
         base == Some(2.0) && exponent.fract() == 0.0 && exponent.abs() <= MOST_EXPONENT;
     is_power_of_two.then(|| exp2(exponent as i32))
 }
 
-/// Returns the value of a number, or of an operand that has a single value in this case, with or without a minus before it.
+/// Returns the value of a number, or of an operand that has a single value in this case; either may have a minus in front.
 fn constant(formula: &Expression, setting: &FormulaContext) -> Option<f64> {
     let (low, high) = known_range(formula, setting)?;
     if low == high { Some(low) } else { None }
 }
 
-/// Returns the smallest and the largest value of a number or an operand in this case, with or without a minus before it. A
-/// number that no `f64` represents, such as 0.1, gives `None`.
+/// Returns the smallest and the largest value of a number or an operand in this case; either may have a minus in front. A number
+/// that no `f64` represents, such as 0.1, gives `None`.
 fn known_range(formula: &Expression, setting: &FormulaContext) -> Option<(f64, f64)> {
     match &formula.kind {
         Kind::Number(literal) if literal.is_exact() => Some((literal.nearest(), literal.nearest())),
@@ -393,8 +395,8 @@ fn known_range(formula: &Expression, setting: &FormulaContext) -> Option<(f64, f
     }
 }
 
-/// Returns whether a comparison of numbers and operands is true for all values of this case, or for none. For example, `x < 4`
-/// is true if x is from 0 to 3, and is undecided if x is from 0 to 5.
+/// Returns whether a comparison of numbers and operands is true or false for all values of this case. Returns `None` if it is
+/// undecided. For example, `x < 4` is true if x is from 0 to 3, and undecided if x is from 0 to 5.
 fn decided(comparison: &Comparison, setting: &FormulaContext) -> Option<bool> {
     let left = known_range(&comparison.left, setting)?;
     let right = known_range(&comparison.right, setting)?;
@@ -407,7 +409,7 @@ fn decided(comparison: &Comparison, setting: &FormulaContext) -> Option<bool> {
     None
 }
 
-/// Makes products by repeated squaring, as the hardware computes the power. For example, x⁵ is x times (x²)².
+/// Multiplies by repeated squaring, as the hardware computes the power. For example, x⁵ is x times (x²)².
 fn power(terms: &mut RealTerms, base: RealTermId, exponent: u32) -> RealTermId {
     let mut result = None;
     let (mut square, mut rest) = (base, exponent);
@@ -494,7 +496,7 @@ mod tests {
         branches(&formula, &setting, &mut RealTerms::default()).err()
     }
 
-    /// A translation must have the value of the formula, because Gappa proves the bound of the translation.
+    /// A translation must have the formula's value, because Gappa proves the translation's bound.
     #[test]
     fn only_exact_numbers_and_natural_powers_are_translated() {
         for text in ["x ** 3", "x ** 0", "0.5 * x", "2 ** -14 * x", "3 ** 2 * x", "1e0 - x"] {

@@ -1,7 +1,7 @@
-//! Finds an error bound that Gappa can prove, for statements that ask for a bound.
+//! Finds an error bound that Gappa can prove, for statements without a bound.
 //!
-//! Gappa first answers each statement with an upper bound. A bisection then searches a smaller bound that Gappa proves, to
-//! 1/2048 output units. In this search, a proof may take at most two seconds. A smaller bound than the result may be true.
+//! Gappa first answers each statement with an upper bound. A bisection then searches a smaller bound that Gappa proves, with a
+//! precision of 1/2048 output units. The smallest true bound may be below the result.
 
 use std::fs;
 use std::time::Duration;
@@ -14,17 +14,18 @@ use super::statement::{ASKED, Statement};
 use glint_tools::transient::Directory;
 use glint_tools::{LimitReached, Tool};
 
-/// Answers are rounded up to six digits after the point.
+/// Gappa's answers are rounded up to a multiple of one millionth.
 const MILLIONTHS: f64 = 1e6;
 
-/// The precision of the search, in output units.
+/// The search's precision, in output units.
 const STEP: f64 = 1.0 / 2048.0;
 const TRY: Duration = Duration::from_secs(2);
 
-/// Returns one error bound, in output units, that Gappa proves for all statements `asked`, or a reason in words why Gappa
-/// finds none. `limit` is the time limit of Gappa's first answer to each statement.
+/// Returns one error bound, in output units, that Gappa proves for all statements `asked`. The inner error is a reason in words
+/// why Gappa finds no bound. `limit` is the time limit of Gappa's first answer to each statement.
 ///
 /// # Errors
+///
 /// Fails if Gappa cannot be run.
 pub fn bound(gappa: &Tool, asked: &[Statement], limit: Duration) -> Result<Result<f64, String>> {
     let answers = asked.par_iter().map(|one| answer(gappa, one, limit));
@@ -59,8 +60,8 @@ pub fn bound(gappa: &Tool, asked: &[Statement], limit: Duration) -> Result<Resul
     Ok(Ok(bound))
 }
 
-/// Returns the smallest bound that Gappa finds among a statement's scripts, in output units. The inner value is `None` if the
-/// statement asks for no bound, and a reason in words if Gappa finds none.
+/// Returns the smallest bound, in output units, that Gappa finds with one of the statement's scripts. The inner value is `None`
+/// if the statement asks for no bound, and a reason in words if Gappa finds none.
 fn answer(
     gappa: &Tool,
     statement: &Statement,

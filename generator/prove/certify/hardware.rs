@@ -1,8 +1,8 @@
 //! Translates the hardware's computation to real expressions with roundings for the prover Gappa, one case at a time.
 //!
 //! For example, in one case a saturation limits the value, and the result is a constant. In another case the result is a term
-//! with the value's rounding. The translation fails for bitwise logic whose result is used as a number, unless the result is
-//! constant in the case; an inversion is no such logic.
+//! with the value's rounding. The translation fails for bitwise logic with a result that is used as a number, unless the result
+//! is constant in the case. An inversion can be translated.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -27,7 +27,7 @@ pub enum NodeValue {
     },
 }
 
-/// For each variable of the script, its name and its number of fraction bits.
+/// The script's variables: the name and the number of fraction bits of each.
 pub type Variables = Vec<(String, i32)>;
 
 /// Translates the nodes of one case to terms in a Gappa script.
@@ -36,16 +36,17 @@ pub struct Hardware<'a> {
     graph: &'a Graph,
     quotients: &'a BTreeMap<NodeId, Quotient>,
     case: &'a Case,
-    /// First the operands, then other nodes that are treated as variables.
+    /// The operands, followed by other nodes that are treated as variables.
     pub variables: Variables,
     tables: &'a [String],
-    /// Known intervals of terms that belong to no node.
+    /// Known intervals of terms, for example of variables that the translation added.
     pub facts: BTreeMap<RealTermId, (f64, f64)>,
     known: HashMap<NodeId, NodeValue>,
 }
 
 impl<'a> Hardware<'a> {
-    /// `variables` are the operands, in the order of the computation, and `tables` the names of the ROMs, by index.
+    /// Makes the translation of `case`. `variables` are the operands, in the computation's order, and `tables` the names of the
+    /// ROMs, by index.
     pub fn new(
         view: UnrolledComputation<'a>,
         case: &'a Case,
@@ -61,7 +62,7 @@ impl<'a> Hardware<'a> {
         self.case.ranges[id.index()]
     }
 
-    /// Adds a variable for a node, with `scale` fraction bits and with the node's interval as a fact.
+    /// Adds the variable `variable` for a node, with `scale` fraction bits. The node's interval becomes a fact.
     fn variable(
         &mut self,
         terms: &mut RealTerms,
@@ -79,8 +80,8 @@ impl<'a> Hardware<'a> {
         NodeValue::Term { id, scale }
     }
 
-    /// Returns a word of a table as a variable. If an operand addresses the table, a formula has the same variable for the
-    /// word.
+    /// Returns a word of a table as a variable. If an operand addresses the table, the variable has the same name as in the
+    /// translated formula.
     fn read(
         &mut self,
         terms: &mut RealTerms,
@@ -97,8 +98,8 @@ impl<'a> Hardware<'a> {
         self.variable(terms, node, variable, scale)
     }
 
-    /// Returns the result of a divider, as a variable. A fact says that the real quotient is larger than the variable by at
-    /// most one unit of its last bit.
+    /// Returns a divider's result as a variable, with a fact: the real quotient exceeds the variable by at most one unit of the
+    /// variable's last bit.
     fn quotient(
         &mut self,
         terms: &mut RealTerms,
@@ -117,10 +118,10 @@ impl<'a> Hardware<'a> {
         Ok(value)
     }
 
-    /// Returns the difference a − b of two nodes as a term, and the interval of this difference, in real values. The caller
-    /// must know that a < b if `less` is true, and that a ≥ b if it is false. For example, if `less` is true and the nodes
-    /// have 4 fraction bits, the interval ends at −1/16. Returns `None` if a node is constant in this case or has no term, or
-    /// if the nodes have different numbers of fraction bits.
+    /// Returns the difference a − b of two nodes as a term, and the interval of this difference, in real values. The caller must
+    /// know that a < b (if `less`) or that a ≥ b. For example, if `less` is true and the nodes have 4 fraction bits, the interval
+    /// ends at −1/16. Returns `None` if a node is constant in this case or has no term, or if the nodes have different numbers of
+    /// fraction bits.
     pub fn compared(
         &mut self,
         terms: &mut RealTerms,
@@ -148,10 +149,11 @@ impl<'a> Hardware<'a> {
         Some((id, range))
     }
 
-    /// Returns the dividend and the divisor of a divider as terms with the same number of fraction bits.
+    /// Returns the dividend and a divider's divisor as terms with the same number of fraction bits.
     ///
     /// # Errors
-    /// Fails if one of them has no translation.
+    ///
+    /// Fails if the dividend or the divisor has no translation.
     pub fn fraction(
         &mut self,
         terms: &mut RealTerms,
@@ -167,7 +169,11 @@ impl<'a> Hardware<'a> {
         Ok((pointed(terms, dividend, scale, "dividend"), pointed(terms, divisor, scale, "divisor")))
     }
 
-    /// Fails if an operation has no translation. The error names the result of the operation.
+    /// Translates node `id` to a constant or a term.
+    ///
+    /// # Errors
+    ///
+    /// Fails if an operation has no translation. The error names the operation's result.
     pub fn value(&mut self, terms: &mut RealTerms, id: NodeId) -> Result<NodeValue, String> {
         if let Some(&value) = self.known.get(&id) {
             return Ok(value);
@@ -179,8 +185,8 @@ impl<'a> Hardware<'a> {
         Ok(value)
     }
 
-    /// Returns a node as a term even if it has only one value in this case. The term then states a fact about the node's
-    /// operands. Returns `None` if the node depends on constants alone, or if it is a slice of bits.
+    /// Returns a node as a term even if it has only one value in this case. A hypothesis about this term limits the node's
+    /// operands. Returns `None` for such a node if it is a slice or an operand, or if it has no translation.
     pub fn expression(&mut self, terms: &mut RealTerms, id: NodeId) -> Option<NodeValue> {
         let is_cut =
             matches!(self.graph.node(id).cell, Cell::Op(NodeOp::Slice { .. }) | Cell::Operand(_));
@@ -324,14 +330,14 @@ impl<'a> Hardware<'a> {
         }
     }
 
-    /// Returns y and a number of bits, if `a` + `b` is y without these bits, rounded to the nearest, halves up. One node has
-    /// the bits of y from `low` up, and the other has the bit below. With y divided by 2^low, ⌊y⌋ + (⌊2y⌋ − 2⌊y⌋) = ⌊y + 1/2⌋.
-    /// y must not be negative.
+    /// Returns y and a number of bits, if `a` + `b` is y without these bits, rounded to the nearest, halves up. One of the nodes
+    /// has the bits of y from `low` up, and the other node has the bit below. With y divided by 2^low, ⌊y⌋ + (⌊2y⌋ − 2⌊y⌋) = ⌊y +
+    /// 1/2⌋. y must not be negative.
     fn rounded(&self, a: NodeId, b: NodeId) -> Option<(NodeId, u32)> {
         self.upper_and_half(a, b).or_else(|| self.upper_and_half(b, a))
     }
 
-    /// Returns y and the position `low` if `upper` has the bits of y from `low` up, and `half` has the bit below.
+    /// Returns y and `low` if `upper` has the bits of y from position `low` up, and `half` has the bit below.
     fn upper_and_half(&self, upper: NodeId, half: NodeId) -> Option<(NodeId, u32)> {
         let (upper, half) = (unextended(self.graph, upper), unextended(self.graph, half));
         let (of, low) = sliced(self.graph, upper)?;
@@ -347,7 +353,11 @@ impl<'a> Hardware<'a> {
 }
 
 /// Returns the amount by which a format that drops bits changes a computed raw value. For example, sums from 16 to 20 in an
-/// unsigned format of 4 bits have the amount −16. Fails if the amount is not the same for the whole interval `range`.
+/// unsigned format of 4 bits have the amount −16.
+///
+/// # Errors
+///
+/// Fails if the amount is not the same for the whole interval `range`.
 fn wrap_of(node: &Node, range: Interval) -> Result<i128, String> {
     let Some(amount) = wrap(range, node.format) else {
         let ((low, high), format, name) = (range, node.format, &node.label.name);
@@ -358,7 +368,7 @@ fn wrap_of(node: &Node, range: Interval) -> Result<i128, String> {
     Ok(amount)
 }
 
-/// Returns the node that this one extends or renames, if any, or the node itself.
+/// Returns the node that node `id` extends or renames, or `id` itself.
 fn unextended(graph: &Graph, id: NodeId) -> NodeId {
     match &graph.node(id).cell {
         Cell::Op(NodeOp::Extend(of) | NodeOp::Relabel(of)) => *of,
@@ -404,7 +414,8 @@ fn raised(value: NodeValue, position: i32) -> NodeValue {
     }
 }
 
-/// `operation` is [`RealTerm::Add`] or [`RealTerm::Sub`]. The result has the larger number of fraction bits.
+/// Returns the sum or the difference of `a` and `b`, with the larger number of fraction bits. `operation` is [`RealTerm::Add`] or
+/// [`RealTerm::Sub`].
 fn add(
     terms: &mut RealTerms,
     a: NodeValue,
@@ -449,7 +460,8 @@ pub fn scaled(terms: &mut RealTerms, id: RealTermId, power: i32, name: &str) -> 
     terms.insert(RealTerm::Mul(id, factor), name)
 }
 
-/// Returns a value as a term, and its number of fraction bits. A constant gets `frac` of them: 3 with a `frac` of 2 is 0.75.
+/// Returns a value as a term, and its number of fraction bits. A constant gets `frac` fraction bits. For example, the constant 3
+/// with a `frac` of 2 is 0.75.
 pub fn placed(terms: &mut RealTerms, value: NodeValue, frac: i32) -> (RealTermId, i32) {
     match value {
         NodeValue::Constant(raw) => (terms.number(raw as f64 * exp2(-frac)), frac),

@@ -1,12 +1,10 @@
-//! Translates the error bound of a contract to statements for the prover Gappa, and runs Gappa on them. `glint certify` and
-//! `glint verify` use the module.
+//! Translates the error bound of a contract to statements for the prover Gappa, and runs Gappa on them.
 //!
 //! [`statements`] unrolls the computation of a sequential core into a graph of values, and splits it into [`cases`] at its
-//! conditions, such as a saturation. In each case, [`hardware`] writes the hardware's result as an expression with roundings,
-//! and [`exact`] writes the formula as an expression without roundings. A statement says that the two differ by at most the
-//! bound, and the cases together cover the domain of the contract. Devices that compute lines of points have statements of
-//! another form (`segments`). If the formula reads a ROM, the statements take the hardware's words as they are, and do not
-//! prove them right.
+//! conditions, such as a saturation. In each case, [`hardware`] writes the hardware's result as an expression with roundings, and
+//! [`exact`] writes the formula as an expression without roundings. A statement says that the two expressions differ by at most
+//! the bound, and the cases together cover the contract's domain. Devices that compute lines of points have statements of another
+//! form (`segments`). If the formula reads a ROM, the statements do not prove the ROM's words.
 
 pub mod cases;
 pub mod exact;
@@ -41,8 +39,8 @@ use task::Task;
 /// may saturate has one statement for each of the two cases.
 ///
 /// # Errors
-/// The error is a reason in words. Fails if an operation of the hardware or of the formula has no translation, if the contract
-/// states no bound or no formula, or if there are too many cases. Fails also if it takes longer than `limit` to write the
+/// The error is a reason in words. Fails if an operation of the hardware or of the formula has no translation, or if there are
+/// too many cases. Fails if the contract states no bound or no formula. Fails if it takes longer than `limit` to write the
 /// statements of a device that computes single points.
 pub fn statements(
     design: &Design,
@@ -57,12 +55,13 @@ pub fn statements(
     }
 }
 
-/// Returns statements without a bound: each asks Gappa for the largest difference between an output and the formula, in output
+/// Returns statements without a bound. Each asks Gappa for the largest difference between an output and the formula, in output
 /// units. [`bound`] finds the answer, and [`Statement::within`] inserts it.
 ///
 /// # Errors
-/// Fails as [`statements`] does, except that the contract needs no bound. Fails always for a device that computes a line of
-/// points.
+///
+/// Fails for the reasons of [`statements`], except that the contract needs no bound. Fails always for a device that computes a
+/// line of points.
 pub fn questions(
     design: &Design,
     contract: &dyn Contract,
@@ -124,7 +123,7 @@ fn within(
     Ok(statements.list)
 }
 
-/// Parses the formulas of f for a highlight, and otherwise one formula for each output.
+/// Returns the parsed formula of f for a highlight, and otherwise the parsed formula of each output.
 fn formulas(contract: &dyn Contract) -> Result<Vec<Expression>, String> {
     let (expressions, wanted) = match contract.highlight() {
         Some(highlight) => (highlight.expressions(), 1),
@@ -138,8 +137,8 @@ fn formulas(contract: &dyn Contract) -> Result<Vec<Expression>, String> {
             let rest: String = text.chars().skip(fault.span.bytes.start).take(40).collect();
             format!("{fault}, `{rest}`")
         })?;
-        // This check comes before the cases of the hardware, which may be many. Only the formulas of lines may have a cosine
-        // and an absolute value.
+        // This check comes before the hardware's cases, which may be many. Only the formulas of lines may have a cosine and an
+        // absolute value.
         let mut refused = None;
         formula.walk(&mut |part| match part.kind {
             Kind::Unary(Function::Negate | Function::Abs | Function::Cos, _) => {}

@@ -1,8 +1,8 @@
-//! Writes the Gappa statements of one case, for a device that computes a single point (one set of operands) after each start:
-//! each output differs from the formula by at most the bound. The premises of these statements are statements too.
+//! Writes the Gappa statements of one case, for a device that computes a single point (one set of operands) after each start. A
+//! statement says that an output differs from the formula by at most the bound.
 //!
-//! If the formula has branches, such as `max`, each combination of branches whose conditions do not contradict each other is a
-//! statement. The module `segments` does the same for devices that compute a line of points.
+//! If the formula has branches, such as `max`, each combination of branches without contradictory conditions is a statement. The
+//! module `segments` writes the statements for devices that compute a line of points.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -19,9 +19,9 @@ use glint_formula::Expression;
 use glint_rtl::pipeline::{Cell, NodeId, NodeOp};
 
 impl Task<'_> {
-    /// Returns, for each operand by name, its variable in the script, and the power of two by which the operand is divided. If
-    /// the formula always divides an operand by the same power of two, the variable is the quotient. For example, a formula
-    /// that has `exponent` only in `exponent / 8` has the variable `exponent_over_8` and the power 3.
+    /// Returns, for each operand's name, the variable in the script, and the power of two by which the variable divides the
+    /// operand. The power is above 0 if the formula always divides the operand by the same power of two. For example, a formula
+    /// that has `exponent` only in `exponent / 8` gives the variable `exponent_over_8` and the power 3.
     fn variables(&self) -> HashMap<String, (String, i32)> {
         let mut divisors = HashMap::new();
         for formula in self.formulas {
@@ -50,8 +50,8 @@ impl Task<'_> {
         words
     }
 
-    /// Adds the Gappa statements for one case: the premises, and for each output, that it differs from the formula by at most
-    /// the bound.
+    /// Adds the Gappa statements of `case`: the premises, and for each output that it differs from the formula by at most the
+    /// bound.
     pub(super) fn state(&self, case: &Case, statements: &mut Statements) -> Result<(), String> {
         let variables = self.variables();
         let mut ranges = HashMap::new();
@@ -131,8 +131,8 @@ impl Task<'_> {
         Ok(())
     }
 
-    /// Returns the interval of values of each known term. The function leaves out values that cannot be written as a term,
-    /// which is safe, because a statement with fewer hypotheses is stronger.
+    /// Returns the interval of values of each known term: the hypotheses. The function leaves out values that cannot be written
+    /// as a term.
     fn presupposed(
         &self,
         case: &Case,
@@ -178,9 +178,9 @@ fn real_operand(
     Ok(branches[0].term)
 }
 
-/// Returns every combination of one branch of each expression whose choices do not contradict each other.
+/// Returns every combination of one branch of each expression, without combinations that decide a condition differently.
 fn together(ways: &[Vec<Branch>]) -> Vec<Vec<Branch>> {
-    // The choices of all branches together, and the branch of each expression.
+    // The choices of all branches together, and each expression's branch.
     let mut combinations: Vec<(Branch, Vec<Branch>)> = vec![(Branch::default(), Vec::new())];
     for ways_of_expression in ways {
         let mut longer = Vec::new();

@@ -1,7 +1,7 @@
 //! Computes the range of polynomials of degree at most 2 in one operand, which interval arithmetic overestimates.
 //!
 //! For example, x² − 16·x for x from 0 to 16 lies between −64 and 0; interval arithmetic gives −256 to 256. Coefficients and
-//! operands are raw integers. The result is `None` for a polynomial in two operands or of a higher degree, and if numbers are
+//! operands are raw integers. A result is `None` if the polynomial would have two operands or a higher degree, or if numbers are
 //! too large.
 
 use glint_base::interval::Interval;
@@ -27,7 +27,8 @@ impl RawPolynomial {
         Self { of: Some(id), factors: [0, 1, 0] }
     }
 
-    /// Returns `None` if `self` and `other` have different operands, or if a coefficient is too large.
+    /// Returns the polynomial `factors` in the operand of `self` and `other`. Returns `None` if they have different operands, or
+    /// if a coefficient is too large.
     fn with(self, other: Self, factors: [i128; 3]) -> Option<Self> {
         let of = match (self.of, other.of) {
             (Some(a), Some(b)) if a != b => return None,
@@ -37,14 +38,14 @@ impl RawPolynomial {
         small.then_some(Self { of, factors })
     }
 
-    /// Adds `times` times the polynomial `other`. Returns `None` for different operands or too large a coefficient.
+    /// Returns `self` plus `times` times `other`. Returns `None` for different operands or too large a coefficient.
     pub fn plus(self, other: Self, times: i128) -> Option<Self> {
         let sum = |at: usize| self.factors[at] + times * other.factors[at];
         self.with(other, [sum(0), sum(1), sum(2)])
     }
 
-    /// Multiplies two polynomials in the same operand. Returns `None` if the product may have a degree above two, for
-    /// different operands, or for too large a coefficient.
+    /// Returns the product of two polynomials in the same operand. Returns `None` if its degree may be above two, for different
+    /// operands, or for too large a coefficient.
     pub fn times(self, other: Self) -> Option<Self> {
         let ([a, b, c], [d, e, f]) = (self.factors, other.factors);
         let small = |factors: [i128; 3]| factors.iter().all(|factor| factor.abs() <= 1 << 60);

@@ -1,9 +1,8 @@
-//! Writes the premises of statements about outputs as Gappa statements of their own, so that Gappa proves them too.
+//! Writes the premises of statements about outputs as separate Gappa statements, so Gappa proves each premise.
 //!
-//! A premise is a fact about an intermediate value that a statement takes for granted. One kind says that a value lies in the
-//! range of a quadratic polynomial. The other kinds are about a divider. They say that the divisor is positive, that the
-//! dividend is from 0 to the divisor, and that a step keeps these limits. A divider has no premises if the intervals of its
-//! operands imply them.
+//! A premise is a fact about an intermediate value that a statement uses as a hypothesis. One kind says that a value lies in a
+//! quadratic polynomial's range. The other kinds are about a divider: the divisor is positive, the dividend is from 0 to the
+//! divisor, and a step keeps these limits. A divider has no premises if the intervals of its operands imply them.
 
 use super::cases::{Case, UnrolledComputation};
 use super::hardware::{Hardware, NodeValue};
@@ -14,7 +13,7 @@ use super::terms::{RealTerm, RealTermId, RealTerms, number};
 use glint_base::fixed::exp2;
 use glint_rtl::pipeline::NodeId;
 
-/// A premise: a statement about an intermediate value that other statements take for granted.
+/// A premise: a statement about an intermediate value that other statements use as a hypothesis.
 pub struct Premise {
     pub about: String,
     pub script: String,
@@ -61,8 +60,8 @@ struct PremiseTask<'a> {
 }
 
 impl PremiseTask<'_> {
-    /// Writes the statement that the value of a node, a quadratic polynomial, lies from `low` to `high`, both raw. A hint
-    /// completes its square. Returns `None` if the node or the variable of the polynomial is a constant.
+    /// Writes the statement that the value of `node`, a quadratic polynomial, lies from `low` to `high`, both raw. A hint
+    /// completes the square of the polynomial. Returns `None` if the node or the polynomial's variable is a constant.
     fn parabola(
         &mut self,
         node: NodeId,
@@ -88,7 +87,7 @@ impl PremiseTask<'_> {
         Ok(Some(self.script(id, &goal, &[hint])))
     }
 
-    /// Writes the statement that the divisor is positive, and that the dividend is neither negative nor above the divisor.
+    /// Writes the statement that the divisor is positive, and that the dividend is from 0 to the divisor.
     fn dividend(&mut self, quotient: Quotient) -> Result<String, String> {
         let (dividend, divisor) = self.hardware.fraction(&mut self.terms, quotient)?;
         let rest = self.terms.insert(RealTerm::Sub(divisor, dividend), "rest");
@@ -125,9 +124,9 @@ impl PremiseTask<'_> {
     }
 }
 
-/// Writes the statement that a step of a divider leaves a remainder from 0 to the divisor. `fits` says whether the divisor
-/// fits into twice the remainder. All numbers are in multiples of the divisor. For example, a remainder of 0.75 is doubled to
-/// 1.5, and leaves 0.5.
+/// Writes the statement that a step of a divider leaves a remainder from 0 to the divisor. `fits` says whether the divisor fits
+/// into twice the remainder. All numbers are divided by the divisor. For example, a remainder of 0.75 is doubled to 1.5, and
+/// leaves 0.5.
 fn step(fits: bool) -> String {
     let (condition, left) =
         if fits { ("doubled - 1 >= 0", "doubled - 1") } else { ("doubled - 1 <= 0", "doubled") };

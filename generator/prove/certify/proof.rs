@@ -1,7 +1,7 @@
 //! Runs Gappa on a statement, and optionally lets Coq check the proof that Gappa found.
 //!
-//! If Gappa assumes a hint without a proof, the statement counts as not proved. For a proved statement, the module also
-//! searches a point at which all hypotheses hold. If it finds none, it asks Gappa whether the hypotheses contradict each other.
+//! If Gappa assumes a hint without a proof, the statement counts as not proved. For a proved statement, the module also searches
+//! a point at which all hypotheses hold. If it finds no point, it asks Gappa whether the hypotheses contradict each other.
 
 use std::fs;
 use std::time::Duration;
@@ -26,20 +26,20 @@ pub enum ProofSubject {
 
 pub enum ProofOutcome {
     /// Gappa accepted a script and, if Coq was given, Coq accepted the proof. The fields are the index of this script in
-    /// [`Statement::scripts`], and whether its hypotheses can hold.
+    /// [`Statement::scripts`], and whether the script's hypotheses can hold.
     Proved(usize, ProofSubject),
     /// The statement is not proved. The text is Gappa's or Coq's answer to the last script, or the time limit that Gappa
     /// reached.
     Open(String),
 }
 
-/// Runs Gappa on the scripts of a statement, in order, until Gappa accepts one. With `coq`, Coq must accept the proof, too.
-/// `limit` is the time limit of each run of Gappa; Coq has ten times as long.
+/// Runs Gappa on a statement's scripts, in order, until Gappa accepts one. With `coq`, Coq must also accept the proof. `limit` is
+/// the time limit of each run of Gappa; Coq has ten times as long.
 ///
 /// # Errors
-/// Fails if Gappa or Coq cannot be run or is killed, or if Gappa cannot write its proof for Coq. Fails also if Coq takes too
-/// long. If Gappa does not prove the statement within the limit, or if Coq refuses the proof, the outcome is
-/// [`ProofOutcome::Open`].
+///
+/// Fails if Gappa or Coq cannot be run or is killed, or if Gappa cannot write its proof for Coq. Fails if Coq takes too long. If
+/// Gappa does not prove the statement within the limit, or if Coq refuses the proof, the outcome is [`ProofOutcome::Open`].
 pub fn prove(
     gappa: &Tool,
     coq: Option<&Tool>,
@@ -82,7 +82,7 @@ pub fn prove(
                     proof.output
                 );
             }
-            // Gappa writes warnings between the lines of the proof.
+            // Gappa writes warnings between the proof's lines.
             let lines = proof.output.lines().filter(|line| !line.starts_with("Warning:"));
             let proof: String = lines.flat_map(|line| [line, "\n"]).collect();
             fs::write(dir.path().join("statement.v"), proof)
@@ -102,8 +102,8 @@ pub fn prove(
     Ok(ProofOutcome::Open(why))
 }
 
-/// Searches a point at which the hypotheses of an accepted script hold. If the search finds none, the function asks Gappa
-/// whether the hypotheses contradict each other.
+/// Searches a point at which the hypotheses of an accepted script hold. If the search finds no point, asks Gappa whether the
+/// hypotheses contradict each other.
 fn subject(gappa: &Tool, script: &str, limit: Duration) -> Result<ProofSubject> {
     if let Some(point) = witness::witness(script) {
         return Ok(ProofSubject::Point(point));

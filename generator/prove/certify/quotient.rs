@@ -1,16 +1,16 @@
 //! Finds restoring dividers in an unrolled computation: chains of steps that each compute one bit of a quotient.
 //!
-//! A step doubles the remainder r and subtracts the divisor d if it fits: r' = 2·r − b·d with b = (2·r ≥ d). If d is positive
-//! and 0 ≤ r ≤ d, the same holds for r'. After k steps from r₀, the bits are the number q = Σ bᵢ·2^(k−i), and the last
-//! remainder is 2^k·r₀ − q·d, between 0 and d. Therefore q·2^−k is at most r₀/d, and less than r₀/d by at most 2^−k. The
-//! module `premises` lets Gappa prove the conditions, unless the intervals of r₀ and d show them.
+//! A step doubles the remainder r and subtracts the divisor d if it fits: r' = 2·r − b·d with b = (2·r ≥ d). If d is positive and
+//! 0 ≤ r ≤ d, the same holds for r'. After k steps from r₀, the bits are the number q = Σ bᵢ·2^(k−i), and the last remainder is
+//! 2^k·r₀ − q·d, between 0 and d. Therefore q·2^−k is at most r₀/d, and less than r₀/d by at most 2^−k. The module `premises`
+//! lets Gappa prove that d is positive and 0 ≤ r₀ ≤ d, unless the intervals of r₀ and d show it.
 
 use std::collections::BTreeMap;
 
 use glint_rtl::pipeline::{Cell, Graph, NodeId, NodeOp};
 
-/// A divider, which computes a quotient bit by bit. For example, 1 by 3 in two bits is q = 1: 0.25 is below 1/3 by less than
-/// 2⁻².
+/// A divider, which computes a quotient bit by bit. For example, 1/3 in two bits is the raw value 1: 0.25 is below 1/3 by less
+/// than 2⁻².
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Quotient {
     pub dividend: NodeId,
@@ -18,7 +18,7 @@ pub struct Quotient {
     pub bits: u32,
 }
 
-/// The key of a divider is the node that concatenates the bits of its quotient.
+/// Returns the dividers on which `results` depend. A divider's key is the node that concatenates the bits of its quotient.
 pub fn quotients(graph: &Graph, results: &[NodeId]) -> BTreeMap<NodeId, Quotient> {
     let mut found = BTreeMap::new();
     let mut pending = results.to_vec();
@@ -38,7 +38,8 @@ pub fn quotients(graph: &Graph, results: &[NodeId]) -> BTreeMap<NodeId, Quotient
     found
 }
 
-/// Returns the divider whose quotient bits a node concatenates, the top bit first. It must have at least two.
+/// Returns the divider whose quotient node `id` concatenates, the top bit first. Returns `None` if `id` is no such concatenation,
+/// or if the quotient has only one bit.
 fn quotient(graph: &Graph, id: NodeId) -> Option<Quotient> {
     let Cell::Op(NodeOp::Concat(_)) = graph.node(id).cell else { return None };
     let mut bits = Vec::new();
@@ -52,7 +53,7 @@ fn quotient(graph: &Graph, id: NodeId) -> Option<Quotient> {
     follows.then_some(Quotient { dividend, divisor, bits: steps.len() as u32 })
 }
 
-/// Appends the nodes that a node concatenates, also inside another concatenation, to `parts`, the top one first.
+/// Appends the nodes that node `id` concatenates to `parts`, the top one first, including a nested concatenation's parts.
 fn joined(graph: &Graph, id: NodeId, parts: &mut Vec<NodeId>) {
     match &graph.node(id).cell {
         Cell::Op(NodeOp::Concat(inner)) => {
@@ -104,7 +105,7 @@ fn step(graph: &Graph, bit: NodeId) -> Option<DivisionStep> {
     })
 }
 
-/// Returns whether a node is the remainder that `step` leaves, and has at least as many bits as the divisor.
+/// Returns whether node `id` is the remainder that `step` leaves, with at least as many bits as the divisor.
 fn is_left(graph: &Graph, id: NodeId, step: &DivisionStep) -> bool {
     let Cell::Op(NodeOp::Slice { of, low: 0 }) = graph.node(id).cell else { return false };
     let left = NodeOp::Mux { select: step.bit, inputs: vec![step.doubled, step.trial] };

@@ -22,9 +22,9 @@ const TRIES: usize = 2_000;
 /// The parts that all Gappa scripts of one case have in common.
 pub struct GappaScript<'a> {
     pub terms: &'a RealTerms,
-    /// The number of terms that belong to the hardware. They come before the terms of the formula.
+    /// The number of terms that belong to the hardware. They come before the formula's terms.
     pub hardware_terms: usize,
-    /// The variables of the script, with their numbers of fraction bits.
+    /// The script's variables, with their numbers of fraction bits.
     pub placed: &'a Variables,
     /// The intervals of terms that the script takes as hypotheses.
     pub presupposed: &'a BTreeMap<RealTermId, (f64, f64)>,
@@ -33,8 +33,8 @@ pub struct GappaScript<'a> {
 }
 
 impl GappaScript<'_> {
-    /// Returns the script for one output: `out` and the formula `f` times `factor` differ by at most `bound`, in output units.
-    /// Without a bound, the script asks Gappa for it.
+    /// Returns the script for one output: `out` and the formula `f` times `factor` differ by at most `bound`, in output units. If
+    /// `bound` is `None`, the script asks Gappa for the bound.
     pub fn text(
         &self,
         out: RealTermId,
@@ -49,7 +49,8 @@ impl GappaScript<'_> {
         self.statement(terms, difference, &goal, &[])
     }
 
-    /// Returns the script that states `goal` about the term `about`. `hints` are lines before the hints that the module finds.
+    /// Returns the script that states `goal` about the term `about`. `hints` are lines in front of the hints that the module
+    /// finds.
     pub fn statement(
         &self,
         mut terms: RealTerms,
@@ -80,8 +81,8 @@ impl GappaScript<'_> {
         text
     }
 
-    /// Returns the formats of variables, the intervals of terms, and the signs of differences. Terms that are not `needed` are
-    /// left out. For example, `@FIX(x,-4)`, `x in [0,1]` and `exact_9 >= 0`.
+    /// Returns the hypotheses about terms that are `needed`: formats of variables, intervals of terms, and signs of differences.
+    /// Examples are `@FIX(x,-4)`, `x in [0,1]` and `exact_9 >= 0`.
     fn hypotheses(&self, terms: &RealTerms, needed: &[bool]) -> Vec<String> {
         let mut hypotheses = Vec::new();
         for (name, scale) in self.placed {
@@ -112,11 +113,11 @@ impl GappaScript<'_> {
         hypotheses
     }
 
-    /// Returns a list of equalities, and a list of pairs of terms that are near each other. There are four kinds. A sum a + (1
-    /// − a)·x gets a form that shows its range (`blend`). A term of the formula may be a factor times a term of the hardware,
-    /// plus an offset. Or it equals a term of the hardware without its roundings; these terms are added to `roots`. Or it is
-    /// near a term of the hardware with roundings. The comparison of samples finds the last three kinds, and Gappa proves each
-    /// hint that it uses.
+    /// Returns hints of four kinds: first a list of equalities, then a list of pairs of terms that are near each other. A sum a +
+    /// (1 − a)·x gets a form that shows its range (`blend`). A term of the formula may be a factor times a term of the hardware,
+    /// plus an offset. It may equal a term of the hardware without its roundings; such terms are added to `roots`. It may be near
+    /// a term of the hardware with roundings. The comparison of samples finds the last three kinds, and Gappa proves each hint
+    /// that it uses.
     fn hints(
         &self,
         terms: &mut RealTerms,
@@ -176,8 +177,8 @@ impl GappaScript<'_> {
         (equal, near)
     }
 
-    /// Returns the values of all terms at random points. Up to 24 points are of this case, and then up to 24 are other points
-    /// of the domain.
+    /// Returns the values of all terms at random points: up to 24 points of this case, and then up to 24 other points of the
+    /// domain.
     fn samples(&self, terms: &RealTerms) -> Vec<Vec<f64>> {
         let mut random = ChaCha8Rng::seed_from_u64(1);
         let (mut samples, mut others) = (Vec::new(), Vec::new());
@@ -217,7 +218,7 @@ impl GappaScript<'_> {
         variables
     }
 
-    /// Returns whether these values of all terms satisfy the conditions of the formula's branches and the presupposed
+    /// Returns whether `values`, the values of all terms, satisfy the conditions of the formula's branches and the presupposed
     /// intervals.
     fn is_of_case(&self, values: &[f64]) -> bool {
         for way in self.ways {
@@ -251,8 +252,8 @@ fn varies(values: &[f64]) -> bool {
     values.iter().any(|value| *value != values[0])
 }
 
-/// Writes the hint that a + (1 − a)·x is 1 − (1 − a)·(1 − x). This form shows that the value is between a and 1. For example,
-/// `f_9 -> 1 - rest_4 * (1 - x);`.
+/// Writes the hint that a + (1 − a)·x is 1 − (1 − a)·(1 − x), which shows that the value is between a and 1. For example, `f_9 ->
+/// 1 - rest_4 * (1 - x);`.
 fn blend(terms: &RealTerms, id: RealTermId) -> Option<String> {
     let RealTerm::Add(first, second) = *terms.get(id) else { return None };
     let (product, a) = match terms.get(first) {
@@ -299,7 +300,7 @@ fn largest_size(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |most, value| most.max(value.abs()))
 }
 
-/// Accepts differences up to 1/64 of the largest absolute value in `x`.
+/// Returns whether `x` and `y` differ by at most 1/64 of the largest absolute value in `x`.
 fn is_near(x: &[f64], y: &[f64]) -> bool {
     let limit = largest_size(x) / 64.0;
     let mut apart: f64 = 0.0;
@@ -309,14 +310,15 @@ fn is_near(x: &[f64], y: &[f64]) -> bool {
     apart <= limit
 }
 
-/// Accepts differences by the rounding of f64.
+/// Returns whether `x` and `y` differ only by the rounding of f64.
 fn is_same(x: &[f64], y: &[f64]) -> bool {
     let limit = largest_size(y) * exp2(-44);
     x.iter().zip(y).all(|(x, y)| (x - y).abs() <= limit)
 }
 
-/// Returns the factor and the offset with which `y` is a linear function of `x`, rounded to 16 and 44 fraction bits. For
-/// example, 0, 1, 2 and 1, 3, 5 give the factor 2 and the offset 1. The factor must not be 0.
+/// Returns a factor and an offset, rounded to 16 and 44 fraction bits, so `y` is the factor times `x` plus the offset. For
+/// example, 0, 1, 2 and 1, 3, 5 give the factor 2 and the offset 1. Returns `None` if `y` is not linear in `x`, or if the factor
+/// is 0.
 fn line_through(x: &[f64], y: &[f64]) -> Option<(f64, f64)> {
     let other = x.iter().position(|value| *value != x[0])?;
     let factor = rounded((y[other] - y[0]) / (x[other] - x[0]), 16);
@@ -338,8 +340,8 @@ fn rounded(value: f64, bits: i32) -> f64 {
     libm::round(value * exp2(bits)) / exp2(bits)
 }
 
-/// Returns the goal that the difference is within the bound, for example `|difference_7| <= 0.5`, or the question for the
-/// bound, `|difference_7| in ?`.
+/// Returns the goal that the difference is within `bound`, for example `|difference_7| <= 0.5`. If `bound` is `None`, returns the
+/// question for the bound: `|difference_7| in ?`.
 pub fn goal(difference: &str, bound: Option<f64>) -> String {
     match bound {
         Some(bound) => format!("|{difference}| <= {}", number(bound)),
@@ -347,7 +349,7 @@ pub fn goal(difference: &str, bound: Option<f64>) -> String {
     }
 }
 
-/// Replaces the names of a script by `n0`, `n1`, … in the order of their first use. Scripts which state the same become equal.
+/// Replaces the names of a script by `n0`, `n1`, … in the order of their first use, so scripts that state the same become equal.
 /// For example, `sum_2 = 0.5 + x;` becomes `n0 = 0.5 + n1;`.
 pub fn nameless(script: &str) -> String {
     let mut numbers: HashMap<&str, usize> = HashMap::new();

@@ -4,9 +4,9 @@
 //! A ROM word serves all angles of a segment. The contract follows from two kinds of statements:
 //!
 //! - For each word w, whose segment goes from angle a to angle b (in right angles, 0 ≤ a ≤ b ≤ 1): f(a) ≤ w + E and f(b) ≥ w − E,
-//!   with the bound E of f. As cos falls from 0 to π, f is between f(b) and f(a) at every angle of the segment.
-//! - For each output: if a word w and a real f differ by at most that bound, then the output differs from f times the colour by at
-//!   most the contract's bound.
+//!   with the bound E of f. Because cos falls from 0 to π, f is between f(b) and f(a) at every angle of the segment.
+//! - For each output: if a word w and a real f differ by at most E, then the output differs from f times the colour by at most
+//!   the contract's bound.
 //!
 //! Gappa has no cosine, so the script uses Taylor's formula cos y = 1 − y²/2! + y⁴/4! − … ± y²ᵐ/(2m)! + ρ·y²ᵐ⁺²/(2m+2)! with
 //! |ρ| ≤ 1, which holds for every real y. Gappa proves the statement for every ρ from −1 to 1, and for every number within
@@ -30,7 +30,7 @@ use glint_base::fixed::exp2;
 use glint_formula::{Enclosure, Expression, Function, Kind, Operator, parse};
 use glint_rtl::pipeline::{Cell, Graph, NodeId, NodeOp, WalkRegister};
 
-/// Gappa's time grows with the square of this number.
+/// The number of words in one statement. Gappa's time grows with its square.
 const WORDS: usize = 8;
 
 /// The number m in Taylor's formula: the polynomial for the cosine ends with the term in y²ᵐ. At a right angle, the remainder
@@ -40,26 +40,25 @@ const TERMS: u32 = 10;
 /// Two numbers between which π/2 lies.
 const RIGHT: (&str, &str) = ("1.57079632679489661923", "1.57079632679489661924");
 
-/// The number of fraction bits to which the statements round the bound of f down. The rounded bound is a short number, so that
-/// its sum with a word is exact in f64.
+/// The number of fraction bits to which the statements round the bound of f down.
 const PLACES: i32 = 42;
 
-/// The name of the angle of a point in a formula. The angle is no operand, because the operand has only the angle of the first
-/// point.
+/// The name of the angle of a point in a formula. The angle is no operand, because the operand has only the first point's angle.
 const POINT: &str = "angle of the point";
 
-/// A word of the table, and the interval of the angles that read it, in right angles.
+/// A word of the table, and the interval of the angles for which the device reads the word, in right angles.
 struct WordSegment {
     value: f64,
     from: f64,
     to: f64,
 }
 
-/// `walk` are the registers that change from point to point, such as the angle.
+/// Returns the statements for `task`. `walk` are the registers that change from point to point, such as the angle.
 ///
 /// # Errors
-/// Fails if the task has no bound, or if the contract is no highlight. Fails also if the formula or the netlist does not have
-/// the expected form: a table with a power of a cosine, whose address is an angle that grows from point to point.
+///
+/// Fails if the task has no bound, or if the contract is no highlight. Fails if the formula or the netlist lacks the expected
+/// form: a table with a power of a cosine, with an angle that grows from point to point as the address.
 pub fn statements(task: &Task, walk: &[WalkRegister]) -> Result<Vec<Statement>, String> {
     let bound = task
         .bound
@@ -91,7 +90,7 @@ pub fn statements(task: &Task, walk: &[WalkRegister]) -> Result<Vec<Statement>, 
     Ok(statements.list)
 }
 
-/// Returns x and k if a formula has the form cos(pi / 2 · x)ᵏ. For example, `cos(pi / 2 * x) ** 16` gives x and 16.
+/// Returns x and k if `formula` is cos(pi / 2 · x)ᵏ. For example, `cos(pi / 2 * x) ** 16` gives x and 16.
 fn lobe(formula: &Expression) -> Option<(&Expression, u32)> {
     let Kind::Binary(Operator::Power, base, exponent) = &formula.kind else { return None };
     let Kind::Unary(Function::Cos, angle) = &base.kind else { return None };
@@ -105,18 +104,22 @@ fn lobe(formula: &Expression) -> Option<(&Expression, u32)> {
     Some((angle, power as u32))
 }
 
-/// The angle along a line of points, in the names of operands.
+/// The angle along a line of points, as a formula of operands.
 struct AngleWalk {
-    /// The operand with the angle of the first point.
+    /// The operand with the first point's angle.
     start: String,
-    /// The formula of the angle at any point, wrapped around in its format. For a signed format of four right angles, for
-    /// example, it is `(a + index * d + 2) % 4 - 2`.
+    /// The angle's formula at point number `index`, wrapped to its format. For a signed format of four right angles, it is `(a +
+    /// index * d + 2) % 4 - 2`.
     wrapped: Expression,
 }
 
 impl AngleWalk {
-    /// The angle must be the only register that changes from point to point. It must begin with one operand, and another
-    /// operand must be added to it modulo its format.
+    /// Derives the angle from the register that changes from point to point.
+    ///
+    /// # Errors
+    ///
+    /// Fails unless the angle is the only such register, begins with one operand, and grows by a second operand modulo its
+    /// format.
     fn new(task: &Task, walk: &[WalkRegister]) -> Result<Self, String> {
         let graph = task.graph();
         let is_more_than_a_sum =
@@ -142,8 +145,8 @@ impl AngleWalk {
         Ok(Self { start: start.to_owned(), wrapped })
     }
 
-    /// Puts the name [`POINT`] in place of the angle of a point, which is start + index·step, wrapped around. By induction,
-    /// the register of the angle has this value.
+    /// Replaces the angle of a point in `formula`, start + index·step, wrapped around, by the name [`POINT`]. By induction, the
+    /// angle's register has this value.
     fn angle(&self, formula: &Expression) -> Expression {
         formula.substitute(&self.wrapped, &Expression::operand(POINT), &formula.span)
     }
@@ -160,7 +163,11 @@ fn operand_name<'t>(task: &'t Task, id: NodeId) -> Option<&'t str> {
 /// their nodes.
 type ProductsByColour = (Vec<String>, NodeId, Vec<(String, NodeId)>);
 
-/// Finds the one table word on which all outputs depend. They may depend only on this word and on colours.
+/// Returns the table word on which all outputs depend, with the colours and the outputs.
+///
+/// # Errors
+///
+/// Fails if the outputs depend on several words, or on anything besides the word and colours.
 fn table(task: &Task) -> Result<ProductsByColour, String> {
     let graph = task.graph();
     let outputs = task.outputs()?;
@@ -208,8 +215,12 @@ fn is_open(graph: &Graph, id: NodeId) -> bool {
     low != high
 }
 
-/// Returns the words that are read, in the order of their addresses, each with the interval of the angles that read it, in
-/// right angles. Fails if the address depends on anything but the angle, or if an angle leaves the range from 0 to 1.
+/// Returns the words that the device reads, in the order of their addresses. Each has the interval of its angles, in right
+/// angles.
+///
+/// # Errors
+///
+/// Fails if the address depends on anything but the angle, or if an angle leaves the range from 0 to 1.
 fn words(
     task: &Task,
     table: NodeId,
@@ -270,9 +281,9 @@ fn words(
     Ok(found.into_values().collect())
 }
 
-/// Returns the value of the node `address` if it is the same for every value of `operand` in `range`. The intervals of the
-/// nodes must show this. Otherwise a caller can try each half of the range. For example, the address may be the top 8 bits of
-/// the operand; it is known if these bits are equal in the whole range.
+/// Returns the value of the node `address` if the intervals of the nodes show that it is the same for every value of `operand` in
+/// `range`. With `None`, a caller can try each half of the range. For example, the address may be the top 8 bits of the operand;
+/// it is known if these bits are equal in the whole range.
 fn decided_address(
     task: &Task,
     (operand, range): (NodeId, (i128, i128)),
@@ -286,14 +297,14 @@ fn decided_address(
     if low == high { Some(low) } else { None }
 }
 
-/// Returns an interval, in right angles, of the formula's angle if the angle of the point is from `low` to `high`. Returns
-/// `None` if the formula's angle depends on anything else, or may have no value there.
+/// Returns an interval, in right angles, of the formula's angle if the point's angle is from `low` to `high`. Returns `None` if
+/// the formula's angle depends on anything else, or may have no value there.
 fn enclosed(angle: &Expression, (low, high): (f64, f64)) -> Option<Enclosure> {
     angle.enclose(&[(POINT, Enclosure::between(low, high))]).ok()
 }
 
-/// Writes the statement that the formula is within `bound` of each word at both ends of the word's segment. `first` is the
-/// index of the first word, and `power` the exponent of the cosine.
+/// Writes the statement that the formula is within `bound` of each word at both ends of the word's segment. `first` is the first
+/// word's index, and `power` the cosine's exponent.
 fn about_words(words: &[WordSegment], first: usize, power: u32, bound: f64) -> String {
     let degree = 2 * TERMS + 2;
     let mut text = format!(
@@ -329,8 +340,8 @@ fn about_words(words: &[WordSegment], first: usize, power: u32, bound: f64) -> S
     text
 }
 
-/// Writes the definitions of a power of the cosine of an angle, in right angles. For example, the last line for the name `x`
-/// and the power 2 is `f_x = c_x_0 * c_x_0;`.
+/// Writes the definitions of a power of an angle's cosine, in right angles. For example, the last line for the name `x` and the
+/// power 2 is `f_x = c_x_0 * c_x_0;`.
 fn cosine(name: &str, angle: f64, power: u32) -> String {
     let mut text =
         format!("y_{name} = right * {};\nsquare_{name} = y_{name} * y_{name};\n", number(angle));
@@ -422,7 +433,7 @@ mod tests {
         assert_eq!(range(folded, (-0.5, -0.25)), Some((0.25, 0.5)));
         assert_eq!(range(folded, (-0.5, 0.25)), Some((0.0, 0.5)));
         assert_eq!(range(folded, (-3.0, -0.75)), Some((0.75, 1.0)));
-        // These formulas have the angle of the first point, another turn, no wrapping, and another step.
+        // These formulas have the first point's angle, another turn, no wrapping, and another step.
         for other in [
             "min(abs(a), 1)",
             "min(abs(((a + index * d + 4) % 8 - 4)), 1)",

@@ -11,21 +11,21 @@ use super::terms::number;
 /// The end of a script's goal that asks for a bound.
 pub(super) const ASKED: &str = "| in ? }";
 
-/// A statement for Gappa: for example, an output differs from the formula by at most the error bound.
+/// A statement for Gappa. For example, an output differs from the formula by at most the error bound.
 #[derive(Clone, Debug)]
 pub struct Statement {
     /// The output, or the intermediate value, that the statement is about.
     pub output: String,
     pub number: usize,
-    /// The other outputs whose statements are the same except for names.
+    /// The outputs with a statement that differs from this one only in names.
     pub also: Vec<String>,
-    /// Gappa must accept one of these scripts. There are two if the formula jumps, because on each side of the jump another
-    /// value is right.
+    /// Gappa must accept one of these scripts. A formula that jumps has two scripts, one for the right value on each side of the
+    /// jump.
     pub scripts: Vec<String>,
 }
 
 impl Statement {
-    /// Puts a bound in place of the question for it. For example, `|difference_7| in ? }` becomes `|difference_7| <= 0.5 }`.
+    /// Replaces the question for a bound by `bound`. For example, `|difference_7| in ? }` becomes `|difference_7| <= 0.5 }`.
     #[must_use]
     pub fn within(&self, bound: f64) -> Self {
         let stated = format!("| <= {} }}", number(bound));
@@ -38,12 +38,13 @@ impl Statement {
 #[derive(Default)]
 pub(super) struct Statements {
     pub(super) list: Vec<Statement>,
-    /// The index of each statement, by its scripts with all names replaced.
+    /// The index of each statement in `list`. The key is the statement's scripts with all names replaced.
     known: HashMap<Vec<String>, usize>,
 }
 
 impl Statements {
-    /// Adds a statement about an output, or adds the output to a statement that is the same except for names.
+    /// Adds a statement about `output`. If a statement with the same scripts except for names exists, adds `output` to it
+    /// instead.
     pub(super) fn push(&mut self, output: &str, scripts: Vec<String>) {
         let nameless = scripts.iter().map(|script| script::nameless(script)).collect();
         if let Some(&at) = self.known.get(&nameless) {

@@ -1,6 +1,6 @@
 //! Defines the subject of a proof by Gappa, which the modules that write statements share.
 //!
-//! The module also splits the domain of the contract into parts, at operands that are exponents of the formula or that address
+//! The module also splits the domain of the contract into parts, at operands that are exponents in the formula or addresses of
 //! ROMs. For example, `x ** exponent` becomes one part for each exponent.
 
 use super::cases::{self, NodeIntervals, UnrolledComputation};
@@ -12,8 +12,8 @@ use glint_rtl::pipeline::{Cell, Graph, NodeId, Unrolled};
 /// An operand with more values than this number is not split.
 const SPLIT: i64 = 1024;
 
-/// The largest number of runs of equal words for which the domain is always split at a single table. For example, the words 5,
-/// 5, 7 are two runs.
+/// A single table with at most this number of runs of equal words always splits the domain. For example, the words 5, 5, 7 are
+/// two runs.
 const RUNS: usize = 16;
 
 /// The subject of a proof by Gappa: a design, its contract with the error bound, and the unrolled computation as a graph.
@@ -25,7 +25,7 @@ pub(super) struct Task<'a> {
     pub(super) unrolled: &'a Unrolled,
     pub(super) view: UnrolledComputation<'a>,
     pub(super) tables: &'a [String],
-    /// For a highlight the formulas of f, otherwise one for each output.
+    /// The formula of f for a highlight, otherwise one formula for each output.
     pub(super) formulas: &'a [Expression],
 }
 
@@ -34,8 +34,8 @@ impl Task<'_> {
         &self.unrolled.graph
     }
 
-    /// Narrows the interval of a node to `range` in `known`, as [`cases::learn`] does, from the intervals of the graph.
-    /// Returns false if no value is left.
+    /// Narrows the interval of `node` in `known` to `range` by [`cases::learn`], from the graph's intervals. Returns false if no
+    /// value is left.
     pub(super) fn learn(
         &self,
         known: &mut NodeIntervals,
@@ -46,7 +46,7 @@ impl Task<'_> {
         cases::learn(self.graph(), known, &ranges, node, range)
     }
 
-    /// Returns `None` if no result depends on the operand.
+    /// Returns the node of the operand `name`, or `None` if no result depends on it.
     pub(super) fn operand(&self, name: &str) -> Option<NodeId> {
         let mut ports = self.unrolled.operands.iter();
         let at = ports.position(|&port| self.design.net(port).name == name)?;
@@ -55,7 +55,7 @@ impl Task<'_> {
         Some(NodeId(id as u32))
     }
 
-    /// Returns the intervals of raw values in the contract's domain, which must be in the operands' formats.
+    /// Returns the intervals of raw values in the contract's domain. Fails if an interval exceeds the format of its operand.
     pub(super) fn domain(&self) -> Result<NodeIntervals, String> {
         let mut known = NodeIntervals::new();
         for operand in self.contract.operands() {
@@ -82,9 +82,9 @@ impl Task<'_> {
         Ok(outputs)
     }
 
-    /// Splits the domain `known`. An operand that is an exponent makes a part for each of its values. An operand that
-    /// addresses tables makes a part for each run of values with the same words. A single table with more than 16 runs that
-    /// the formula reads too is not split, because its word can be a variable.
+    /// Splits the domain `known`. An operand that is an exponent makes a part for each of its values. An operand that addresses
+    /// tables makes a part for each run of values with the same words. There is one exception: a single table with more than 16
+    /// runs is not split if the formula also reads it, because its word can be a variable.
     pub(super) fn split(&self, known: &NodeIntervals) -> Vec<NodeIntervals> {
         let mut split = vec![known.clone()];
         for operand in self.contract.operands() {

@@ -1,5 +1,5 @@
-//! Stores expressions over the real numbers, of a formula and of the hardware, and writes them in the syntax of Gappa. The
-//! module can also evaluate them in f64.
+//! Stores expressions over the real numbers, of a formula and of the hardware. The module writes them in the syntax of Gappa, and
+//! evaluates them in f64.
 
 use std::collections::HashMap;
 use std::fmt::Write as _;
@@ -12,11 +12,11 @@ pub type RealTermId = usize;
 pub enum RoundingDirection {
     /// Hardware that drops bits rounds down.
     Down,
-    /// Rounds to the nearest, halves away from 0. Only values that are not negative are rounded in this way, so halves go up.
+    /// Rounds to the nearest, halves away from 0. Only values that are not negative are rounded to the nearest, so halves go up.
     Nearest,
 }
 
-/// An expression over the real numbers for a Gappa script, whose operands are other such terms.
+/// An expression over the real numbers for a Gappa script. Its operands are terms.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RealTerm {
     Variable(String),
@@ -38,17 +38,17 @@ pub enum RealTerm {
 #[derive(Clone, Debug, Default)]
 pub struct RealTerms {
     terms: Vec<(RealTerm, String)>,
-    /// The variables of each term, and its degree in them.
+    /// Each term's variables, and its degree in them.
     shapes: Vec<(Vec<RealTermId>, u32)>,
     known: HashMap<String, RealTermId>,
 }
 
 impl RealTerms {
-    /// Adds a term, if it is new. `name` becomes the name of its definition in a script, followed by the number: for example,
-    /// term 2 with the name `sum` is `sum_2`.
+    /// Adds `term`, if it is new, and returns its number. The name of its definition in a script is `name` and the number: term 2
+    /// with the name `sum` is `sum_2`.
     ///
-    /// The operands of sums and products are sorted, so that hardware and formula have them in the same order. Gappa compares
-    /// two products factor by factor.
+    /// The operands of sums and products are sorted, so hardware and formula have them in the same order. Gappa compares two
+    /// products factor by factor.
     pub fn insert(&mut self, term: RealTerm, name: &str) -> RealTermId {
         let term = match term {
             RealTerm::Add(a, b) if self.is_after(a, b) => RealTerm::Add(b, a),
@@ -134,7 +134,7 @@ impl RealTerms {
         }
     }
 
-    /// A variable without a value, and every term that depends on it, is NaN.
+    /// Returns the values of all terms. A variable without a value is NaN, and so is every term that depends on it.
     pub fn evaluate(&self, variables: &HashMap<String, f64>) -> Vec<f64> {
         let mut values: Vec<f64> = Vec::with_capacity(self.terms.len());
         for (term, _) in &self.terms {
@@ -159,12 +159,12 @@ impl RealTerms {
         values
     }
 
-    /// Returns for each term whether one of `roots` is it or depends on it.
+    /// Returns for each term whether it is one of `roots`, or one of `roots` depends on it.
     pub fn needed(&self, roots: &[RealTermId]) -> Vec<bool> {
         cone::needed(self.terms.len(), roots.iter().copied(), |id| self.operands(id))
     }
 
-    /// Adds the same expression without its roundings, if it is new. `known` caches the results of earlier calls.
+    /// Adds the expression `id` without its roundings, if it is new. `known` caches the results of earlier calls.
     pub fn unrounded(
         &mut self,
         id: RealTermId,
@@ -233,7 +233,7 @@ impl RealTerms {
     }
 }
 
-/// Writes all digits and no exponent. For example, 2⁻²⁰ is `0.00000095367431640625`.
+/// Writes `value` with all digits and no exponent. For example, 2⁻²⁰ is `0.00000095367431640625`.
 pub fn number(value: f64) -> String {
     let text = format!("{value:.1100}");
     let text = text.trim_end_matches('0').trim_end_matches('.');

@@ -1,8 +1,8 @@
 //! Finds a point at which all hypotheses of a Gappa script hold.
 //!
-//! Such a point shows that the statement is not vacuous: hypotheses that contradict each other would prove anything. The
-//! search begins at 64 random points, and moves each step by step while the violation becomes smaller. It computes in f64,
-//! with rounding errors. If it finds no point, the hypotheses may still be satisfiable.
+//! Such a point shows that the statement is not vacuous: hypotheses that contradict each other would prove anything. The search
+//! begins at 64 random points, and moves each step by step while the violation becomes smaller. If it finds no point, a point may
+//! exist nevertheless.
 
 use std::collections::HashMap;
 
@@ -16,7 +16,7 @@ use glint_formula::{Expression, Function, Kind, Operator, parse};
 /// The number of random points from which a search begins.
 const STARTS: usize = 64;
 
-/// The number of fraction bits of a variable for which the script states none.
+/// The number of fraction bits of a variable without a format in the script.
 const CONTINUOUS: i32 = 20;
 
 /// The largest absolute value that is tried for a variable without an interval.
@@ -25,7 +25,7 @@ const FREE: f64 = 1024.0;
 /// A goal that is never true. Gappa proves it only if the hypotheses contradict each other.
 const NEVER: &str = "1 in [2,3] }";
 
-/// The text between hypotheses and goal.
+/// The text between the hypotheses and the goal.
 const IMPLIES: &str = "\n  -> ";
 
 /// Returns the script with a goal that Gappa can prove only if the hypotheses contradict each other. For example, the goal
@@ -36,7 +36,7 @@ pub fn contradiction(script: &str) -> Option<String> {
     Some(format!("{hypotheses}{IMPLIES}{NEVER}{hints}"))
 }
 
-/// The values of a variable are `unit` times the integers from `low` to `high`.
+/// A variable. Its values are `unit` times the integers from `low` to `high`.
 struct Variable {
     name: String,
     unit: f64,
@@ -52,7 +52,7 @@ struct Hypotheses {
 }
 
 impl Hypotheses {
-    /// Returns `None` if a part of the text has an unknown form.
+    /// Parses the hypotheses of `script`. Returns `None` if a part of the text has an unknown form.
     fn of(script: &str) -> Option<Self> {
         let (definitions, statement) = script.split_once("\n{ ")?;
         let mut terms = RealTerms::default();
@@ -100,7 +100,7 @@ impl Hypotheses {
         Some(Self { variables: variables.collect(), terms, intervals })
     }
 
-    /// Measures how far the hypotheses are from holding at a point: 0 if all hold, and infinity if a term is not a number.
+    /// Returns how far the hypotheses are from holding at `point`: 0 if all hold, and infinity if a term is not a number.
     fn violation(&self, point: &[i64]) -> f64 {
         let variables = self.variables.iter().zip(point);
         let variables = variables.map(|(it, &raw)| (it.name.clone(), raw as f64 * it.unit));
@@ -116,7 +116,7 @@ impl Hypotheses {
         self.intervals.iter().map(away).sum()
     }
 
-    /// Moves a point step by step while the violation becomes smaller. Returns whether all hypotheses hold at the end.
+    /// Moves `point` step by step while the violation becomes smaller. Returns whether all hypotheses hold at the end.
     fn descend(&self, point: &mut [i64]) -> bool {
         let mut away = self.violation(point);
         while away > 0.0 {
@@ -172,8 +172,7 @@ pub fn witness(script: &str) -> Option<String> {
     None
 }
 
-/// Parses an expression into `terms`. A name has its term in `names`, or else becomes a new variable. Returns `None` for an
-/// unknown form.
+/// Parses `text` into `terms`. A name is the term in `names`, or else a new variable. Returns `None` for an unknown form.
 fn expression(
     text: &str,
     terms: &mut RealTerms,

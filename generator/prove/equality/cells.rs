@@ -1,7 +1,7 @@
 //! Computes the results of Yosys's cells on symbolic terms instead of numbers, as Yosys documents the cells.
 //!
-//! For example, a `$add` cell with the terms a and b has the result a + b. The module knows the cells that occur in the
-//! emitted Verilog, and fails for any other. Only multiplexers, reductions and logical operations may have more than 64 bits.
+//! For example, a `$add` cell with the terms a and b has the result a + b. The module knows the cells that occur in the emitted
+//! Verilog, and fails for other cells. Only multiplexers, reductions and logical operations may have more than 64 bits.
 
 use anyhow::{Context, Result, bail, ensure};
 
@@ -22,12 +22,12 @@ pub type Connection = Vec<Bit>;
 pub struct WireValues(Vec<Option<(VectorTermId, u32)>>);
 
 impl WireValues {
-    /// No wire has a value yet: a caller must set the inputs and registers.
+    /// Makes a table of `wires` wires without values: a caller must set the inputs and registers.
     pub fn new(wires: usize) -> Self {
         Self(vec![None; wires])
     }
 
-    /// Sets some wires to the bits of the terms `columns`, the lowest first. Each term except the last has 64 bits.
+    /// Sets the wires `bits` to the bits of the terms `columns`, the lowest first. Each term except the last has 64 bits.
     pub fn set(&mut self, bits: &Connection, columns: &[VectorTermId]) {
         for (at, bit) in bits.iter().enumerate() {
             if let Bit::Wire(wire) = *bit {
@@ -37,7 +37,7 @@ impl WireValues {
         }
     }
 
-    /// Returns some wires as terms of at most 64 bits each, the lowest bits first.
+    /// Returns the wires `bits` as terms of at most 64 bits each, the lowest bits first.
     pub fn columns(&self, terms: &mut VectorTerms, bits: &Connection) -> Vec<VectorTermId> {
         let mut columns = Vec::new();
         for column in bits.chunks(MAX_WIDTH as usize) {
@@ -46,8 +46,8 @@ impl WireValues {
         columns
     }
 
-    /// Returns at most 64 bits as one term. Copies of the highest bit become a sign extension. The wires 6, 7, 7, 7, lowest
-    /// first, are the bits 6 and 7 with the sign extended to four bits.
+    /// Returns at most 64 bits as one term. Copies of the highest bit become a sign extension. For example, the wires 6, 7, 7, 7,
+    /// lowest first, are the bits 6 and 7 with the sign extended to four bits.
     pub fn word(&self, terms: &mut VectorTerms, bits: &[Bit]) -> VectorTermId {
         let copies = bits.iter().rev().take_while(|bit| Some(*bit) == bits.last()).count();
         if copies > 1 && matches!(bits.last(), Some(Bit::Wire(_))) {
@@ -95,7 +95,8 @@ impl WireValues {
         (id, width as usize)
     }
 
-    /// Returns the term that contains a bit, and the bit's position there, unless the bit is a constant or unknown.
+    /// Returns the term that contains `bit`, and the bit's position in this term. Returns `None` if the bit is a constant or
+    /// unknown.
     fn source(&self, bit: Bit) -> Option<(VectorTermId, u32)> {
         match bit {
             Bit::Wire(wire) => self.0[wire],
@@ -103,8 +104,8 @@ impl WireValues {
         }
     }
 
-    /// Returns a word of a memory that the module never writes. `at` is the address, and `words` are the contents. A read
-    /// beyond them gives an unknown word.
+    /// Returns a word of a memory that the module never writes. `at` is the address, and `words` are the contents. An address
+    /// beyond the contents gives an unknown word.
     pub fn rom(
         &self,
         terms: &mut VectorTerms,
@@ -129,8 +130,8 @@ impl WireValues {
     /// whether A and B are signed. The result has `width` bits, as terms of at most 64 bits, the lowest first.
     ///
     /// # Errors
-    /// Fails if the kind is unknown, or if an input of a reduction or a logical operation such as `$logic_and` has no bits.
-    /// Fails also if another cell than `$mux`, `$pmux`, a reduction or a logical operation has more than 64 bits.
+    /// Fails if the kind is unknown, or if an input of a reduction or a logical operation such as `$logic_and` has no bits. Fails
+    /// if a cell has more than 64 bits, except `$mux`, `$pmux`, a reduction and a logical operation.
     pub fn cell(
         &self,
         terms: &mut VectorTerms,
@@ -228,8 +229,8 @@ impl WireValues {
         Ok(vec![terms.resized(bit, width as u32)])
     }
 
-    /// Extends some bits to `width` bits, by the sign if `signed`, and otherwise by zeros. High bits are dropped if `width` is
-    /// smaller. Fails for more than 64 bits.
+    /// Returns `bits`, extended to `width` bits: by the sign if `signed`, and otherwise by zeros. A smaller `width` drops the
+    /// high bits. Fails for more than 64 bits.
     fn extended(
         &self,
         terms: &mut VectorTerms,

@@ -1,4 +1,4 @@
-//! Finds the counters in the Verilog of a pipeline: the slot counter, and the address counters of its delay memories.
+//! Finds the counters in a pipeline's Verilog: the slot counter, and the address counters of its delay memories.
 //!
 //! A counter is a register that a reset sets to a constant, and that returns to this constant after a fixed number of clocks,
 //! at most 1024. The module executes the Verilog with constants in the counters, in the reset and in `out_ready`, and with
@@ -15,25 +15,25 @@ use super::term::{VectorTermId, VectorTerms};
 use glint_base::fixed::mask;
 use glint_rtl::netlist::Role;
 
-/// The module does not recognise counters with a longer period.
+/// The longest period of a counter that the module recognises, in clocks.
 const LONGEST_PERIOD: usize = 1024;
 
 pub type Roles = HashMap<String, Role>;
 
-/// The values of some registers, by their numbers. The order of a `BTreeMap` makes the result the same in every run.
+/// The values of some registers. The keys are the numbers of the registers; a `BTreeMap` has them in the same order in every run.
 type RegisterValues = BTreeMap<usize, u64>;
 
-/// The counters, in the clocks in which all points move.
+/// A pipeline's counters, in clocks in which all points move.
 pub struct Counters {
-    /// For each slot, which is a clock of the interval from one point to the next, the values of the registers that count the
-    /// slots. Without such registers, for an interval of 1, the map is empty.
+    /// The values of the registers that count the slots, for each slot. An interval of 1 needs no such registers, so the map is
+    /// empty.
     pub slots: Vec<RegisterValues>,
     /// For each memory, read port and slot, the number of clocks from a write to the read, if it is fixed.
     delays: Vec<Vec<Vec<Option<usize>>>>,
 }
 
 struct MemoryClock {
-    /// The address at which all bits of a word are written, if any is.
+    /// The address at which all bits of a word are written; `None` if nothing is written.
     write: Option<u64>,
     /// The address of each read port, if it is known.
     reads: Vec<Option<u64>>,
@@ -49,8 +49,12 @@ struct ClockConstants {
 }
 
 impl Counters {
-    /// Fails if the interval is longer than 1 and no counter decides the clocks in which the pipeline takes a point. Fails also if a
-    /// memory delays its words by no fixed number of clocks, or if the module has a cell that is not understood.
+    /// Finds the counters of `module`.
+    ///
+    /// # Errors
+    ///
+    /// Fails if the interval is longer than 1 and no counter decides the clocks in which the pipeline takes a point. Fails if a
+    /// memory delays its words by no fixed number of clocks, or if the module has an unknown cell.
     pub fn new(module: &Module, roles: &Roles, interval: usize) -> Result<Self> {
         let reset = constants(module, roles, 0, &RegisterValues::new())?.registers;
         let slots = slots(module, roles, &reset, interval)?;
@@ -78,8 +82,8 @@ impl Counters {
         Ok(Self { slots, delays })
     }
 
-    /// Returns the number of clocks from a write to the read of the same word, if the number is fixed. The read is `clock`
-    /// clocks after a point entered.
+    /// Returns the number of clocks from a write to the read of the same word, or `None` if the number is not fixed. The read is
+    /// `clock` clocks after a point entered.
     pub fn delay(&self, read: Read, clock: usize) -> Option<usize> {
         self.delays[read.memory][read.port][clock % self.slots.len()]
     }
@@ -132,9 +136,8 @@ fn slots(
     Ok(slots)
 }
 
-/// Returns the constants of each clock until the slot counter and `counter`, a register with its value after a reset, have
-/// their first values again. Returns `None` if `counter` has no constant value in a clock, or if this takes more than 1024
-/// clocks.
+/// Returns each clock's constants, until the slot counter and `counter` have their first values again. `counter` is a register
+/// with its value after a reset. Returns `None` if it has no constant value in a clock, or if this takes more than 1024 clocks.
 fn course(
     module: &Module,
     roles: &Roles,
@@ -163,9 +166,8 @@ fn course(
 }
 
 /// Returns the number of clocks from the latest write of a word to its read, for each read port and each slot. `course` is a
-/// period of accesses, which repeats. A number is `None` if it varies between the clocks of the slot, if the address is
-/// unknown, or if nothing writes there. For example, with one slot, write addresses 0, 1, 2, 3 and read addresses 2, 3, 0, 1
-/// give 2 clocks.
+/// period of accesses, which repeats. A number is `None` if it varies between the slot's clocks, if the address is unknown, or if
+/// nothing writes there. For example, with one slot, write addresses 0, 1, 2, 3 and read addresses 2, 3, 0, 1 give 2 clocks.
 fn lags(course: &[&MemoryClock], reads: usize, interval: usize) -> Vec<Vec<Option<usize>>> {
     let period = course.len();
     let lag = |read: usize, now: usize| {
@@ -186,8 +188,8 @@ fn lags(course: &[&MemoryClock], reads: usize, interval: usize) -> Vec<Vec<Optio
     lags
 }
 
-/// Returns the constants of a clock: a reset if `rst_n` is 0, and otherwise a clock in which the results are taken. `known`
-/// are the values of some registers before the clock; everything else is unknown.
+/// Returns a clock's constants. The clock is a reset if `rst_n` is 0, and otherwise the environment takes results. `known` are
+/// the values of some registers before the clock; everything else is unknown.
 fn constants(
     module: &Module,
     roles: &Roles,
@@ -225,8 +227,8 @@ fn constants(
     Ok(ClockConstants { registers, memories, ready })
 }
 
-/// Returns the accesses to a memory, whose `ports` are the terms of [`Memory::control`]. Returns `None` if it is not known
-/// which word is written, or if only some bits of it are.
+/// Returns the accesses to a memory. `ports` are the terms of [`Memory::control`]. Returns `None` if a write's address is
+/// unknown, or if only some bits of a word are written.
 fn accesses(terms: &VectorTerms, memory: &Memory, ports: &[VectorTermId]) -> Option<MemoryClock> {
     let (addresses, enables) = ports.split_at(1 + memory.reads.len());
     let all_are = |wanted: fn(u32) -> u64| {

@@ -1,8 +1,8 @@
 //! Gives the SMT solver arithmetic facts about the products and memory words in its question.
 //!
-//! The solver treats a product and the read of a memory as uninterpreted functions and knows nothing about them. One fact says
-//! that a product with a factor 0 is 0. Another says that a memory word lies within the bounds of all words. Every fact is
-//! true for all values, so an unnecessary fact cannot make a proof wrong.
+//! The solver treats a product and a memory's read as uninterpreted functions and knows nothing about them. One fact says that a
+//! product with a factor 0 is 0. Another says that a memory word lies within the bounds of all words. Every fact is true for all
+//! values, so an unnecessary fact cannot make a proof wrong.
 
 use std::collections::{HashMap, HashSet};
 
@@ -18,8 +18,8 @@ const ROWS: u32 = 8;
 const WORDS: usize = 16;
 
 /// Returns facts about the products and memory words on which the terms `roots` depend. Each fact is a term of one bit that is
-/// always 1. If `parts` is set, the facts also say that a product is the sum of the products of a factor's parts, which are
-/// new products.
+/// always 1. If `parts` is set, further facts divide a product: it is the sum of the products of a factor's parts, which are new
+/// products.
 pub fn about(
     terms: &mut VectorTerms,
     roots: &[VectorTermId],
@@ -65,8 +65,8 @@ pub fn about(
     facts
 }
 
-/// Returns the facts about a product with a factor 0, 1 or −1. For example, one fact says: the factor is not 1, or the product
-/// equals the other factor.
+/// Returns the facts about a product with a factor 0, 1 or −1. For example, one fact says: `factor` is not 1, or `product` equals
+/// `other`.
 fn by_one_or_none(
     terms: &mut VectorTerms,
     product: VectorTermId,
@@ -83,8 +83,8 @@ fn by_one_or_none(
     })
 }
 
-/// Finds products that a design computes as a sum of partial products, each with the term of its sum. The search covers the
-/// terms on which `roots` depend.
+/// Finds products that a design computes as a sum of partial products, among the terms on which `roots` depend. Returns the term
+/// of the sum for each product.
 pub fn divided(
     terms: &mut VectorTerms,
     roots: impl IntoIterator<Item = VectorTermId>,
@@ -107,7 +107,7 @@ pub fn divided(
 }
 
 /// Returns the narrower term that `factor` extends, and whether the extension copies the sign bit (`true`) or adds zeros
-/// (`false`).
+/// (`false`). Returns `None` if `factor` is no extension.
 pub fn extended(terms: &VectorTerms, factor: VectorTermId) -> Option<(VectorTermId, bool)> {
     match *terms.term(factor) {
         VectorTerm::SignExtend(bits) => Some((bits, true)),
@@ -119,13 +119,13 @@ pub fn extended(terms: &VectorTerms, factor: VectorTermId) -> Option<(VectorTerm
 struct ProductSum {
     product: VectorTermId,
     sum: VectorTermId,
-    /// Whether the design computes the product in these parts: the terms already contain the product of the lower part.
+    /// Whether the design computes the product as this sum: the terms already contain the lower part's product.
     there: bool,
 }
 
-/// Returns a sum of partial products if `factor` is the upper bits of a larger term. The larger term times `other` is the
-/// product of `factor` and `other`, shifted, plus the product of the lower bits and `other`. For example, if u is the bits
-/// from 4 up of w, then w·x is 16·(u·x) plus the lowest 4 bits of w times x.
+/// Returns the product of a larger term and `other` as a sum of partial products, if `factor` is the upper bits of the larger
+/// term. The sum is the product of `factor` and `other`, shifted, plus the product of the lower bits and `other`. For example, if
+/// u is the bits from 4 up of w, then w·x is 16·(u·x) plus the lowest 4 bits of w times x.
 fn in_parts(
     terms: &mut VectorTerms,
     factor: VectorTermId,
@@ -195,7 +195,7 @@ fn square_in_parts(
     Some(ProductSum { product, sum, there: true })
 }
 
-/// Returns the larger term whose upper bits are `bits`, and the number of its bits below `bits`. For example, if `bits` is
+/// Returns the larger term that has the upper bits `bits`, and the number of its bits below `bits`. For example, if `bits` is
 /// bits 4 to 7 of a term, the result is the term's bits 0 to 7, and 4.
 fn whole(terms: &mut VectorTerms, bits: VectorTermId) -> Option<(VectorTermId, u32)> {
     match *terms.term(bits) {
@@ -211,8 +211,8 @@ fn whole(terms: &mut VectorTerms, bits: VectorTermId) -> Option<(VectorTermId, u
     }
 }
 
-/// Returns whether the terms contain the first partial product of `bits` and `other`: `other` if the lowest bit of `bits` is
-/// 1, and otherwise 0. If so, the design multiplies `bits` by `other` with adders.
+/// Returns whether the terms contain the first partial product of `bits` and `other`: `other` if the lowest bit of `bits` is 1,
+/// and otherwise 0.
 fn has_row(terms: &mut VectorTerms, bits: VectorTermId, other: VectorTermId) -> bool {
     let narrow = match *terms.term(other) {
         VectorTerm::SignExtend(narrow) => narrow,
@@ -238,7 +238,7 @@ fn rows(terms: &mut VectorTerms, bits: VectorTermId, other: VectorTermId) -> Vec
     sum
 }
 
-/// The result has 64 bits.
+/// Returns term `id`, shifted left by `by` places, as a term of 64 bits.
 pub fn shifted(terms: &mut VectorTerms, id: VectorTermId, by: u32) -> VectorTermId {
     if by == 0 {
         return id;
@@ -247,9 +247,9 @@ pub fn shifted(terms: &mut VectorTerms, id: VectorTermId, by: u32) -> VectorTerm
     terms.make(VectorTerm::Join(kept, zeros), MAX_WIDTH)
 }
 
-/// Returns the interval of a factor of 64 bits that follows from the width of the term that it extends. For example, a term of
-/// 8 bits with zeros above it is at most 255. The ranges of a design can be wider: a multiplier that several products share
-/// has the ranges of all its factors.
+/// Returns the interval of a 64-bit factor that follows from the width of the term that it extends. For example, a term of 8 bits
+/// with zeros above it is at most 255. The intervals in the design can be wider: a multiplier that several products share has the
+/// intervals of all its factors.
 fn range_by_width(terms: &VectorTerms, factor: VectorTermId) -> Interval {
     match extended(terms, factor) {
         Some((bits, true)) => {
@@ -264,8 +264,8 @@ fn range_by_width(terms: &VectorTerms, factor: VectorTermId) -> Interval {
     }
 }
 
-/// Returns the fact that a product lies in the product of its factors' ranges if both factors lie in their ranges. The ends
-/// must fit into 64 bits.
+/// Returns the fact that a product lies in the product of its factors' intervals, if both factors lie in their intervals. Returns
+/// `None` if an end does not fit into 64 bits.
 fn within(terms: &mut VectorTerms, product: &Product) -> Option<VectorTermId> {
     let [a, b] = product.factors;
     let [x, y] = product.ranges;
@@ -279,8 +279,8 @@ fn within(terms: &mut VectorTerms, product: &Product) -> Option<VectorTermId> {
     Some(terms.make(VectorTerm::Or(not, conclusion), 1))
 }
 
-/// Returns a one-bit term that is 1 if `value`, a two's complement number of 64 bits, lies in an interval. The ends must fit
-/// into 64 bits.
+/// Returns a one-bit term that is 1 if `value`, a two's complement number of 64 bits, lies in `range`. Returns `None` if an end
+/// does not fit into 64 bits.
 fn between(terms: &mut VectorTerms, value: VectorTermId, range: Interval) -> Option<VectorTermId> {
     let low = i64::try_from(range.0).ok()?;
     let high = i64::try_from(range.1).ok()?;
@@ -292,8 +292,8 @@ fn between(terms: &mut VectorTerms, value: VectorTermId, range: Interval) -> Opt
     Some(terms.not(outside))
 }
 
-/// For a small memory, the facts about the word give its value at each address. For a large one, they give the bits that are 0
-/// in all words, and the interval that contains all words.
+/// Returns facts about `word`, which `memory` has at `address`. For a small memory, they give the word at each address. For a
+/// large memory, they give the bits that are 0 in all words, and the interval that contains all words.
 fn contents(
     terms: &mut VectorTerms,
     word: VectorTermId,

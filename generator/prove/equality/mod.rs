@@ -1,10 +1,10 @@
 //! Proves with an SMT solver that a pipeline and its sequential core compute the same outputs for every point (one set of
-//! operands). [`compare_text`] proves the same of the emitted Verilog of a pipeline and its netlist.
+//! operands). [`compare_text`] proves that the emitted Verilog of a pipeline and its netlist compute the same outputs.
 //!
-//! [`compare`] first simulates both designs at 400 random points. [`compare`] then executes both netlists symbolically, one
-//! clock at a time: the core from `start` to its results, and the pipeline with one point between arbitrary others. The solver
-//! knows products and memory reads only as uninterpreted functions with some arithmetic facts (`facts`), so it may not decide:
-//! the verdict is then [`Verdict::Open`].
+//! [`compare`] first simulates both designs at 400 random points. It then executes both netlists symbolically, clock by clock:
+//! the core from `start` to its results, and the pipeline with one point between arbitrary other points. The solver knows
+//! products and memory reads only as uninterpreted functions with some arithmetic facts (`facts`), so it may not decide: the
+//! verdict is then [`Verdict::Open`].
 
 mod cells;
 mod delays;
@@ -42,7 +42,7 @@ pub use text::{TextProof, TextVerdict, compare_text};
 /// The number of random points at which both designs are compared before anything is proved.
 const TRIALS: usize = 400;
 
-/// If a computation of the sequential core takes more clocks, [`compare`] fails.
+/// The largest number of clocks that a computation of the sequential core may take; beyond it, [`compare`] fails.
 const MOST_CLOCKS: usize = 8192;
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -56,7 +56,7 @@ pub enum Verdict {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Open {
-    /// The solver answers `unknown`. Or it answers with a counterexample that no simulated point confirms: the counterexample
+    /// The solver answers `unknown`, or it answers with a counterexample that no simulated point confirms. Such a counterexample
     /// assumes values of products and memory words that no point has.
     Unknown,
     Limit,
@@ -72,7 +72,7 @@ pub struct EqualityProof {
     /// operand makes two paths.
     pub ways: usize,
     pub products: usize,
-    /// The number of questions to the solver. Other equalities need none, because both sides are the same term.
+    /// The number of questions to the solver. An equality needs no question if both sides are the same term.
     pub questions: usize,
 }
 
@@ -103,15 +103,14 @@ impl fmt::Display for OutputDifference {
     }
 }
 
-/// Proves that a pipeline computes the same outputs as its sequential core, or finds a point for which an output differs. The
-/// designs are simulated at 400 random points before the solver is asked. `limit` is the time limit of all answers of the
-/// solver together.
+/// Proves that a pipeline computes the same outputs as its sequential core, or finds a point for which an output differs. `limit`
+/// is the time limit of all answers of the solver together.
 ///
 /// # Errors
 /// Fails if `pipeline` is no pipeline, if the designs have different operands, or if the core lacks an output of the pipeline.
-/// Fails also if a design shows no result (the core within 8192 clocks), if a design has a combinational loop, or if the solver
-/// cannot be run. Fails also if operands decide about `valid` within a microinstruction, or if they decide the next
-/// microinstruction otherwise than by a choice between two.
+/// Fails if a design shows no result (the core within 8192 clocks), if a design has a combinational loop, or if the solver cannot
+/// be run. Fails if operands decide about `valid` within a microinstruction, or if they decide the next microinstruction
+/// otherwise than by a choice between two.
 pub fn compare(
     sequential: &Design,
     pipeline: &Design,
@@ -125,8 +124,8 @@ pub fn compare(
     PipelineComparison::new(&pair, solver, limit)?.run()
 }
 
-/// Simulates both designs at 400 random points, and returns the first difference. If `near`, the bit patterns of one point's
-/// operands, is given, each operand takes its value there with a probability of one half.
+/// Simulates both designs at 400 random points, and returns the first difference. `near` has the bit patterns of one point's
+/// operands; each operand takes its value from `near` with a probability of one half.
 fn tried(pair: &DesignPair<'_>, near: Option<&[u64]>) -> Result<Option<OutputDifference>> {
     let mut random = ChaCha8Rng::seed_from_u64(1);
     for _ in 0..TRIALS {
@@ -144,8 +143,8 @@ fn tried(pair: &DesignPair<'_>, near: Option<&[u64]>) -> Result<Option<OutputDif
     Ok(None)
 }
 
-/// One pattern in four has any 64 bits. The others are a power of two up to 2^23, plus or minus a random number, because the
-/// value 1.0 of an operand is a power of two, too.
+/// Returns a random bit pattern. One pattern in four has any 64 bits. All other patterns are a power of two up to 2^23, plus or
+/// minus a random number, because the value 1.0 of an operand is also a power of two.
 fn drawn(random: &mut ChaCha8Rng) -> u64 {
     let bits = random.next_u64();
     let power = 1u64 << (random.next_u32() % 24);
@@ -157,7 +156,7 @@ fn drawn(random: &mut ChaCha8Rng) -> u64 {
     }
 }
 
-/// Returns the first output that differs at a point. `operands` are bit patterns; bits above the width of an operand are
+/// Returns the first output that differs at the point `operands`, which are bit patterns. Bits above an operand's width are
 /// dropped.
 fn differs(pair: &DesignPair<'_>, operands: &[u64]) -> Result<Option<OutputDifference>> {
     let mut masked: Vec<u64> = Vec::new();
@@ -197,12 +196,12 @@ struct PipelineComparison<'p> {
     terms: VectorTerms,
     solver: Solver<'p>,
     products: Vec<Product>,
-    /// For each product that a pipeline computes in parts, the sum of the parts. For example, a·b may be the sum of 16·(u·b)
-    /// and l·b, if u has the upper bits of a and l the lowest 4 bits.
+    /// The sum of parts for each product that a pipeline computes in parts. For example, a·b may be the sum of 16·(u·b) and l·b,
+    /// if u has the upper bits of a and l the lowest 4 bits.
     divided: HashMap<VectorTermId, VectorTermId>,
-    /// The products that the pipeline computes, as a whole or in parts, in ascending order.
+    /// The products that the pipeline computes, whole or in parts, in ascending order.
     parts: Vec<VectorTermId>,
-    /// The operands of the point, which are unknowns.
+    /// The point's operands, as unknown terms.
     operands: Vec<VectorTermId>,
     proof: EqualityProof,
 }
@@ -255,8 +254,7 @@ impl<'p> PipelineComparison<'p> {
         Ok(Verdict::Equal(self.proof))
     }
 
-    /// Returns the term of every net of the pipeline in each clock. Entry 0 is the clock in which the pipeline takes the
-    /// point.
+    /// Returns the term of every net of the pipeline in each clock, from the clock in which the pipeline takes the point.
     fn pipeline(&mut self) -> Result<Vec<Vec<VectorTermId>>> {
         let pair = self.pair;
         let execution = Execution::new(&mut self.terms, pair.pipeline);
@@ -293,8 +291,8 @@ impl<'p> PipelineComparison<'p> {
         Ok(stages)
     }
 
-    /// Returns the term of every net in a clock, at the index of the net. An input for which `known` returns a number has this
-    /// constant. If `point` is set, the operands have the terms of the point. Every other input is a new unknown.
+    /// Returns the term of every net in a clock, at the net's index. An input for which `known` returns a number has this
+    /// constant. If `point` is set, the operands have the point's terms. All remaining inputs are new unknowns.
     fn settle(
         &mut self,
         execution: &Execution<'_>,
@@ -321,7 +319,7 @@ impl<'p> PipelineComparison<'p> {
         )
     }
 
-    /// Begins the path of the core with the clock in which it takes `start` and all operands.
+    /// Returns the path of the core that begins with the clock in which it takes `start` and all operands.
     fn start(&mut self, core: &Execution<'_>) -> MicroprogramPath {
         let mut state = core.power_up(&mut self.terms);
         for point in [false, true] {
@@ -342,9 +340,9 @@ impl<'p> PipelineComparison<'p> {
         MicroprogramPath { conditions: Vec::new(), state, visits, clocks: 0 }
     }
 
-    /// Executes the microprogram along one path, until the function can compare the results, or until a jump depends on
-    /// operands. At such a jump, it adds the paths that continue to `ways`. For example, a loop whose trip count depends on an
-    /// operand makes a path for each trip count.
+    /// Executes the microprogram along the path `way`, until the results can be compared, or until a jump depends on operands. At
+    /// such a jump, adds the paths that continue to `ways`. For example, a loop with a trip count that depends on an operand
+    /// makes a path for each trip count.
     fn follow(
         &mut self,
         core: &Execution<'_>,
@@ -386,9 +384,12 @@ impl<'p> PipelineComparison<'p> {
         bail!("the sequential core shows no result")
     }
 
-    /// Splits a path at a register of the sequencer whose value depends on operands. Adds both continuations to `ways`, unless
-    /// the solver proves one impossible. Returns always `Equal`: the continuations are compared later. The value must be one
-    /// bit or a choice between two values.
+    /// Splits the path `way` at `undecided`, a value of the sequencer that depends on operands. Adds both continuations to
+    /// `ways`, except one that the solver proves impossible. Always returns `Equal`: the continuations are compared later.
+    ///
+    /// # Errors
+    ///
+    /// Fails if the value is neither one bit nor a choice between two values.
     fn fork(
         &mut self,
         way: MicroprogramPath,
@@ -424,9 +425,9 @@ impl<'p> PipelineComparison<'p> {
         holding
     }
 
-    /// Proves the checkpoints of microinstruction number `address`: a register of the core equals a net of the pipeline when
-    /// this microinstruction begins. Each register that is proved equal takes the pipeline's term. Others are skipped. Returns
-    /// `Different` for a real difference in an output, and otherwise `Equal`, which does not say that every checkpoint holds.
+    /// Proves the checkpoints of microinstruction number `address`: a register of the core equals a net of the pipeline when this
+    /// microinstruction begins. Each register that is proved equal takes the pipeline's term; other registers are skipped.
+    /// Returns `Different` if an output really differs, and otherwise `Equal`, even if a checkpoint was skipped.
     fn lemmas(
         &mut self,
         core: &Execution<'_>,
@@ -537,9 +538,9 @@ impl<'p> PipelineComparison<'p> {
         Ok(())
     }
 
-    /// Asks the solver whether the one-bit terms `wanted` can all be 1. The first question has the sums in `divided` in place
-    /// of products. If its answer is not "never", a second question has the original products and all facts about partial
-    /// products.
+    /// Asks the solver whether the one-bit terms `wanted` can all be 1. The first question has the sums in `divided` in place of
+    /// products. If its answer is not `SolverAnswer::Unsatisfiable`, a second question has the original products and all facts
+    /// about partial products.
     fn ask(&mut self, wanted: Vec<VectorTermId>) -> Result<SolverAnswer> {
         self.divide_by_lowest(&wanted)?;
         let mut divided = wanted.clone();

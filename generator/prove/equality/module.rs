@@ -1,8 +1,7 @@
-//! Parses the JSON netlist of a Verilog module, which Yosys has flattened, and executes it clock by clock on symbolic terms.
+//! Parses the JSON netlist of a Verilog module that Yosys has flattened, and executes it clock by clock on symbolic terms.
 //!
-//! Every undetermined bit (`x` or `z`) becomes a new unknown at each read. A read beyond the contents of a memory gives an
-//! unknown word, the same for equal addresses. The module accepts only registers and memories that change at the rising edge of
-//! `clk`.
+//! Every undetermined bit (`x` or `z`) becomes a new unknown at each read. A read beyond a memory's contents gives an unknown
+//! word, the same for equal addresses. The module accepts only registers and memories that change at the rising edge of `clk`.
 
 use std::collections::HashMap;
 
@@ -43,7 +42,7 @@ struct ModuleRegister {
     output: Connection,
 }
 
-/// A memory that the module writes, such as the memory of a delay line.
+/// A memory that the module writes, such as a delay line's memory.
 pub struct Memory {
     pub reads: Vec<Read>,
     width: usize,
@@ -60,7 +59,7 @@ struct Write {
 pub struct Module {
     inputs: Vec<(String, Connection)>,
     outputs: Vec<(String, Connection)>,
-    /// Each cell comes after the cells that it reads.
+    /// The cells, each after the cells that it reads.
     cells: Vec<ModuleCell>,
     registers: Vec<ModuleRegister>,
     pub memories: Vec<Memory>,
@@ -85,7 +84,7 @@ fn bits(value: &Value) -> Result<Connection> {
     Ok(bits)
 }
 
-/// Yosys writes the parameters of a cell in binary. For example, `00000101` is 5.
+/// Reads a parameter of a cell, which Yosys writes in binary. For example, `00000101` is 5.
 fn parameter(cell: &Value, name: &str) -> Result<usize> {
     let value = &cell["parameters"][name];
     if let Some(text) = value.as_str()
@@ -101,7 +100,7 @@ fn connection(cell: &Value, port: &str) -> Result<Connection> {
     bits(&cell["connections"][port])
 }
 
-/// Returns no bits if the cell lacks the port.
+/// Returns the bits at a port of a cell, or no bits if the cell lacks the port.
 fn optional_connection(cell: &Value, port: &str) -> Result<Connection> {
     match &cell["connections"][port] {
         Value::Null => Ok(Connection::new()),
@@ -109,15 +108,19 @@ fn optional_connection(cell: &Value, port: &str) -> Result<Connection> {
     }
 }
 
-/// A memory lists the bits of all its ports side by side, `width` bits for each.
+/// Returns the bits of port number `port` of a memory. `side_by_side` has the bits of all ports, `width` bits for each.
 fn port_bits(side_by_side: &Connection, port: usize, width: usize) -> Connection {
     side_by_side[port * width..(port + 1) * width].to_vec()
 }
 
 impl Module {
-    /// Fails if the netlist is malformed or has no input `clk`, or if a register or memory does not change at the rising edge
-    /// of `clk` only. Fails also if a memory has clocked read ports, several write ports or a first address other than 0, if a
-    /// memory that is never written has undetermined or too wide words, or if the cells form a combinational loop.
+    /// Parses `json`.
+    ///
+    /// # Errors
+    ///
+    /// Fails if the netlist is malformed or has no input `clk`. Fails if a register or memory does not change at the rising edge
+    /// of `clk` only. Fails if a memory has clocked read ports, several write ports or a first address other than 0. A memory
+    /// that is never written must have known words of at most 64 bits. The cells must not form a combinational loop.
     pub fn new(json: &Value) -> Result<Self> {
         let mut module = Self {
             inputs: Vec::new(),
@@ -257,7 +260,7 @@ impl Module {
         connections
     }
 
-    /// Sorts the cells so that each comes after the cells whose output it reads. Fails for a combinational loop.
+    /// Sorts the cells so that each comes after the cells that drive its inputs. Fails for a combinational loop.
     fn order(&mut self) -> Result<()> {
         let mut wires = 0;
         for bit in self.connections().into_iter().flatten() {
@@ -308,7 +311,7 @@ impl Module {
         Ok(())
     }
 
-    /// All registers are unknown at power-up, so the proof holds for every initial state.
+    /// Returns the registers at power-up, all unknown, so a proof holds for every initial state.
     pub fn power_up(&self, terms: &mut VectorTerms) -> RegisterContents {
         self.registers.iter().map(|it| unknown(terms, it.output.len())).collect()
     }
@@ -317,7 +320,7 @@ impl Module {
     /// memories.
     ///
     /// # Errors
-    /// Fails if an input port is wider than 64 bits, or if [`WireValues::cell`] fails for a cell.
+    /// Fails if an input port is wider than 64 bits, or if a cell is unknown or too wide.
     pub fn settle(
         &self,
         terms: &mut VectorTerms,
@@ -368,8 +371,8 @@ impl Module {
     }
 }
 
-/// Returns the index of the first cell that drives an input of `cell` and has no position in the order yet, which is position
-/// 0.
+/// Returns the index of the first cell that drives an input of `cell` and has position 0, which means that it has no position
+/// yet.
 fn unplaced_driver(cell: &ModuleCell, driver: &[Option<usize>], place: &[usize]) -> Option<usize> {
     for bit in cell.inputs.iter().flatten() {
         if let Bit::Wire(wire) = *bit
@@ -383,7 +386,7 @@ fn unplaced_driver(cell: &ModuleCell, driver: &[Option<usize>], place: &[usize])
 }
 
 impl Memory {
-    /// Returns a new unknown word, for a read whose result is not known.
+    /// Returns a new unknown word, for a read with an unknown result.
     pub fn any(&self, terms: &mut VectorTerms) -> Vec<VectorTermId> {
         unknown(terms, self.width)
     }
@@ -393,8 +396,8 @@ impl Memory {
         values.columns(terms, &self.write.data)
     }
 
-    /// Returns the address at the write port, then the address at each read port, then the enables of the written bits, as
-    /// terms of at most 64 bits, the lowest bits first.
+    /// Returns the address at the write port, then the address at each read port, then the enables of the written bits. They are
+    /// terms of at most 64 bits, the lowest first.
     pub fn control(&self, terms: &mut VectorTerms, values: &WireValues) -> Vec<VectorTermId> {
         let enable = values.columns(terms, &self.write.enable);
         let mut control = vec![values.word(terms, &self.write.address)];

@@ -1,6 +1,4 @@
 //! Simulates a pipeline and its sequential core for one point (one set of operands), with numbers instead of symbolic terms.
-//!
-//! The parent module draws the points and compares the outputs before it asks the SMT solver.
 
 use anyhow::{Context, Result, bail};
 
@@ -14,11 +12,15 @@ pub struct DesignPair<'a> {
     pub operands: Vec<String>,
     /// The name of each output of the pipeline, with its net in the pipeline and in the core.
     pub outputs: Vec<(String, NetId, NetId)>,
-    /// The number of clocks from taking a point to its results.
+    /// The number of clocks from the clock that takes a point to the clock that shows its results.
     pub latency: usize,
 }
 
 impl<'a> DesignPair<'a> {
+    /// Pairs the two designs.
+    ///
+    /// # Errors
+    ///
     /// Fails if `pipeline` is no pipeline, if the designs have different operands, or if the core lacks an output of the
     /// pipeline.
     pub fn new(sequential: &'a Design, pipeline: &'a Design) -> Result<Self> {
@@ -61,8 +63,8 @@ impl<'a> DesignPair<'a> {
         })
     }
 
-    /// Simulates both designs for one point, with the bit patterns of the field `operands`. Returns the bit patterns of the
-    /// field `outputs`: first of the sequential core, then of the pipeline.
+    /// Simulates both designs for one point, with the bit patterns `operands`. Returns the bit patterns of the outputs: first
+    /// from the sequential core, then from the pipeline.
     ///
     /// # Errors
     /// Fails if the sequential core shows no result within 8192 clocks, or if a design has a combinational loop.

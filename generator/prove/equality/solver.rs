@@ -1,7 +1,7 @@
-//! Asks an SMT solver whether some one-bit terms can all be 1 at once, and reads its answer.
+//! Asks an SMT solver whether some one-bit terms can all be 1 at once, and reads the answer.
 //!
 //! Each question is a file in SMT-LIB 2 with the terms, and with the arithmetic facts of `facts`. Products and memory reads are
-//! uninterpreted functions in it. All questions of one [`Solver`] share a time limit.
+//! uninterpreted functions in this file. All questions of one [`Solver`] share a time limit.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -19,13 +19,13 @@ use glint_tools::{LimitReached, Tool};
 /// The solver's answer to the question whether some terms can all be 1.
 pub enum SolverAnswer {
     Unsatisfiable,
-    /// The terms are all 1 for these values of the unknowns. The values of products and memory words behind them may be
-    /// impossible in hardware, because the solver treats them as uninterpreted functions.
+    /// The terms are all 1 for these values of the unknowns. They may assume impossible products and memory words, because the
+    /// solver treats them as uninterpreted functions.
     Satisfiable(Vec<(VectorTermId, u64)>),
     Undecided(Open),
 }
 
-/// An SMT solver, with a directory for its files. All its answers together may take until `end`.
+/// An SMT solver with a directory for its files. All its answers must come before `end`.
 pub struct Solver<'a> {
     tool: &'a Tool,
     end: Instant,
@@ -34,9 +34,10 @@ pub struct Solver<'a> {
 }
 
 impl<'a> Solver<'a> {
-    /// `limit` is the time limit of all answers together.
+    /// Makes a solver. `limit` is the time limit of all answers together.
     ///
     /// # Errors
+    ///
     /// Fails if no temporary directory can be made.
     pub fn new(tool: &'a Tool, limit: Duration) -> Result<Self> {
         let dir = Directory::new().context("cannot make a temporary directory")?;

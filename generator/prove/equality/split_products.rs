@@ -1,7 +1,7 @@
-//! Finds nets that probably carry a product which a pipeline adds up from the products of parts.
+//! Finds nets that probably carry a product that a pipeline computes as a sum of partial products.
 //!
-//! The module evaluates all terms with 24 sets of random values of the unknowns. A net is a candidate if, extended to 64 bits,
-//! it has the same values as the product. The caller must prove with the solver that they are equal.
+//! The module evaluates all terms with 24 sets of random values of the unknowns. A net is a candidate if, extended to 64 bits, it
+//! has the same values as the product. The caller must prove with the solver that net and product are equal.
 
 use std::collections::HashMap;
 
@@ -11,10 +11,10 @@ use rand_chacha::rand_core::{RngCore, SeedableRng};
 use super::term::{VectorTermId, VectorTerms};
 use glint_base::fixed::MAX_WIDTH;
 
-/// The number of sets of random values at which terms are compared.
+/// The number of sets of random values for which terms are compared.
 const SAMPLES: usize = 24;
 
-/// The values of all terms at 24 sets of random values of the unknowns. Terms with the same values may be equal.
+/// The values of all terms for 24 sets of random values of the unknowns. Terms with the same values may be equal.
 pub struct Candidates {
     values: Vec<HashMap<VectorTermId, u64>>,
     /// For each list of values, the first net that has them, after its extension to 64 bits by zeros or by its sign bit.
@@ -22,7 +22,7 @@ pub struct Candidates {
 }
 
 impl Candidates {
-    /// Evaluates the terms `nets` and `others`, and everything on which they depend. Only `nets` can be candidates.
+    /// Evaluates the terms `nets` and `others`, and all terms on which they depend. Only `nets` can be candidates.
     pub fn new<'i>(
         terms: &VectorTerms,
         nets: &'i [VectorTermId],
@@ -43,21 +43,21 @@ impl Candidates {
         Self { values, nets: known }
     }
 
-    /// Returns a net that, extended to 64 bits, has the same values as a term of 64 bits.
+    /// Returns a net that, extended to 64 bits, has the same values as the 64-bit term `id`.
     pub fn of(&self, id: VectorTermId) -> Option<VectorTermId> {
         let key: Vec<u64> = self.values.iter().map(|values| values[&id]).collect();
         self.nets.get(&key).copied()
     }
 }
 
-/// Compares the widths, and the values at 24 sets of random values of the unknowns.
+/// Returns whether two terms have the same width, and the same values for 24 sets of random values of the unknowns.
 pub fn agree(terms: &VectorTerms, one: VectorTermId, other: VectorTermId) -> bool {
     let cone = terms.cone([one, other]);
     terms.width(one) == terms.width(other)
         && samples(terms, &cone).all(|values| values[&one] == values[&other])
 }
 
-/// Evaluates some terms `SAMPLES` times, with new random values of the unknowns each time. The seed is always the same.
+/// Evaluates the terms `cone` `SAMPLES` times, with new random values of the unknowns each time. The seed is always the same.
 pub fn samples(
     terms: &VectorTerms,
     cone: &[VectorTermId],

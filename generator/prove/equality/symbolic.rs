@@ -1,7 +1,7 @@
 //! Executes a netlist clock by clock on symbolic terms: every net has an expression of unknowns in place of a number.
 //!
 //! For example, a net that adds the operands a and b has the term a + b. The caller chooses the terms of the inputs, and calls
-//! `settle` and `edge` once for each clock. The parent module compares the terms.
+//! `settle` and `edge` once for each clock.
 
 use super::term::{ADDRESS, VectorTerm, VectorTermId, VectorTerms};
 use glint_base::fixed::MAX_WIDTH;
@@ -51,7 +51,7 @@ impl<'a> Execution<'a> {
         }
     }
 
-    /// Every register may have any value at power-up.
+    /// Returns the state at power-up: every register is unknown.
     pub fn power_up(&self, terms: &mut VectorTerms) -> SymbolicState {
         let mut state = SymbolicState { registers: Vec::new(), words: Vec::new() };
         for register in &self.design.registers {
@@ -63,7 +63,7 @@ impl<'a> Execution<'a> {
         state
     }
 
-    /// Returns the term of every net, at the index of the net. `input` gives the term of each input port. New products are
+    /// Returns the term of every net, at the net's index. `input` gives the term of each input port. Products that are new are
     /// added to `products`.
     pub fn settle(
         &self,
@@ -96,7 +96,7 @@ impl<'a> Execution<'a> {
         values
     }
 
-    /// `state` and `values`, the terms of all nets, are before the rising edge.
+    /// Returns the state after the rising edge. `state` and `values`, the terms of all nets, are before the edge.
     pub fn edge(
         &self,
         terms: &mut VectorTerms,
@@ -139,7 +139,7 @@ impl<'a> Execution<'a> {
         terms.make(VectorTerm::Word { memory: self.memories[rom], address }, width)
     }
 
-    /// Computes the result of a cell as [`Op`] documents it.
+    /// Computes a cell's result as [`Op`] documents it.
     fn cell(
         &self,
         terms: &mut VectorTerms,
@@ -219,7 +219,7 @@ impl<'a> Execution<'a> {
         }
     }
 
-    /// Extends a net by its sign if its format is signed, and otherwise by zeros.
+    /// Extends a net to `width` bits: by its sign if its format is signed, and otherwise by zeros.
     fn extended(
         &self,
         terms: &mut VectorTerms,

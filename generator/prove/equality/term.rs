@@ -1,7 +1,7 @@
 //! Stores and simplifies bit-vector terms: expressions for the values of nets when the operands are unknown.
 //!
-//! Equal terms are stored once. Constants are folded, so that a microprogram with unknown operands still runs. Concatenations,
-//! slices and extensions are brought into one normal form, so that many equal values become the same term without the solver.
+//! Equal terms are stored once. Constants are folded, so a microprogram with unknown operands still runs. Concatenations, slices
+//! and extensions have one normal form, so many equal values become the same term without the solver.
 
 use std::collections::HashMap;
 
@@ -42,7 +42,7 @@ pub enum VectorTerm {
     SignedLess(VectorTermId, VectorTermId),
     /// The second operand if the first operand, which has one bit, is 1, and otherwise the third.
     Choice(VectorTermId, VectorTermId, VectorTermId),
-    /// The bits of a term from `low` up, as many as the result has.
+    /// A term's bits from `low` up, as many as the result has.
     Slice {
         of: VectorTermId,
         low: u32,
@@ -62,15 +62,15 @@ pub enum VectorTerm {
 /// The number of bits of a memory address.
 pub const ADDRESS: u32 = 32;
 
-/// Stores every term once, after its operands.
+/// A collection of terms, each stored once, after its operands.
 #[derive(Default)]
 pub struct VectorTerms {
     nodes: Vec<(VectorTerm, u32)>,
     known: HashMap<(VectorTerm, u32), VectorTermId>,
     unknowns: u32,
-    /// Equal contents are stored once.
+    /// The contents of the memories; equal contents are stored once.
     pub memories: Vec<Vec<u64>>,
-    /// For each memory and address, the unknown word that a read beyond the contents gives.
+    /// The unknown word that a read beyond the contents gives, for each memory and address.
     beyond: HashMap<(usize, VectorTermId), VectorTermId>,
 }
 
@@ -99,7 +99,7 @@ impl VectorTerm {
     }
 }
 
-/// Reads a bit pattern as a two's complement number: 0b1110 of 4 bits is −2.
+/// Reads a bit pattern as a two's complement number. For example, 0b1110 of 4 bits is −2.
 fn signed(bits: u64, width: u32) -> i64 {
     let drop = MAX_WIDTH - width;
     (bits << drop) as i64 >> drop
@@ -125,7 +125,7 @@ impl VectorTerms {
         }
     }
 
-    /// Returns all terms that `roots` depend on, including the roots, each after its operands.
+    /// Returns `roots` and all terms on which they depend, each after its operands.
     pub fn cone(&self, roots: impl IntoIterator<Item = VectorTermId>) -> Vec<VectorTermId> {
         let index = |id: VectorTermId| id.0 as usize;
         let operands = |at: usize| self.nodes[at].0.operands().into_iter().map(index);
@@ -133,7 +133,7 @@ impl VectorTerms {
         (0..live.len()).filter(|&at| live[at]).map(|at| VectorTermId(at as u32)).collect()
     }
 
-    /// `unknown` gives the value of each unknown, by its number.
+    /// Returns the values of the terms `cone`. `unknown` gives each unknown's value, by its number.
     pub fn values(
         &self,
         cone: &[VectorTermId],
@@ -160,7 +160,7 @@ impl VectorTerms {
         self.insert(VectorTerm::Constant(bits & mask(width)), width)
     }
 
-    /// Returns the number of a memory; equal contents have the same number.
+    /// Returns the index of a memory with the contents `words`; equal contents have the same index.
     pub fn memory(&mut self, words: &[u64]) -> usize {
         if let Some(at) = self.memories.iter().position(|other| other == words) {
             return at;
@@ -169,7 +169,7 @@ impl VectorTerms {
         self.memories.len() - 1
     }
 
-    /// Returns the unknown that every read of a memory at an address beyond its contents gives.
+    /// Returns the unknown word that every read of `memory` at `address`, beyond the contents, gives.
     pub fn beyond(&mut self, memory: usize, address: VectorTermId, width: u32) -> VectorTermId {
         if let Some(&word) = self.beyond.get(&(memory, address)) {
             return word;
@@ -179,8 +179,8 @@ impl VectorTerms {
         word
     }
 
-    /// Puts zeros above a term, or cuts high bits off. For example, the constant 0b101 becomes 0b0101 at a width of 4, and
-    /// 0b01 at a width of 2.
+    /// Extends a term by zeros to `width` bits, or drops high bits. For example, the constant 0b101 becomes 0b0101 at a width of
+    /// 4, and 0b01 at a width of 2.
     pub fn resized(&mut self, id: VectorTermId, width: u32) -> VectorTermId {
         let own = self.width(id);
         if width <= own {
@@ -230,7 +230,7 @@ impl VectorTerms {
         self.known.contains_key(&(ordered(term.clone()), width))
     }
 
-    /// Replaces `condition`, a one-bit term, by the constant `value` in all of `terms`, on a path that exists only if the
+    /// Replaces `condition`, a one-bit term, by the constant `value` in all of `terms`. The caller is on a path on which the
     /// condition has this value.
     pub fn assuming(&mut self, condition: VectorTermId, value: bool, terms: &mut [VectorTermId]) {
         let constant = self.constant(value.into(), 1);
@@ -259,8 +259,8 @@ impl VectorTerms {
         terms.iter_mut().for_each(|term| *term = new[term]);
     }
 
-    /// Adds a term after simplification. Operations on constants become constants, and terms that simple rules show to be
-    /// equal have the same id: a + 0 is a.
+    /// Adds a term after simplification. Operations on constants become constants. Terms that simple rules show to be equal have
+    /// the same id: a + 0 is a.
     pub fn make(&mut self, term: VectorTerm, width: u32) -> VectorTermId {
         let constants: Option<HashMap<VectorTermId, u64>> =
             term.operands().into_iter().map(|id| Some((id, self.constant_of(id)?))).collect();
@@ -416,8 +416,8 @@ impl VectorTerms {
         }
     }
 
-    /// Simplifies `op(a, b)`, a sum or a difference, if the lowest bits of `b` are known to be 0. These bits of the result are
-    /// the bits of `a`, so only the upper bits are added or subtracted.
+    /// Simplifies `op(a, b)`, a sum or a difference, if the lowest bits of `b` are known to be 0. The lowest bits of the result
+    /// are then the bits of `a`, so only the upper bits are added or subtracted.
     fn passed_by(
         &mut self,
         a: VectorTermId,
@@ -527,7 +527,7 @@ impl VectorTerms {
     }
 }
 
-/// Sorts the operands of a commutative term, such as a sum, so that equal terms have one form.
+/// Sorts a commutative term's operands, such as a sum, so equal terms have one form.
 fn ordered(mut term: VectorTerm) -> VectorTerm {
     if let VectorTerm::And(a, b)
     | VectorTerm::Or(a, b)

@@ -8,7 +8,7 @@ use super::symbolic::Product;
 use super::term::{ADDRESS, VectorTerm, VectorTermId, VectorTerms};
 use glint_base::fixed::mask;
 
-/// Half of the values are random, and the others are 0 or all ones.
+/// Half of the values are random, and the rest are 0 or all ones.
 fn unknowns(random: &mut ChaCha8Rng) -> Vec<u64> {
     let of = |random: &mut ChaCha8Rng| match random.next_u32() % 4 {
         0 => 0,

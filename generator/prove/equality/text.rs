@@ -1,6 +1,6 @@
-//! Proves that the emitted Verilog of a pipeline and its netlist have the same outputs, except `in_ready` and `table_ready`, when they show the
-//! results of a point (one set of operands). The proof holds for every point, and for any earlier contents of registers and
-//! memories, except the slot counter.
+//! Proves that the emitted Verilog of a pipeline and its netlist show the same results for every point (one set of operands). All
+//! outputs except `in_ready` and `table_ready` are compared. The proof holds for any earlier contents of registers and memories,
+//! except the slot counter.
 //!
 //! Yosys has read the Verilog, and the module executes netlist and Verilog on symbolic terms, with unknown registers and
 //! memories at the beginning. [`Counters`] finds the slot counter, and proves that every memory is a delay line. The module
@@ -42,9 +42,9 @@ pub struct TextProof {
     pub outputs: usize,
     /// The number of Verilog registers that are proved equal to a net of the netlist, counted for every clock of a point.
     pub registers: usize,
-    /// For each read port of each written memory, the largest number of clocks from a write to a read.
+    /// The largest number of clocks from a write to a read, for each read port of each written memory.
     pub delays: Vec<usize>,
-    /// The number of questions to the solver. Other equalities need none, because both sides are the same term.
+    /// The number of questions to the solver. An equality needs no question if both sides are the same term.
     pub questions: usize,
 }
 
@@ -52,8 +52,8 @@ pub struct TextProof {
 /// [`glint_tools::elaborate`] for this Verilog. `limit` is the time limit of all answers of the solver together.
 ///
 /// # Errors
-/// Fails if the design is no pipeline, if the Verilog lacks an output of the netlist or has an output of another width, or if
-/// the solver cannot be run.
+/// Fails if the design is no pipeline. Fails if the Verilog lacks an output of the netlist or has an output of another width, or
+/// if the solver cannot be run.
 pub fn compare_text(
     design: &Design,
     text: &Value,
@@ -120,7 +120,7 @@ struct TextComparison<'p> {
     counters: &'p Counters,
     latency: usize,
     terms: VectorTerms,
-    /// The terms of the inputs, by name and clock.
+    /// The terms of the inputs. The key is the name and the clock.
     inputs: HashMap<(String, usize), VectorTermId>,
     products: Vec<Product>,
     /// For the term of each register of the netlist in the present clock, an unknown of the same width.
@@ -130,8 +130,7 @@ struct TextComparison<'p> {
 }
 
 /// Returns the term of an input in clock number `clock`; the point enters in clock 0. The handshake is fixed: no reset,
-/// `out_ready` is 1, and `in_valid` is 1 in clock 0. Every other input is an unknown, the same for the same `name` and
-/// `clock`.
+/// `out_ready` is 1, and `in_valid` is 1 in clock 0. The remaining inputs are unknowns, one for each `name` and `clock`.
 fn input(
     terms: &mut VectorTerms,
     inputs: &mut HashMap<(String, usize), VectorTermId>,
@@ -160,7 +159,7 @@ impl TextComparison<'_> {
         Ok(())
     }
 
-    /// Returns constants in the slot counter, and unknowns in all other registers.
+    /// Returns the registers with constants in the slot counter and unknowns in all other registers.
     fn registers_in_slot(&mut self, slot: usize) -> RegisterContents {
         let mut held = self.module.power_up(&mut self.terms);
         for (&register, &bits) in &self.counters.slots[slot] {
@@ -171,7 +170,7 @@ impl TextComparison<'_> {
     }
 
     /// Proves that a clock in the slot either moves all points or changes nothing. A clock that moves no point must change no
-    /// register and no memory. A clock that moves the points must do the same as a clock with `out_ready` = 1. With an
+    /// register and no memory. A clock that moves the points must have the effect of a clock with `out_ready` = 1. With an
     /// interval of 1, the points move if `in_ready` is 1. With a longer interval, they move if the slot counter counts.
     fn stays_in_slot(&mut self, slot: usize) -> Result<(), EarlyEnd> {
         let module = self.module;
@@ -257,10 +256,10 @@ impl TextComparison<'_> {
         Ok(())
     }
 
-    /// Returns a one-bit term that is 1 if a counter has another value `after` a clock than `before`.
+    /// Returns a one-bit term that is 1 if the value `after` a clock differs from the value `before`.
     fn counts(&mut self, before: VectorTermId, after: VectorTermId) -> VectorTermId {
         match *self.terms.term(after) {
-            // The condition itself, so that it can be replaced by its value in other terms.
+            // The condition itself, so it can be replaced by its value in other terms.
             VectorTerm::Choice(condition, next, kept) if kept == before && next != before => {
                 condition
             }
@@ -271,7 +270,7 @@ impl TextComparison<'_> {
         }
     }
 
-    /// Proves that netlist and Verilog have the same outputs in the clock in which the results of a point are shown.
+    /// Proves that netlist and Verilog have the same outputs in the clock in which a point's results are shown.
     fn follows_a_point(&mut self) -> Result<(), EarlyEnd> {
         let nets = self.netlist()?;
         let module = self.module;
@@ -302,8 +301,8 @@ impl TextComparison<'_> {
         Ok(())
     }
 
-    /// Returns the term of every net of the netlist in each clock. The point enters in the first clock, and the last clock has
-    /// its results. The slot counter begins with 0; the netlist must take the point in this slot.
+    /// Returns the term of every net of the netlist in each clock, from the clock in which the point enters to the clock with its
+    /// results.
     fn netlist(&mut self) -> Result<Vec<Vec<VectorTermId>>> {
         let design = self.design;
         let execution = Execution::new(&mut self.terms, design);
@@ -336,8 +335,8 @@ impl TextComparison<'_> {
         Ok(nets)
     }
 
-    /// Fills `unknown_registers` for the present clock, except for terms that are constants or unknowns already. `nets` are
-    /// the terms of the nets in this clock.
+    /// Fills `unknown_registers` for the present clock, except for terms that are already constants or unknowns. `nets` are the
+    /// terms of the nets in this clock.
     fn forget_registers(&mut self, nets: &[VectorTermId]) {
         self.unknown_registers.clear();
         for register in &self.design.registers {
@@ -395,7 +394,7 @@ impl TextComparison<'_> {
 
     fn results(&mut self, values: &WireValues, nets: &[VectorTermId]) -> Result<(), EarlyEnd> {
         let shown = self.module.shown(&mut self.terms, values);
-        // The proof of the handshake is about the other outputs.
+        // The handshake's proof is about the other outputs.
         let is_result = |port: &&Port| !matches!(port.role, Role::InReady | Role::TableReady);
         for port in self.design.outputs().filter(is_result) {
             let name = &self.design.net(port.net).name;
@@ -408,8 +407,8 @@ impl TextComparison<'_> {
         Ok(())
     }
 
-    /// Proves that two terms are equal, or, with a `condition`, if its bit has its value. For example, a register must keep
-    /// its value if `in_ready` is 0. `what` names the terms in a message.
+    /// Proves that two terms are equal. With `condition`, a bit and its value, they need only be equal if the bit has this value.
+    /// For example, a register must keep its value if `in_ready` is 0. `what` names the terms in a message.
     fn must_equal(
         &mut self,
         condition: Option<(VectorTermId, bool)>,
@@ -449,9 +448,8 @@ impl TextComparison<'_> {
     }
 
     /// Asks the solver whether the one-bit terms `wanted` can all be 1. The first question has unknowns in place of the
-    /// registers, so that it concerns the logic of one clock alone. If these terms cannot all be 1 for any values of the
-    /// registers, they cannot be 1 for the values that the registers have. The second question has these values. The third has
-    /// also the facts about partial products.
+    /// registers, so it concerns the logic of one clock alone. "Never" as an answer then holds for every value of the registers.
+    /// The second question has the terms of the registers. The third also has the facts about partial products.
     fn ask(&mut self, wanted: &[VectorTermId]) -> Result<SolverAnswer> {
         let mut of_one_clock = wanted.to_vec();
         self.terms.replace(&self.unknown_registers, &mut of_one_clock);
@@ -467,8 +465,8 @@ impl TextComparison<'_> {
         }
     }
 
-    /// Finds values of the unknowns for which all `wanted` terms are 1, and describes in words the two terms that then differ.
-    /// The function tries 24 sets of random values, and the values `found` by the solver.
+    /// Finds values of the unknowns for which all `wanted` terms are 1, and describes how the two terms then differ. Returns
+    /// `None` without such values.
     fn difference(
         &self,
         wanted: &[VectorTermId],

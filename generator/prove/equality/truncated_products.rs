@@ -1,8 +1,8 @@
-//! Expresses a product of the sequential core by a product of the pipeline whose factors have only the low bits of the core's
-//! factors.
+//! Expresses a product of the sequential core by a product of the pipeline, if the pipeline's factors have only the low bits of
+//! the core's factors.
 //!
-//! A pipeline treats the highest bit of a factor separately if it is a sign, or if it can be set only when all other bits are
-//! 0. The core's product is then the pipeline's product plus the other factor times the highest bits.
+//! A pipeline treats the highest bit of a factor separately if it is a sign, or if it can be set only when all other bits are 0.
+//! The core's product is then the pipeline's product plus the second factor times the highest bits.
 
 use anyhow::Result;
 
@@ -13,8 +13,8 @@ use super::split_products::agree;
 use super::term::{VectorTerm, VectorTermId};
 use glint_base::fixed::MAX_WIDTH;
 
-/// How a factor of the core follows from a factor of the pipeline. Both are the same, or the pipeline's factor is this number
-/// of lowest bits of the core's factor.
+/// How a factor of the core follows from a factor of the pipeline: they are the same, or the pipeline's factor is this number of
+/// lowest bits of the core's factor.
 #[derive(Clone, Copy)]
 enum Factor {
     Same,
@@ -22,8 +22,8 @@ enum Factor {
 }
 
 impl PipelineComparison<'_> {
-    /// Stores in `divided`, for each product on which `wanted` depends, how it follows from a product of the pipeline, if one
-    /// is found.
+    /// Stores in `divided` how each product on which `wanted` depends follows from a product of the pipeline, if the search finds
+    /// one.
     pub(super) fn divide_by_lowest(&mut self, wanted: &[VectorTermId]) -> Result<()> {
         for id in self.terms.cone(wanted.iter().copied()) {
             let VectorTerm::Product(a, b) = *self.terms.term(id) else { continue };
@@ -41,7 +41,7 @@ impl PipelineComparison<'_> {
     }
 
     /// Stores in `divided` how the product a·b follows from the pipeline's product c·d, if a follows from c and b from d.
-    /// Returns whether both do.
+    /// Otherwise returns false.
     fn by_parts(&mut self, [a, b]: [VectorTermId; 2], [c, d]: [VectorTermId; 2]) -> Result<bool> {
         let (Some(first), Some(second)) = (self.made(a, c)?, self.made(b, d)?) else {
             return Ok(false);
@@ -51,9 +51,8 @@ impl PipelineComparison<'_> {
         Ok(true)
     }
 
-    /// Returns how `factor`, a factor of the core's product, follows from `of`, a factor of the pipeline's product. Either both
-    /// are equal, or `of` has only the low bits of `factor`, with zeros above them. Returns `None` if the solver proves
-    /// neither.
+    /// Returns how `factor`, a factor of the core's product, follows from `of`, a factor of the pipeline's product. Returns
+    /// `None` if the solver proves neither.
     fn made(&mut self, factor: VectorTermId, of: VectorTermId) -> Result<Option<Factor>> {
         if self.same(factor, of)? {
             return Ok(Some(Factor::Same));
@@ -64,7 +63,7 @@ impl PipelineComparison<'_> {
         Ok(self.same(low, bits)?.then_some(Factor::Lowest(width)))
     }
 
-    /// Returns whether the solver proves that two terms are equal. It is not asked about terms that differ at random values.
+    /// Returns whether the solver proves that two terms are equal. Terms that differ at random values need no question.
     fn same(&mut self, one: VectorTermId, other: VectorTermId) -> Result<bool> {
         if one == other || !agree(&self.terms, one, other) {
             return Ok(one == other);
@@ -76,9 +75,9 @@ impl PipelineComparison<'_> {
         Ok(matches!(said, SolverAnswer::Unsatisfiable))
     }
 
-    /// Stores how the product of `factor` and `other` follows from the product of `part` and `other`. Either both are equal,
-    /// or they differ by the product of `other` and the bits of `factor` above `part`. If only the highest bit is above, this
-    /// is a product by 0, 1 or −1.
+    /// Stores how the product of `factor` and `other` follows from the product of `part` and `other`. Either the products are
+    /// equal, or they differ by the product of `other` and the bits of `factor` above `part`. If only the highest bit is above,
+    /// this difference is a product by 0, 1 or −1.
     fn note(
         &mut self,
         factor: VectorTermId,

@@ -1,4 +1,4 @@
-//! Records at which positions of a test the simulated hardware reads each ROM word, with the operands.
+//! Records when a test of the simulated hardware reads each ROM word, and with which operands.
 //!
 //! A fault in a ROM word can only show after a read of the word. The first check of the fault therefore runs only the recorded
 //! parts of the test.
@@ -15,8 +15,7 @@ const PLACES: usize = 6;
 
 pub(super) type OperandValues = Vec<(String, i64)>;
 
-/// A position in a test. For example, seed 1 and 40 points are the position in the stream with seed 1 after its first 40
-/// results.
+/// A position in a test. For example, seed 1 and 40 points are the position in the stream with seed 1 after 40 results.
 #[derive(Clone)]
 pub(super) struct TestPlace {
     pub(super) seed: u64,
@@ -26,7 +25,7 @@ pub(super) struct TestPlace {
     operands: Vec<u64>,
 }
 
-/// For each ROM and each of its words, the first positions in a test at which the simulated hardware reads it.
+/// The first positions in a test at which the simulated hardware reads each word of each ROM.
 pub(super) struct Coverage {
     places: Vec<Vec<Vec<TestPlace>>>,
     operands: Vec<NetId>,
@@ -34,7 +33,7 @@ pub(super) struct Coverage {
 
 struct PlaceWatch<'a> {
     seed: u64,
-    /// For each ROM, the net of its address, and the address in the latest clock.
+    /// The net of each ROM's address, and the address in the latest clock.
     addresses: Vec<(NetId, u64)>,
     operands: &'a [NetId],
     places: Vec<Vec<Vec<TestPlace>>>,
@@ -46,7 +45,7 @@ impl<'a> PlaceWatch<'a> {
         Self { seed, addresses, operands, places: no_places(design) }
     }
 
-    /// `points` is the number of results so far.
+    /// Records the words that the ROMs read now. `points` is the number of results so far.
     fn note(&mut self, points: u64, simulator: &Simulator) {
         for ((address, latest), places) in self.addresses.iter_mut().zip(&mut self.places) {
             let word = simulator.value(*address);
@@ -100,7 +99,7 @@ impl Coverage {
         &self.places[rom.index()][word]
     }
 
-    /// Returns the raw values in the operand registers at each position at which the test reads a ROM word.
+    /// Returns the raw values in the operand registers at each recorded position for a ROM word.
     pub(super) fn operands(
         &self,
         design: &Design,
@@ -121,7 +120,7 @@ impl Coverage {
     }
 }
 
-/// Returns the name of the operand whose value a register holds, if it loads a port or an operand buffer.
+/// Returns the name of the operand that `register` holds, or `None` if it loads neither a port nor an operand buffer.
 pub(super) fn operand_of<'d>(design: &'d Design, register: &NetlistRegister) -> Option<&'d str> {
     let taken = cone::reached(register.data, |net| match &design.net(net).driver {
         Driver::Op(op) => op.operands(),

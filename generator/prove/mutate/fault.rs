@@ -1,7 +1,7 @@
 //! Lists the faults that mutation testing plants in a netlist, each with a name that stays the same from run to run.
 //!
-//! For example, `adder15[3]:stuck-at-0` is bit 3 of the net `adder15`, stuck at 0. For a large ROM, the list has only a sample
-//! of the faulty words. The module plants nothing.
+//! For example, `adder15[3]:stuck-at-0` is bit 3 of the net `adder15`, stuck at 0. For a large ROM, the list has only a sample of
+//! the faulty words.
 
 use std::collections::BTreeSet;
 
@@ -11,8 +11,8 @@ use glint_base::fixed::mask;
 use glint_core::cosim::Random;
 use glint_rtl::netlist::{Design, Driver, Net, NetId, Op, RegId, Role, RomId};
 
-/// The largest number of words of a ROM for which all pairs of words are swapped, and the largest number of bits of a ROM for
-/// which every bit is inverted.
+/// The limits for a complete list: the number of words of a ROM for all swaps of two words, and the number of its bits for all
+/// inversions.
 const ALL_WORDS: usize = 32;
 const ALL_BITS: usize = 1024;
 
@@ -32,7 +32,7 @@ pub enum BitChange {
 impl BitChange {
     pub const ALL: [Self; 3] = [Self::Stuck0, Self::Stuck1, Self::Inverted];
 
-    /// Changes bit number `bit`. For example, bit 0 of 0b1010 inverted gives 0b1011.
+    /// Returns `bits` with bit number `bit` changed. For example, bit 0 of 0b1010 inverted gives 0b1011.
     pub fn applied(self, bits: u64, bit: u32) -> u64 {
         match self {
             Self::Stuck0 => bits & !(1 << bit),
@@ -46,7 +46,7 @@ impl BitChange {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Site {
     Bit(NetId, u32, BitChange),
-    /// Another driver for a net, which is not the output of a register or memory.
+    /// A different driver for a net that is not the output of a register or memory.
     Driver(NetId, Driver),
     /// A register that loads its data always (`true`) or never (`false`).
     Enable(RegId, bool),
@@ -65,12 +65,12 @@ pub struct NetlistFault {
     pub site: Site,
 }
 
-/// The faults that can be planted in a netlist, each in a mutant of its own. For large ROMs this is a sample.
+/// The faults that can be planted in a netlist, each in a mutant of its own. For large ROMs, the list is a sample.
 #[derive(Clone, Debug, Default)]
 pub struct Faults(Vec<NetlistFault>);
 
 impl Faults {
-    /// The sample for large ROMs is always the same.
+    /// Lists the faults of `design`. The sample for large ROMs is always the same.
     pub fn of(design: &Design) -> Self {
         let mut faults = Self::default();
         // Two nets are left out: the reset, which the environment drives, and the control word, because its fields are nets
@@ -215,7 +215,7 @@ impl Faults {
     }
 }
 
-/// Returns pairs of addresses whose words differ: all pairs of a small ROM, and neighbours and a sample of a large one.
+/// Returns pairs of addresses with different words: all such pairs of a small ROM, or neighbours and a sample for a large ROM.
 fn pairs(words: &[u64], random: &mut Random) -> BTreeSet<(usize, usize)> {
     let mut pairs = BTreeSet::new();
     if words.len() <= ALL_WORDS {
@@ -233,7 +233,8 @@ fn pairs(words: &[u64], random: &mut Random) -> BTreeSet<(usize, usize)> {
     pairs
 }
 
-/// Names the field of the control ROM's words that contains a bit, and the bit in it, for example `difference_load[0]`.
+/// Names the field of the control word that contains bit number `bit`, and the bit's position in the field, for example
+/// `difference_load[0]`.
 fn field_bit(design: &Design, bit: u32) -> String {
     let fields = design.control.fields.iter().zip(design.field_positions());
     let mut holding =

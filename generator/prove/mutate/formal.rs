@@ -21,7 +21,7 @@ pub(super) const MUTANT: &str = "glint_mutant.v";
 const FREE: &str = "glint_free.txt";
 const STATUS: &str = "glint_status.txt";
 
-/// Each attempt lets more nets differ.
+/// The number of attempts; each attempt lets more nets differ.
 const ROUNDS: usize = 4;
 
 /// A line of Yosys's answer about a net for which the equality is not proved.
@@ -35,15 +35,15 @@ fn pattern(text: &str) -> Regex {
     Regex::new(text).expect("a pattern of ours")
 }
 
-/// Returns whether Yosys proves that every port and register of the module `name` carries the same values in the fault-free
-/// module and in the mutant, for all inputs. Wires may differ. A proof that takes more than `limit` fails.
+/// Returns whether Yosys proves that every port and register of the module `name` is equal in the fault-free module and in the
+/// mutant, for all inputs. Wires may differ. Returns false if the proof takes more than `limit`.
 ///
-/// The proof is temporal induction from a state in which both modules agree. Yosys first merges cells with the same inputs,
-/// including multipliers and ROMs. The first attempt proves all nets with the same name equal, which makes the proof short.
-/// Nets that differ are left out of the next attempt. `gold` are the fault-free files in `directory`, and in `gate` one file
-/// is [`MUTANT`].
+/// The proof is temporal induction from a state in which both modules agree. The first attempt proves all nets with the same name
+/// equal, which makes the proof short. The next attempt leaves out nets that differ. `gold` are the fault-free files in
+/// `directory`; in `gate` one file is [`MUTANT`].
 ///
 /// # Errors
+///
 /// Fails if Yosys is missing, or if a file cannot be read or written.
 pub(super) fn proves(
     directory: &Path,

@@ -39,9 +39,9 @@ kinds! {
     Constant = "constant off by one",
     /// Two inputs of a mux change places.
     MuxInputs = "mux inputs swapped",
-    /// A mux takes the same input always.
+    /// A mux always passes on the same input.
     MuxChoice = "mux choice fixed",
-    /// The limit of a saturation is never taken.
+    /// A saturation's limit is never taken.
     Saturation = "saturation lost",
     /// An adder ignores its carry, or does not add the bit that rounds.
     Rounding = "rounding wrong",
@@ -49,9 +49,9 @@ kinds! {
     Operands = "operands swapped",
     /// The cell has another operator. For example, an AND becomes an OR.
     Operator = "operator wrong",
-    /// Bits next to the right ones are taken. For example, bits 1 to 4 in place of bits 2 to 5.
+    /// A slice takes neighbouring bits. For example, bits 1 to 4 in place of bits 2 to 5.
     Wiring = "wiring wrong",
-    /// A register takes its data always, or never.
+    /// A register always takes its data, or never.
     Enable = "enable dropped",
     /// A register is not reset.
     Reset = "reset dropped",

@@ -1,8 +1,8 @@
-//! Tests the tests of a core by mutation: plants faults, and finds out which of them the tests notice.
+//! Tests the tests of a core by mutation: plants faults, and finds out which faults the tests notice.
 //!
 //! Faults are planted one at a time, in the netlist ([`Faults`]) and in the emitted Verilog ([`VerilogText`]). A design with a
 //! fault is a *mutant*. Each mutant is *caught* by a test (in the Verilog also by lint), proved *equivalent* to the fault-free
-//! design, or left *undecided*: a mutant that no test notices counts as equivalent only with a proof. Whether the shipped test
+//! design, or left *undecided*. A mutant that no test notices counts as equivalent only with a proof. Whether the shipped test
 //! bench notices a mutant is counted separately.
 
 mod coverage;

@@ -1,13 +1,11 @@
-//! Lists the faults that replace a whole cell by another cell: another operator, swapped operands or mux inputs, a mux stuck at
-//! one input, a sum without its carry or its rounding bit, or a slice one bit too low or too high.
-//!
-//! The module `fault` lists the faults of single bits, constants, registers and ROMs.
+//! Lists the faults that replace a whole cell by a different cell: a wrong operator, swapped operands or mux inputs, a mux stuck
+//! at one input, a sum without its carry or rounding bit, or a slice one bit too low or too high.
 
 use super::kind::FaultKind;
 use glint_rtl::netlist::{Design, Driver, NetId, Op};
 
-/// Returns the faulty cells that can replace `op`, the driver of net `id`. For example, `a & b` gives the fault `or`, which is
-/// `a | b`. A cell such as a product has none.
+/// Returns the faulty cells that can replace `op`, the driver of net `id`. For example, `a & b` gives the fault `or`, which is `a
+/// | b`. A product gives no fault.
 pub(super) fn of(design: &Design, id: NetId, op: &Op) -> Vec<(String, FaultKind, Op)> {
     let width = design.width(id);
     match op {
@@ -68,8 +66,7 @@ fn mux(design: &Design, select: NetId, inputs: &[NetId]) -> Vec<(String, FaultKi
     faults
 }
 
-/// Makes a difference of the sum, or leaves out its carry or the bit that rounds. For example, `a + b + carry` becomes `a - b`
-/// in the fault `sub` and `a + b` in the fault `no-carry`.
+/// Replaces the sum by a difference, or leaves out its carry or rounding bit.
 fn add(design: &Design, a: NetId, b: NetId, carry: Option<NetId>) -> Vec<(String, FaultKind, Op)> {
     let mut faults = vec![operator("sub", Op::Sub(a, b))];
     if carry.is_some() {
@@ -85,7 +82,7 @@ fn add(design: &Design, a: NetId, b: NetId, carry: Option<NetId>) -> Vec<(String
     faults
 }
 
-/// Takes the bits one position lower or higher, if the net of `have` bits has them.
+/// Returns slices that take their bits one position lower or higher, if the net of `have` bits has such bits.
 fn slice(of: NetId, low: u32, width: u32, have: u32) -> Vec<(String, FaultKind, Op)> {
     let mut faults = Vec::new();
     let mut shifted = |name: &str, low| {

@@ -17,18 +17,16 @@ const POINTS: u64 = 1 << 17;
 /// The number of results that are compared if all operands are fixed.
 const FEW_POINTS: u64 = 64;
 
-/// The seed for drawing the operands that are not fixed.
 const SEED: u64 = 3;
 
-/// If the operand that addresses the ROM is fixed: the largest number of operand bits for which all values of the others are
-/// tried.
+/// The largest number of operand bits for which [`all`] tries every combination, if the operand that addresses the ROM is fixed.
 pub(super) const MOST_BITS: u32 = 22;
 
-/// The same number if no operand is fixed; the values are then tried once for each faulty word.
+/// The largest number of operand bits for which [`all`] tries every combination, if no operand is fixed.
 pub(super) const NARROW: u32 = 16;
 
-/// Returns the operand that addresses a ROM directly, with the raw value that selects a word. For example, the ROM whose
-/// address is the operand `exponent` gives `exponent` and 5 for word 5.
+/// Returns the operand that directly addresses `rom`, with the raw value that selects word number `word`. For example, a ROM with
+/// the operand `exponent` as its address gives `exponent` and 5 for word 5. Returns `None` for any other address.
 pub(super) fn addressing(core: &Core, rom: RomId, word: usize) -> Option<OperandValues> {
     let design = &core.design;
     let net = design.net(design.rom(rom).address);
@@ -39,10 +37,11 @@ pub(super) fn addressing(core: &Core, rom: RomId, word: usize) -> Option<Operand
     Some(vec![(operand_of(design, register)?.to_owned(), word as i64)])
 }
 
-/// Returns the first difference between a mutant and the golden model for 131 072 random points. In these, the operands `held`
-/// nearly always keep their values.
+/// Returns the first difference between a mutant and the golden model for 131 072 random points. The operands `held` nearly
+/// always keep their values.
 ///
 /// # Errors
+///
 /// Fails if the mutant cannot be simulated.
 pub(super) fn drawn(
     core: &Core,
@@ -54,9 +53,10 @@ pub(super) fn drawn(
     Ok(mismatch.map(|mismatch| SignalDifference { held, mismatch }))
 }
 
-/// Does the same as [`drawn`] for 64 points.
+/// Returns the first difference like [`drawn`], but for 64 points.
 ///
 /// # Errors
+///
 /// Fails if the mutant cannot be simulated.
 pub(super) fn alone(
     core: &Core,
@@ -78,10 +78,11 @@ pub(super) enum Tried {
     Differs(OperandValues),
 }
 
-/// Compares a mutant with the golden model for all values of the operands that determine `f`, if these have at most
-/// `most_bits` bits together. The operands `held` keep their raw values, and each colour operand has its largest value.
+/// Compares a mutant with the golden model for all values of the control operands, if they have at most `most_bits` bits
+/// together. The operands `held` keep their raw values, and each colour operand has its largest value.
 ///
 /// # Errors
+///
 /// Fails if the mutant cannot be simulated.
 pub(super) fn all(
     core: &Core,

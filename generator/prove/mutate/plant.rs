@@ -1,4 +1,4 @@
-//! Makes a mutant: a copy of a netlist with one fault, which can be simulated and emitted as any other netlist.
+//! Makes a mutant: a copy of a netlist with one fault. It can be simulated and emitted like any netlist.
 
 use std::borrow::Cow;
 
@@ -7,8 +7,8 @@ use glint_rtl::netlist::microcode;
 use glint_rtl::netlist::{Design, Driver, Net, NetId, Op, RegId, RomId};
 
 impl NetlistFault {
-    /// Returns a copy of the design in which this fault is planted. Its nets keep the intervals of the fault-free design,
-    /// which their values in the copy may leave.
+    /// Returns a copy of `design` with this fault. Its nets keep the intervals of the fault-free design, which their values in
+    /// the copy may leave.
     pub fn planted(&self, design: &Design) -> Design {
         let mut mutant = design.clone();
         match &self.site {
@@ -23,7 +23,7 @@ impl NetlistFault {
     }
 }
 
-/// Drops the comments on nets and ROMs, so that a copy for each fault is cheap.
+/// Drops the comments on nets and ROMs, so a copy for each fault is cheap.
 pub(super) fn bare(design: &Design) -> Design {
     let mut bare = design.clone();
     for rom in &mut bare.roms {
@@ -36,8 +36,8 @@ pub(super) fn bare(design: &Design) -> Design {
     bare
 }
 
-/// Adds a net with the format of `like`. For example, the suffix `sound` names the net `product_sound` after `product`, and
-/// `product_sound_` if that name is taken.
+/// Adds a net with the format of `like` and a name with `suffix`. For example, the suffix `sound` gives `product_sound` for the
+/// net `product`, and `product_sound_` if that name is taken.
 fn add(design: &mut Design, like: NetId, suffix: &str, driver: Driver) -> NetId {
     let mut name = Cow::from(format!("{}_{suffix}", design.net(like).name));
     while design.find(&name).is_some() {
@@ -48,8 +48,8 @@ fn add(design: &mut Design, like: NetId, suffix: &str, driver: Driver) -> NetId 
     design.add_net(Net { name, driver, block: None, doc, named: false, ..like })
 }
 
-/// Returns the driver of a net that has the value of `sound` with the fault `how` in one bit. For example, a bit stuck at 1 is
-/// an OR with a constant.
+/// Returns the driver of a net with the value of `sound` and the fault `how` in bit number `bit`. For example, a bit stuck at 1
+/// is an OR with a constant.
 fn at_fault(design: &mut Design, sound: NetId, bit: u32, how: BitChange) -> Driver {
     let ones = match how {
         BitChange::Stuck0 => glint_base::fixed::mask(design.width(sound)) & !(1 << bit),
@@ -96,7 +96,7 @@ fn plant_bit(design: &mut Design, net: NetId, bit: u32, how: BitChange) {
     }
 }
 
-/// Makes everything that reads the net `from` read the net `to`, except the cells that drive the nets in `except`.
+/// Makes all readers of the net `from` read the net `to`, except the cells that drive the nets in `except`.
 fn redirect(design: &mut Design, from: NetId, to: NetId, except: &[NetId]) {
     let redirect = |net: &mut NetId| {
         if *net == from {
@@ -130,7 +130,7 @@ fn never(design: &mut Design, id: RegId) {
     register.data = Some(register.q);
 }
 
-/// Replaces words of a ROM, given by address. For the control ROM, the microinstructions change too.
+/// Replaces `words` of a ROM, each given with its address. For the control ROM, the microinstructions also change.
 fn plant_words(design: &mut Design, id: RomId, words: &[(usize, u64)]) {
     for &(at, word) in words {
         design.roms[id.index()].words[at] = word;

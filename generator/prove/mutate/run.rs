@@ -1,10 +1,10 @@
-//! Plants faults one at a time in the netlist of a core, and finds the verdict on each: caught by a check, proved equivalent,
-//! or undecided.
+//! Plants faults one at a time in a core's netlist, and finds the verdict on each: caught by a check, proved equivalent, or
+//! undecided.
 //!
-//! For each fault, the module tries in turn a short test, the proofs, the default test and a last check, and ends with the
-//! first that decides. For a fault in a table, the last check is directed tests. For any other fault in a pipeline, it is a
-//! search for a point at which the mutant differs. For a fault that is not proved equivalent, the module also finds whether
-//! the shipped bench notices it.
+//! For each fault, the module tries in turn a short test, the proofs, the default test and a last check, until one of them
+//! decides. For a fault in a table, the last check is directed tests. For any other fault in a pipeline, it is a search for a
+//! point at which the mutant differs. For a fault that is not proved equivalent, the module also finds whether the shipped bench
+//! notices it.
 
 use std::sync::OnceLock;
 
@@ -24,20 +24,21 @@ use glint_core::observation::Vectors;
 use glint_golden::Model;
 use glint_rtl::netlist::{Design, RomId};
 
-/// The number of points of the short test, which are the first points of the default test's first stream. A difference in them
-/// is therefore a difference in the default test.
+/// The number of points of the short test. They are the first points of the default test's first stream, so the default test also
+/// finds a difference in them.
 const FIRST_POINTS: u64 = 256;
 
 /// A longer test that may read words which the default test does not read.
 const BEYOND_POINTS: u64 = 1_000_000;
 const BEYOND_SEED: u64 = 2;
 
-/// Plants each of the faults in turn, checks the mutant (the design with the fault), and returns the verdicts in the order of
-/// `faults`. The function calls `progress` after each fault.
+/// Plants each of `faults` in turn, checks the mutant, and returns the verdicts in the same order. Calls `progress` after each
+/// fault.
 ///
 /// # Errors
-/// Fails if a mutant cannot be simulated, or if golden model and fault-free simulation disagree. The message may have the id of
-/// the fault.
+///
+/// Fails if a mutant cannot be simulated, or if golden model and fault-free simulation disagree. The message may have the fault's
+/// id.
 pub fn run<'f>(
     core: &Core,
     faults: impl IntoIterator<Item = &'f NetlistFault>,
@@ -79,10 +80,10 @@ struct Bench<'a> {
     prover: Option<Prover<'a>>,
     /// The positions at which the default test reads each ROM word.
     tested: Coverage,
-    /// The same for a longer test, computed when they are first used.
+    /// The positions in a longer test, computed at the first use.
     beyond: OnceLock<Coverage>,
     shipped: Vectors,
-    /// The largest number of points in a pipeline, its stages; 0 for a sequential core.
+    /// The number of stages of a pipeline, which is the largest number of points in it; 0 for a sequential core.
     latency: u64,
 }
 
@@ -118,7 +119,7 @@ impl Bench<'_> {
     }
 
     /// Searches for a point at which the mutant of a pipeline differs from the fault-free pipeline, and confirms it with the
-    /// golden model. Otherwise the verdict is `Undecided`.
+    /// golden model. Without such a point, the verdict is `Undecided`.
     fn searched(&self, mutant: &Design) -> Result<MutantVerdict> {
         let Some(beside) = &self.beside else {
             return Ok(MutantVerdict::Undecided);
@@ -129,8 +130,7 @@ impl Bench<'_> {
             .map_or(MutantVerdict::Undecided, |it| MutantVerdict::Caught(Detector::Directed, it)))
     }
 
-    /// Returns the first difference in a short part of the default test. If words of a table are faulty, the part consists of
-    /// the streams that read these words, because the fault can show only there.
+    /// Returns the first difference in a short part of the default test.
     fn first_look(&self, mutant: &Design, site: &Site) -> Result<Option<Mismatch>> {
         let looks = match self.words(site) {
             Some(_) => self.places(site),
@@ -139,7 +139,7 @@ impl Bench<'_> {
         self.shown(mutant, looks)
     }
 
-    /// Returns the first difference in some streams. Each is a seed and the number of results to compare.
+    /// Returns the first difference in `streams`. A stream is a seed and the number of results to compare.
     fn shown(&self, mutant: &Design, streams: Vec<(u64, u64)>) -> Result<Option<Mismatch>> {
         for (seed, points) in streams {
             let mismatch = self.lockstep(mutant, seed)?.run_alone(points)?.mismatch;
@@ -150,9 +150,8 @@ impl Bench<'_> {
         Ok(None)
     }
 
-    /// Runs a mutant whose faulty table words are read only for a few operands, with these operands fixed. Then it runs the
-    /// mutant with all operands if they have few enough bits. If no combination differs for any of the words, the verdict is
-    /// `Equivalent`.
+    /// Runs a mutant with faulty table words: first with fixed operands that read the words, then with all operands if they have
+    /// few enough bits. If no combination differs for any of the words, the verdict is `Equivalent`.
     fn directed(
         &self,
         mutant: &Design,
@@ -198,8 +197,7 @@ impl Bench<'_> {
         })
     }
 
-    /// Returns the control operands of computations that read a word, as raw values by name. The computations are part of the
-    /// default test, or of a longer test if the default test does not read the word.
+    /// Returns the control operands of computations that read a word, as raw values by name.
     fn readings(&self, rom: RomId, word: usize) -> Result<Vec<OperandValues>> {
         let design = &self.sound;
         let mut readings: Vec<OperandValues> = self.tested.operands(design, rom, word).collect();
@@ -215,7 +213,7 @@ impl Bench<'_> {
     }
 
     /// Returns the first difference in the streams of a longer test that read a word, if the default test does not read it.
-    /// For a sequential core there is none, because its operand registers give directed operands for the word instead.
+    /// Returns `None` for a sequential core, where the operand registers give directed operands for the word.
     fn beyond_shows(&self, mutant: &Design, rom: RomId, word: usize) -> Result<Option<Mismatch>> {
         if self.latency == 0 || !self.tested.places(rom, word).is_empty() {
             return Ok(None);
@@ -223,8 +221,8 @@ impl Bench<'_> {
         self.shown(mutant, self.ends(self.beyond()?.places(rom, word)))
     }
 
-    /// Returns the streams that read words: the seed of each, and the number of results up to the end of the computation after
-    /// the read. For example, a read after 40 results in a pipeline of 7 stages gives the seed and 49.
+    /// Returns the streams that read words: the seed, and the number of results up to the end of the computation after the read.
+    /// For example, a read after 40 results in a pipeline of 7 stages gives the seed and 49.
     fn ends<'p>(&self, places: impl IntoIterator<Item = &'p TestPlace>) -> Vec<(u64, u64)> {
         let end = |place: &TestPlace| (place.seed, place.points + 2 + self.latency);
         places.into_iter().map(end).collect()
@@ -235,7 +233,8 @@ impl Bench<'_> {
         Lockstep::new(mutant, self.model.boxed_clone(), contract, seed)
     }
 
-    /// Returns the table and its faulty words, each with its address, if the fault is in a table and not in the control ROM.
+    /// Returns the table and its faulty words, each with its address. Returns `None` if the fault is not in a table, or is in the
+    /// control ROM.
     fn words<'s>(&self, site: &'s Site) -> Option<(RomId, &'s [(usize, u64)])> {
         match site {
             Site::Words(rom, words) if *rom != self.sound.control.rom => Some((*rom, words)),
@@ -243,7 +242,7 @@ impl Bench<'_> {
         }
     }
 
-    /// Returns the streams in which the default test reads the faulty words, as `ends` does.
+    /// Returns the streams in which the default test reads the faulty words (`Self::ends`).
     fn places(&self, site: &Site) -> Vec<(u64, u64)> {
         let Some((rom, words)) = self.words(site) else {
             return Vec::new();

@@ -1,7 +1,7 @@
-//! Counts the verdicts on the faults of a run, and decides whether the run passes.
+//! Counts the verdicts on a run's faults, and decides whether the run passes.
 //!
 //! [`Score`] counts faults in the netlist; it passes if at most 1 % of them are undecided. [`TextScore`] counts faults in the
-//! emitted Verilog. Callers compare the counts with the goals here.
+//! emitted Verilog.
 
 use std::collections::BTreeMap;
 
@@ -11,15 +11,15 @@ use super::kind::FaultKind;
 use super::verdict::{Detector, FaultResult, How, MutantVerdict};
 use super::verilog::{ShippedBench, TextFault, TextFaultResult, TextMutantVerdict};
 
-/// The largest share of the faults of a configuration that may be undecided.
+/// The largest share of undecided faults with which a configuration passes.
 pub const TOLERATED: f64 = 0.01;
 
-/// The share of the faults in the Verilog that the shipped bench should notice, among the faults that it or a longer bench
+/// The goal for the faults in the Verilog: the share that the shipped bench notices, among the faults that it or a longer bench
 /// notices.
 pub const GOAL_TEXT: f64 = 0.98;
 
-/// The share of inverted bits, in the upper half of table words, that the shipped bench should notice. Only inversions that
-/// some check notices count, so words that are never read do not count.
+/// The goal for inverted bits in the upper half of table words: the share that the shipped bench notices, among the inversions
+/// that some check notices.
 pub const GOAL_MEMORY: f64 = 0.95;
 
 /// A share of faults, for example "98 of 100 noticed".
@@ -30,7 +30,7 @@ pub struct Share {
 }
 
 impl Share {
-    /// Returns a number from 0 to 1: 3 noticed of 4 give 0.75, and 0 of 0 give 1.
+    /// Returns the share as a number from 0 to 1. For example, 3 of 4 give 0.75, and 0 of 0 give 1.
     pub fn value(self) -> f64 {
         if self.of == 0 { 1.0 } else { self.noticed as f64 / self.of as f64 }
     }
@@ -39,7 +39,7 @@ impl Share {
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Tally {
     pub planted: usize,
-    /// For each check, the number of faults that it noticed first.
+    /// The number of faults that each check noticed first.
     pub caught: BTreeMap<Detector, usize>,
     pub equivalent: BTreeMap<How, usize>,
     pub undecided: usize,
@@ -68,12 +68,13 @@ impl Tally {
         self.equivalent.values().sum()
     }
 
-    /// Returns a number from 0 to 1: 76 undecided faults of 10 457 give 0.0073, which [`TOLERATED`] allows.
+    /// Returns the share of undecided faults, from 0 to 1. For example, 76 undecided faults of 10 457 give 0.0073, which
+    /// [`TOLERATED`] allows.
     pub fn share_undecided(&self) -> f64 {
         if self.planted == 0 { 0.0 } else { self.undecided as f64 / self.planted as f64 }
     }
 
-    /// Counts only faults that any check notices.
+    /// Returns the share that the shipped bench notices, among the faults that any check notices.
     pub fn of_shipped(&self) -> Share {
         Share { noticed: self.shipped, of: self.shipped + self.missed }
     }
@@ -105,8 +106,8 @@ impl Score {
         self.all.share_undecided() <= TOLERATED
     }
 
-    /// Returns the share of inverted bits, in the upper half of ROM words, that the shipped bench notices, among the
-    /// inversions that any check notices. A design without ROMs has none.
+    /// Returns the share of inverted bits in the upper half of ROM words that the shipped bench notices, among the inversions
+    /// that any check notices. Returns `None` for a design without ROMs.
     pub fn of_memory(&self) -> Option<Share> {
         self.kinds.get(&FaultKind::RomHighBit).map(Tally::of_shipped)
     }
@@ -118,7 +119,7 @@ pub struct TextScore {
     pub planted: usize,
     /// The number of faults that a compiler or linter refuses or warns of.
     pub lint: usize,
-    /// The number of other faults that a test bench notices.
+    /// The number of faults that a test bench notices, without those in `lint`.
     pub bench: usize,
     pub equivalent: usize,
     pub undecided: Vec<String>,
@@ -129,7 +130,7 @@ pub struct TextScore {
 }
 
 impl TextScore {
-    /// `found` has the verdicts in the order of `faults`.
+    /// Counts the verdicts `found`, which are in the order of `faults`.
     pub fn of(faults: &[TextFault], found: &[TextFaultResult]) -> Self {
         let mut score = Self::default();
         for (fault, found) in faults.iter().zip(found) {

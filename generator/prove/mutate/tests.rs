@@ -1,5 +1,5 @@
 //! Tests the equivalence proofs against simulation, on a sample of the faults: a fault that simulation notices must never be
-//! proved equivalent. Other tests are about faults that the default test never reaches, and about single faults.
+//! proved equivalent.
 
 use std::path::{Path, PathBuf};
 

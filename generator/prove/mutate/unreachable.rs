@@ -1,5 +1,5 @@
 //! Finds faults that the default test cannot notice because its stimulus never exercises them: stuck bits of registers, and
-//! faults in ROM words. Any other fault may be unexercised, too.
+//! faults in ROM words.
 
 use anyhow::Result;
 
@@ -9,10 +9,10 @@ use glint_core::core::{Core, TEST_POINTS, TEST_SEED};
 use glint_rtl::netlist::NetId;
 use glint_rtl::sim::Simulator;
 
-/// Records, for each bit of some nets, whether it was 0 and whether it was 1 in a test.
+/// Records, for each bit of some nets, whether a test had it at 0 and at 1.
 struct BitWatch<'a> {
     nets: &'a [NetId],
-    /// For each net, the bits that were 0, and the bits that were 1.
+    /// The bits of each net that were 0, and the bits that were 1.
     seen: Vec<[u64; 2]>,
 }
 
@@ -60,7 +60,7 @@ pub fn unreached<'f>(core: &Core, faults: &[&'f NetlistFault]) -> Result<Vec<&'f
     Ok(unreached)
 }
 
-/// Returns whether a bit of a net was `value` at some time in a stream. The result is true for a net that was not watched.
+/// Returns whether a bit of `net` was `value` at some time in a stream, or true for a net that was not watched.
 fn has_had(nets: &[NetId], streams: &[BitWatch], net: NetId, value: usize, bit: u32) -> bool {
     let Some(at) = nets.iter().position(|&other| other == net) else {
         return true;

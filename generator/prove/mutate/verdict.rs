@@ -13,8 +13,8 @@ use glint_core::cosim::Mismatch;
 pub enum Detector {
     /// The default test, which compares golden model and simulated hardware for random operands.
     Cosim,
-    /// A directed test, which fixes operands at values with which the hardware reads faulty ROM words, or at a point that a
-    /// search has found.
+    /// A directed test, which fixes operands at a point that a search found, or at values with which the hardware reads faulty
+    /// ROM words.
     Directed,
 }
 
@@ -25,7 +25,7 @@ pub enum How {
     Induction,
     /// Every combination of values on the nets around the fault was tried.
     Exhaustion,
-    /// For a fault in words of a ROM, every combination of the operands with which the hardware reads the words was tried.
+    /// For a fault in words of a ROM, every combination of the operands that read the words was tried.
     Operands,
 }
 

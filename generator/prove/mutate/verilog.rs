@@ -1,8 +1,8 @@
 //! Plants faults in the text of the emitted Verilog, and finds out whether lint or a test bench notices them.
 //!
-//! Each mutant has one fault, such as a bug in the emitter could cause. For example, `4'd9` becomes `4'd8`. If lint, the
-//! shipped bench and a longer bench do not notice it, Yosys tries to prove that the fault changes nothing. No fault moves a
-//! register to the other clock edge, because in simulation its input is stable by then and only timing analysis could tell.
+//! Each mutant has one fault, such as a bug in the emitter could cause. For example, `4'd9` becomes `4'd8`. If lint, the shipped
+//! bench and a longer bench do not notice the fault, Yosys tries to prove that it changes nothing. No fault moves a register to
+//! the falling clock edge: in simulation its input is stable by then, and only timing analysis could notice.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -59,7 +59,7 @@ pub enum ShippedBench {
     /// The shipped bench fails, so it notices the fault.
     Noticed,
     Missed,
-    /// The shipped bench and a longer bench pass. If the fault changes an output, it does so seldom.
+    /// The shipped bench and a longer bench pass. If the fault changes an output at all, it does so seldom.
     Silent,
 }
 
@@ -74,7 +74,7 @@ const TOOLS: [&str; 4] = ["iverilog", "vvp", "verilator", "yosys"];
 /// The Verilog files of a configuration in which faults are planted, and the test benches and proofs that may notice the faults.
 pub struct VerilogText {
     files: Vec<OutputFile>,
-    /// The longer bench, all of whose points are random, and its vectors. They replace the shipped ones.
+    /// The longer bench, with random points only, and its vectors. They replace the shipped bench and vectors.
     longer: Vec<OutputFile>,
     core: String,
     is_pipeline: bool,
@@ -82,7 +82,7 @@ pub struct VerilogText {
     modules: Vec<usize>,
 }
 
-/// A kind of fault: `with` returns the text that replaces a match of `pattern`. If it is the original text, there is no fault.
+/// A kind of fault: `with` returns the text that replaces a match of `pattern`. The original text as the result means no fault.
 /// For example, the kind `constant` replaces `4'd9` by `4'd8`.
 struct TextOperator {
     kind: &'static str,
@@ -90,7 +90,7 @@ struct TextOperator {
     with: fn(&regex::Captures<'_>) -> String,
 }
 
-/// [`in_line`] applies these kinds to the part of a line that is code, but not to declarations of memories.
+/// The kinds of faults. [`in_line`] applies them to a line's code, but not to declarations of memories.
 static OPERATORS: LazyLock<Vec<TextOperator>> = LazyLock::new(|| {
     let operator = |kind, pattern, with| TextOperator {
         kind,
@@ -159,8 +159,7 @@ static OPERATORS: LazyLock<Vec<TextOperator>> = LazyLock::new(|| {
 });
 
 impl VerilogText {
-    /// Collects the Verilog files of a core, its shipped bench, and a longer bench. Faults are planted in the modules of the
-    /// core.
+    /// Collects the Verilog files of a core, its shipped bench, and a longer bench.
     ///
     /// # Errors
     /// Fails if `iverilog`, `vvp`, `verilator` or `yosys` is missing, if golden model and simulation differ, or if the files
@@ -178,8 +177,7 @@ impl VerilogText {
         Ok(text)
     }
 
-    /// Collects the Verilog files of the wrappers around a core, with their shipped benches and proofs. Faults are planted in
-    /// the wrappers.
+    /// Collects the Verilog files of the wrappers around a core, with their shipped benches and proofs.
     ///
     /// # Errors
     /// Fails if golden model and simulation differ, or if the files cannot be made.
@@ -214,7 +212,7 @@ impl VerilogText {
         &self.files
     }
 
-    /// Returns [`VerilogText::files`] with the fault planted in one of them.
+    /// Returns [`VerilogText::files`] with `fault` planted in one file.
     pub fn planted(&self, fault: &TextFault) -> Vec<OutputFile> {
         let mut text = String::new();
         for (number, line) in self.files[fault.file].contents.lines().enumerate() {
@@ -226,13 +224,13 @@ impl VerilogText {
         files
     }
 
-    /// Returns an empty text without a bench.
+    /// Returns the name of the bench's module, or an empty text without a bench.
     fn bench(&self) -> &str {
         let bench = self.files.iter().find(|file| file.kind == FileKind::Bench);
         bench.map_or("", OutputFile::main_module)
     }
 
-    /// Returns the faults in the order of the text.
+    /// Returns the faults in the text's order.
     pub fn faults(&self) -> Vec<TextFault> {
         let mut faults = Vec::new();
         for &file in &self.modules {
@@ -253,13 +251,13 @@ impl VerilogText {
         faults
     }
 
-    /// Plants each of the faults in turn, and returns the verdicts in the order of `faults`. `limit` is the time limit of each
-    /// run of a tool. The function calls `progress` after each fault.
+    /// Plants each of `faults` in turn, and returns the verdicts in the same order. `limit` is the time limit of each run of a
+    /// tool. Calls `progress` after each fault.
     ///
     /// # Errors
+    ///
     /// Fails if Verilator is missing, does not start, or does not end within `limit`; or if Yosys is missing. A missing Icarus
-    /// Verilog is no error: the verdict of every fault is then [`TextMutantVerdict::Lint`]. The message has the id of the
-    /// fault.
+    /// Verilog is no error: the verdict of every fault is then [`TextMutantVerdict::Lint`].
     pub fn run(
         &self,
         faults: &[TextFault],
@@ -315,7 +313,7 @@ impl VerilogText {
         Ok(!lint.status.success() || !lint.output.is_empty())
     }
 
-    /// Returns the verdict of the benches on a mutant. If both benches pass, it also returns the built shipped bench, whose
+    /// Returns the verdict of the benches on a mutant. If both benches pass, also returns the built shipped bench, because its
     /// directory has all files.
     fn benches(
         &self,
@@ -348,8 +346,8 @@ impl VerilogText {
         })
     }
 
-    /// Returns whether Yosys proves that the module in file number `file` behaves as it does without the fault. The directory
-    /// `dir` must contain all files. For a pipeline, the whole pipeline with its multiplier is proved.
+    /// Returns whether Yosys proves that the fault in file number `file` changes nothing. The directory `dir` must contain all
+    /// files.
     fn proves(
         &self,
         mutant: &[OutputFile],
@@ -378,8 +376,8 @@ impl VerilogText {
     }
 }
 
-/// Adds the faults of one line. `whole` is the line, `code` the part of it before a comment, `line` its number from 0, and
-/// `file` the index of the file.
+/// Adds the faults of one line to `faults`. `whole` is the line, `code` the part before a comment, `line` the line's number from
+/// 0, and `file` the index of the file `name`.
 fn in_line(
     name: &str,
     file: usize,

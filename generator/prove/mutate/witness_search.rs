@@ -1,9 +1,9 @@
-//! Searches for a combination of operands at which a mutant of a pipeline (the pipeline with one fault) gives a wrong value.
+//! Searches for operands at which a mutant of a pipeline (the pipeline with one fault) gives a wrong value.
 //!
-//! Some hardware exists in a pipeline but not in its sequential core, such as the parts of a split product. A fault there may
-//! show only if a carry runs through all bits that are later dropped, which random points rarely cause. The search keeps
-//! points that make registers differ in the latest stage so far, and changes one of their operands at a time. A search without
-//! a result proves nothing.
+//! Some hardware exists in a pipeline but not in its sequential core, such as a split product's parts. A fault in this hardware
+//! may show only if a carry runs through all bits that are later dropped, which random points rarely cause. The search keeps
+//! points that make registers differ in the latest stage so far, and changes one operand of such a point at a time. A search
+//! without a result proves nothing.
 
 use std::sync::Arc;
 
@@ -16,40 +16,36 @@ use glint_golden::{Contract, Operand};
 use glint_rtl::netlist::{Design, NetId, Pipeline, Role};
 use glint_rtl::sim::{CompiledDesign, Machine};
 
-/// The number of points that enter the pipelines in the same clock, each in a simulation of its own.
+/// The number of simulations side by side. In each clock, each simulation gets a point of its own.
 const LANES: usize = 64;
 
-/// The number of clocks of a search.
 const CLOCKS: usize = 1 << 16;
 
-/// The search ends after so many calls of `confirm` without a confirmed point. The golden model predicts a checkpoint only for
-/// points that execute its microinstruction, so some differences are not confirmed.
+/// The number of calls of `confirm` without a confirmed point after which the search ends. The golden model predicts a checkpoint
+/// only for points that execute its microinstruction, so some differences are not confirmed.
 const TRIES: usize = 32;
 
-/// The largest number of points that are kept and changed further.
+/// The largest number of points that the search keeps for further changes.
 const KEPT: usize = 32;
 
 const SEED: u64 = 4;
 
-/// A fault-free pipeline, prepared for the search for points at which mutants differ from it.
+/// A fault-free pipeline, prepared for a search for points at which mutants differ from it.
 pub(super) struct PointSearch {
     sound: Arc<CompiledDesign>,
-    /// `high` has the indices of the inputs that are 1 after a clock of reset (reset, `in_valid`, `out_ready`), so that a
-    /// point enters and leaves whenever it can.
+    /// `inputs` is the number of inputs. `high` has the indices of the inputs that are 1 after a clock of reset (reset,
+    /// `in_valid`, `out_ready`), so points enter and leave whenever they can.
     inputs: usize,
     high: Vec<usize>,
-    /// The operands of the contract, each with its index among the inputs.
+    /// The contract's operands, each with the index of its input.
     operands: Vec<(usize, Operand)>,
-    /// The stages from the operands to the results.
     stages: Vec<StageNets>,
-    /// The number of clocks from one point to the next.
     interval: usize,
 }
 
 #[derive(Clone, Default)]
 struct StageNets {
     registers: Vec<NetId>,
-    /// The nets that the golden model predicts.
     predicted: Vec<NetId>,
 }
 
@@ -96,11 +92,12 @@ impl PointSearch {
         })
     }
 
-    /// Searches for a point at which a mutant differs in a value that the golden model predicts, and calls `confirm` with its
-    /// operands, by name as raw values. Returns the first result of `confirm` that is not `None`. The search ends after 65 536
-    /// clocks, or if `confirm` returns `None` 32 times.
+    /// Searches for a point at which `mutant` differs in a value that the golden model predicts, and calls `confirm` with the raw
+    /// operands by name. Returns the first result of `confirm` that is not `None`. The search ends after 65 536 clocks, or if
+    /// `confirm` returns `None` 32 times.
     ///
     /// # Errors
+    ///
     /// Fails if `confirm` fails, or if the mutant cannot be simulated.
     pub(super) fn search<T>(
         &self,
@@ -176,8 +173,8 @@ impl PointSearch {
     }
 }
 
-/// Returns mostly a value of the operand's domain, sometimes one with a single bit set, and sometimes any value of the format.
-/// A single bit shows faults that make this bit stuck.
+/// Returns mostly a value of the operand's domain, sometimes a value with a single bit set, and sometimes any value of the
+/// format.
 fn value(random: &mut Random, operand: &Operand) -> i64 {
     let format = operand.format;
     match random.below(8) {
@@ -187,7 +184,7 @@ fn value(random: &mut Random, operand: &Operand) -> i64 {
     }
 }
 
-/// Inverts one bit. For example, 0 in an unsigned format of 8 bits becomes a power of two up to 128.
+/// Inverts a random bit of `raw`. For example, 0 in an unsigned format of 8 bits becomes a power of two up to 128.
 fn flipped(random: &mut Random, Operand { format, .. }: &Operand, raw: i64) -> i64 {
     format.raw(raw as u64 ^ 1 << random.below(format.width().into())) as i64
 }
@@ -202,7 +199,7 @@ fn differing<'m>(
     (0..LANES).filter(move |&lane| differences[lane] != 0)
 }
 
-/// The points that make registers differ in the latest stage that was reached so far.
+/// The points that make registers differ in the latest stage that a search has reached so far.
 #[derive(Default)]
 struct DeepestPoints {
     depth: usize,

@@ -32,7 +32,11 @@ pub struct CellLibrary {
 }
 
 impl CellLibrary {
-    /// Fails if the library is missing or cannot be read. If it is missing, the message says how to install it.
+    /// Reads the library.
+    ///
+    /// # Errors
+    ///
+    /// Fails if the file is missing or cannot be read. For a missing file, the message says how to install it.
     pub fn read(path: &Path) -> Result<Self> {
         if !path.is_file() {
             bail!(
@@ -130,7 +134,7 @@ fn timing(
     sources: &YosysSources,
     netlist: &Netlist,
 ) -> Result<(f64, Vec<PathPoint>)> {
-    // The period must be longer than any path: the delay of the longest path is this period minus the slack.
+    // The period must be longer than any path: the longest path's delay is this period minus the slack.
     const PERIOD: f64 = 1000.0;
     const SCRIPT: &str = "timing.tcl";
     let script = format!(
@@ -151,8 +155,8 @@ fn timing(
     Ok((PERIOD - slack, steps(netlist, &said)))
 }
 
-/// Returns the points of the longest path in OpenSTA's report, with times in nanoseconds. The last point is the register at
-/// the end of the path. Nets that the description does not name are left out.
+/// Returns the points of the longest path in OpenSTA's report, with times in nanoseconds. The last point is the register at the
+/// path's end.
 fn steps(netlist: &Netlist, said: &str) -> Vec<PathPoint> {
     let mut points = Vec::new();
     let mut time = 0.0;

@@ -1,8 +1,8 @@
 //! Defines how nextpnr-ecp5 measures a core on the FPGA family ECP5: its options, the requested frequency, and a check of the
 //! multipliers.
 //!
-//! nextpnr-ecp5 knows the delays of block RAMs, and of multipliers that have no register or only a register at the output. The
-//! measurement fails if a multiplier has other registers inside.
+//! nextpnr-ecp5 knows the delays of block RAMs, and of multipliers without a register or with a register only at the output. The
+//! measurement fails if a multiplier has registers elsewhere.
 
 use anyhow::Result;
 use serde_json::Value;
@@ -26,7 +26,7 @@ fn prepare(_workspace: &Workspace, netlist: &Netlist) -> Result<()> {
     })
 }
 
-/// Returns whether nextpnr-ecp5 times a multiplier whose parameter `parameter` has this value. Only the output may have a
+/// Returns whether nextpnr-ecp5 knows the delay of a multiplier with this value of `parameter`. Only the output may have a
 /// register: `REG_OUTPUT_CLK` may be a clock, and `REG_INPUTA_CLK` must be `NONE`.
 fn is_timed(parameter: &str, value: &Value) -> bool {
     let clocked = parameter.starts_with("REG_") && parameter.ends_with("_CLK");

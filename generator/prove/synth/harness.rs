@@ -1,8 +1,7 @@
-//! Generates the harness of a core: a Verilog module that contains the core, with registers at all ports except the clock.
+//! Generates a core's harness: a Verilog module that contains the core, with registers at all ports except the clock.
 //!
 //! With the registers, timing analysis covers the paths at the ports, and the FPGA's pins do not limit the frequency. One shift
-//! register feeds the inputs, and another takes the captured outputs and shifts them out. So the harness has only four pins:
-//! `clk`, `in`, `take` and `out`.
+//! register feeds the inputs, and a second shift register captures the outputs and shifts them out.
 
 use anyhow::Result;
 use glint_base::fill;
@@ -14,8 +13,8 @@ pub const TOP: &str = "glint_harness";
 /// The name of the core's instance in the harness module.
 pub const CORE: &str = "core";
 
-/// The bits `low` to `high` of a port in the shift register that feeds all inputs or captures all outputs. For example, ports
-/// of 1, 8 and 12 bits have bit 0, bits 1 to 8 and bits 9 to 20.
+/// The bits `low` to `high` of a shift register that belong to a port. For example, ports of 1, 8 and 12 bits have bit 0, bits 1
+/// to 8 and bits 9 to 20.
 struct Slice<'a> {
     port: &'a str,
     high: u32,
@@ -36,7 +35,7 @@ pub fn harness(design: &Design) -> Result<String> {
     })
 }
 
-/// Returns the bits of each port in one shift register, in the order of `ports`, and the total number of bits.
+/// Returns the bits of each port in a shift register, in the order of `ports`, and the total number of bits.
 fn slices<'a>(design: &'a Design, ports: impl Iterator<Item = &'a Port>) -> (Vec<Slice<'a>>, u32) {
     let mut low = 0;
     let slices = ports.map(|port| {

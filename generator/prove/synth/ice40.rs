@@ -1,8 +1,8 @@
 //! Measures a core on the FPGAs iCE40 UltraPlus 5K and HX8K: Yosys synthesises, nextpnr-ice40 places and routes, and icetime times.
 //!
-//! nextpnr-ice40 treats every DSP block as a register and ignores its delay. icetime knows the delay of a block only if the
-//! block is a pure multiplier; the measurement fails for any other block. [`glint_tools::synthesis`] therefore maps products to
-//! pure multipliers. A core that does not fit on the chip gets its area, and no frequency.
+//! nextpnr-ice40 treats every DSP block as a register and ignores its delay. icetime knows the delay of a block only if the block
+//! is a pure multiplier; the measurement fails for all other blocks. [`glint_tools::synthesis`] therefore maps products to pure
+//! multipliers. A core that does not fit on the chip gets its area, and no frequency.
 
 use std::collections::BTreeMap;
 
@@ -20,12 +20,12 @@ use glint_tools::Tool;
 /// The settings with which the tools measure a core on a chip of iCE40.
 pub struct IceRecipe {
     target: Target,
-    /// The chip and its package, as people write them.
+    /// The chip and its package, as a page shows them.
     device: &'static str,
     chip: &'static Chip,
     /// The options of icetime that select the chip and its package.
     icetime: [&'static str; 4],
-    /// The frequency in MHz that nextpnr is asked for. No core reaches it, so that the placer tries hardest.
+    /// The frequency in MHz that nextpnr is asked for. No core reaches it, so the placer does its best.
     goal: &'static str,
 }
 
@@ -47,8 +47,8 @@ pub const HX8K: IceRecipe = IceRecipe {
     goal: "200",
 };
 
-/// Measures the area of a core alone, and its frequency in its harness for each seed. Calls `done` after synthesis and after
-/// each seed. `timing` has nextpnr-ice40 and icetime.
+/// Measures the area of a core alone, and its frequency in its harness for each seed. Calls `done` after synthesis and after each
+/// seed. `timing` is nextpnr-ice40 and icetime.
 ///
 /// # Errors
 /// Fails if a tool fails, takes too long or does not report a figure, or if a DSP block is no pure multiplier.
@@ -77,8 +77,8 @@ pub fn measure(
     })
 }
 
-/// Returns whether a DSP block with this parameter can be a multiplier and nothing else. The selects of both output halves
-/// must end with `11`, the signs of the factors may have any value, and every other parameter must be all zeros.
+/// Returns whether a DSP block with this value of `parameter` can be a pure multiplier. The selects of both output halves must
+/// end with `11`, the signs of the factors may have any value, and every remaining parameter must be all zeros.
 fn is_pure(parameter: &str, value: &Value) -> bool {
     let value = value.as_str().unwrap_or_default();
     match parameter {
@@ -115,9 +115,9 @@ fn route(
     Ok((1000.0 / nanoseconds, steps(netlist, &path, &placed)))
 }
 
-/// Returns the points of the longest path, with times in nanoseconds. `path` is icetime's report, and `placed` the netlist
-/// that nextpnr has placed. icetime often gives a net the name of the next net on the path, so the function finds the net by
-/// the location of the cell that drives it.
+/// Returns the longest path's points, with times in nanoseconds. `path` is icetime's report, and `placed` the netlist that
+/// nextpnr has placed. icetime often gives a net the name of the next net on the path. The function therefore finds a net by the
+/// location of the cell that drives it.
 fn steps(netlist: &Netlist, path: &Value, placed: &Value) -> Vec<PathPoint> {
     let outputs = outputs(placed);
     let points = path[0].as_array().into_iter().flatten();
@@ -128,8 +128,8 @@ fn steps(netlist: &Netlist, path: &Value, placed: &Value) -> Vec<PathPoint> {
     }))
 }
 
-/// Returns the location of a cell in nextpnr's notation, from icetime's name. For example, `lc40_16_2_0` is at `16 2 0`.
-/// Routing has no location.
+/// Returns the location of a cell in nextpnr's notation, from icetime's name. For example, `lc40_16_2_0` is at `16 2 0`. Returns
+/// `None` for routing.
 fn location_of(cell: &str) -> Option<String> {
     let mut parts = cell.split('_');
     let kind = parts.next()?;
@@ -142,8 +142,7 @@ fn location_of(cell: &str) -> Option<String> {
     }
 }
 
-/// Returns the net that each cell drives, by the location of the cell. For a DSP block or a block RAM, it is one of the
-/// outputs.
+/// Returns a net that each cell drives, by the cell's location. For a DSP block or a block RAM, it is the net of one output.
 fn outputs(placed: &Value) -> BTreeMap<String, String> {
     // nextpnr writes a single module, which it calls `top`.
     let Some(module) = placed["modules"].as_object().and_then(|modules| modules.values().next())

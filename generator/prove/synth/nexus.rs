@@ -23,7 +23,7 @@ pub const RECIPE: Recipe = Recipe {
     prepare,
 };
 
-/// nextpnr-nexus demands the locations of the four pins: a clock pin, and three others of the package CABGA400.
+/// The locations of the four pins, which nextpnr-nexus demands: a clock pin, and three ordinary pins of the package CABGA400.
 const PINS: &str = "ldc_set_location -site {L5} [get_ports clk]\n\
                     ldc_set_location -site {N14} [get_ports in]\n\
                     ldc_set_location -site {G14} [get_ports take]\n\
@@ -36,9 +36,9 @@ fn prepare(workspace: &Workspace, _netlist: &Netlist) -> Result<()> {
     workspace.sources.write("pins.pdc", PINS)
 }
 
-/// Opens the carry input of the first cell of each carry chain. Yosys 0.70 ties this input to ground, and nextpnr-nexus 0.11
-/// refuses a carry input that no carry cell drives. The first cell makes its carry from its other inputs, so its carry input
-/// does not matter.
+/// Disconnects the carry input of the first cell of each carry chain. Yosys 0.70 ties this input to ground, and nextpnr-nexus
+/// 0.11 refuses a carry input that no carry cell drives. The first cell makes its carry from its remaining inputs, so its carry
+/// input does not matter.
 fn open_carries(netlist: &mut Value) {
     let modules = netlist["modules"].as_object_mut().into_iter().flatten();
     for (_, module) in modules {

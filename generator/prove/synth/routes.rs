@@ -1,5 +1,5 @@
-//! Runs the measurement of a frequency in parallel, once for each seed, and collects the results. A caller gives the function
-//! that runs the tools.
+//! Measures a frequency in parallel, once for each seed, and collects the results. A caller gives the function that runs the
+//! tools.
 
 use anyhow::{Context, Result};
 use rayon::prelude::*;
@@ -7,8 +7,8 @@ use rayon::prelude::*;
 use super::{Figures, PathPoint, SynthesisSubject};
 
 /// Runs `route` (placement, routing and timing analysis) once for each seed from 1 to `subject.seeds`, and adds the results to
-/// `figures`: frequencies in MHz, and longest paths. Calls `done` for each seed. If `figures` already has a reason why the
-/// core cannot be timed, `route` is not run. Without seeds, `figures` gets such a reason.
+/// `figures`: frequencies in MHz, and longest paths. Calls `done` for each seed. If `figures` already has a reason why no
+/// frequency can be measured, `route` is not run. Without seeds, `figures` gets such a reason.
 ///
 /// # Errors
 /// Fails if a run fails; the message has its seed, for example `seed 2`.

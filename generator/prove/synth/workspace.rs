@@ -1,6 +1,4 @@
 //! Prepares a temporary directory with the Verilog of a core and of its harness, and runs Yosys and nextpnr in it.
-//!
-//! Yosys synthesises the core twice: alone for the area, and in the harness for the timing.
 
 use anyhow::{Context, Result};
 
@@ -23,6 +21,10 @@ pub const HARNESS: &str = "glint_harness.v";
 pub const NETLIST: &str = "harness.json";
 
 impl<'a> Workspace<'a> {
+    /// Makes the directory and writes the files.
+    ///
+    /// # Errors
+    ///
     /// Fails if a file cannot be written.
     pub fn new(yosys: &'a Tool, subject: &'a SynthesisSubject<'a>) -> Result<Self> {
         let sources = YosysSources::new(yosys, subject.files, subject.limit)?;
@@ -31,9 +33,10 @@ impl<'a> Workspace<'a> {
     }
 
     /// Runs nextpnr on the netlist in the file [`NETLIST`]. `options` are the options of the FPGA family, separated by single
-    /// spaces: for iCE40 they begin with `--up5k --package sg48`.
+    /// spaces, for example `--up5k --package sg48`.
     ///
     /// # Errors
+    ///
     /// Fails if nextpnr fails or takes too long.
     pub fn nextpnr(&self, nextpnr: &Tool, seed: u32, options: &str) -> Result<()> {
         // The file names have no directory, because the WebAssembly build of nextpnr sees only the current directory.
@@ -42,11 +45,12 @@ impl<'a> Workspace<'a> {
         Ok(())
     }
 
-    /// Synthesises the core alone for its area, and the core in its harness for the netlist, which is also left in the file
+    /// Synthesises the core alone for its area, and the core in its harness for the netlist. The netlist is also left in the file
     /// [`NETLIST`].
     ///
     /// # Errors
-    /// Fails if Yosys fails or takes too long, if Yosys does not know the family of `target`, or if its output lacks the area
+    ///
+    /// Fails if Yosys fails or takes too long, if Yosys does not know the family of `target`. Fails if the output lacks the area
     /// or the netlist.
     pub fn synthesise(&self, target: Target) -> Result<(Usage, Netlist)> {
         let family = target.family().context("Yosys knows no such family")?;
@@ -64,6 +68,10 @@ impl<'a> Workspace<'a> {
         Ok((synthesis::usage(&self.sources, top, family)?, self.netlist()?))
     }
 
+    /// Reads the netlist that `Self::synthesise` has left.
+    ///
+    /// # Errors
+    ///
     /// Fails if the file is missing, or if it has no nets and cells of the harness.
     pub fn netlist(&self) -> Result<Netlist> {
         Netlist::new(self.subject.design, &self.sources.json(NETLIST)?)

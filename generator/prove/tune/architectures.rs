@@ -1,8 +1,8 @@
-//! Builds a configuration in each of its architectures and estimates the cost. These are the sequential core, and pipelines
-//! with at most 64 clocks from one point to the next.
+//! Builds a configuration in each of its architectures and estimates the cost: the sequential core, and pipelines with at most 64
+//! clocks from one point to the next.
 //!
-//! A pipeline of a sequential configuration is scheduled for the target, at the default clock or, if that is out of reach, at
-//! the fastest clock that can be reached.
+//! A pipeline of a sequential configuration is scheduled for the target, at the default clock or else at the fastest clock that a
+//! schedule reaches.
 
 use anyhow::{Context, Result};
 use rayon::prelude::*;
@@ -41,7 +41,7 @@ impl Architecture {
         self.cost.mhz / self.clocks_per_point
     }
 
-    /// Names the architecture: for example, `sequential`, or `pipeline, interval 8`.
+    /// Returns a name of the architecture, for example `sequential` or `pipeline, interval 8`.
     pub fn words(&self) -> String {
         match self.interval {
             None => "sequential".to_owned(),
@@ -49,7 +49,8 @@ impl Architecture {
         }
     }
 
-    /// Returns the keys that make this pipeline, for example `architecture = "pipelined", pipeline.interval = 8`.
+    /// Returns the keys that make this pipeline, for example `architecture = "pipelined", pipeline.interval = 8`. Returns `None`
+    /// for a sequential core.
     pub fn keys(&self) -> Option<String> {
         let interval = self.interval?;
         Some(format!("architecture = \"pipelined\", pipeline.interval = {interval}"))
@@ -72,12 +73,16 @@ impl Architecture {
     }
 }
 
-/// A shared multiplier counts once.
+/// Counts the multipliers. A shared multiplier counts once.
 fn multipliers(design: &Design) -> usize {
     let products = design.nets.iter().filter(|net| matches!(net.driver, Driver::Op(Op::Mul(..))));
     products.count()
 }
 
+/// Builds the sequential core of `base`.
+///
+/// # Errors
+///
 /// Fails if the configuration makes no core.
 pub fn sequential(base: &OpenedConfig, target: Target) -> Result<Architecture> {
     let mut config = base.config.clone();
@@ -86,14 +91,15 @@ pub fn sequential(base: &OpenedConfig, target: Target) -> Result<Architecture> {
     Architecture::new(Core::build(base.with_config(config)?)?, target)
 }
 
-/// Returns the pipeline with the longest interval that can be built, at most the clocks of its sequential core and at most 64.
-/// For example, `cosine-power` has an interval of 8, the clocks of its sequential core.
+/// Returns the pipeline with the longest interval that can be built: at most the clocks of its sequential core, and at most 64.
+/// For example, `cosine-power` has an interval of 8, the clocks of its sequential core. Returns `None` if no pipeline can be
+/// built.
 pub fn longest_interval(sequential: &Architecture, target: Target) -> Option<Architecture> {
     let base = &sequential.core.opened;
     intervals(sequential).rev().find_map(|interval| pipeline(base, target, interval).ok())
 }
 
-/// The largest value of `pipeline.interval`.
+/// The largest value of `pipeline.interval`, in clocks.
 const LONGEST: u32 = 64;
 
 fn intervals(sequential: &Architecture) -> std::ops::RangeInclusive<u32> {
@@ -101,8 +107,8 @@ fn intervals(sequential: &Architecture) -> std::ops::RangeInclusive<u32> {
     1..=clocks.min(LONGEST)
 }
 
-/// Returns a configuration as a pipeline with an interval. If the configuration is sequential, the pipeline is scheduled for
-/// the target, at the default clock or the fastest clock that it can reach.
+/// Builds `base` as a pipeline with an interval of `interval` clocks. If `base` is sequential, the pipeline is scheduled for the
+/// target, at the default clock or the fastest clock that a schedule reaches.
 fn pipeline(base: &OpenedConfig, target: Target, interval: u32) -> Result<Architecture> {
     let mut config = base.config.clone();
     config.set("architecture", Value::Text("pipelined".to_owned()));
@@ -119,13 +125,13 @@ fn pipeline(base: &OpenedConfig, target: Target, interval: u32) -> Result<Archit
     Architecture::new(core, target)
 }
 
-/// Returns the sequential core of a configuration, and then its pipelines from the longest interval to 1. A pipeline is left
-/// out if a shorter interval needs no more multipliers, unless its interval is `kept`. For example, `cosine-power` has the
-/// intervals 8, 4, 3, 2 and 1: with 5, 6 and 7 it needs two multipliers, as with 4.
+/// Returns the sequential core of `base`, and then its pipelines from the longest interval to 1. A pipeline is left out if a
+/// shorter interval needs no more multipliers, unless its interval is `kept`. For example, `cosine-power` has the intervals 8, 4,
+/// 3, 2 and 1: with 5, 6 and 7 it needs two multipliers, as with 4.
 ///
 /// # Errors
-/// Fails if the configuration makes no sequential core, or no pipeline. The message then has the reason for the shortest
-/// interval.
+///
+/// Fails if the configuration makes no sequential core or no pipeline.
 pub fn all(base: &OpenedConfig, kept: Option<u32>, target: Target) -> Result<Vec<Architecture>> {
     let sequential = sequential(base, target)?;
     let intervals: Vec<u32> = intervals(&sequential).collect();

@@ -1,10 +1,9 @@
-//! Searches for the configuration of a device with the smallest estimated cost whose error is at most a limit that the user
+//! Searches for the configuration of a device with the smallest estimated cost and an error of at most a limit that the user
 //! gives. The search is local, so a cheaper configuration may exist.
 //!
-//! The error is the proved bound of the accuracy contract, so the answer of [`tune`] holds for every operand of the domain.
-//! The cost is estimated from the netlist ([`model`]). The search changes only keys that change neither a port nor the formula
-//! (`space`). It changes keys that add microinstructions, and so clocks, only if the user states a rate or a largest number of
-//! DSP blocks. It also changes them to minimise DSP blocks, or if no other configuration fits the chip.
+//! The error is the proved bound of the accuracy contract, so the answer of [`tune`] holds for every operand of the domain. The
+//! cost is estimated from the netlist ([`model`]). The search changes only keys that change neither a port nor the formula
+//! (`space`). It changes keys that add clocks only for a rate, for fewer DSP blocks, or if no other configuration fits the chip.
 
 pub mod architectures;
 pub mod model;
@@ -30,7 +29,7 @@ use crate::synth::Target;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ErrorUnit {
-    /// The reflectance f, from 0 to 1: an error is a difference of f.
+    /// The reflectance f, from 0 to 1: the error is a value of f.
     F,
     Output,
 }
@@ -55,12 +54,12 @@ impl fmt::Display for ErrorUnit {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Objective {
-    /// Look-up tables, where a DSP block or a block RAM counts for as many as the chip has for each.
+    /// Look-up tables. A DSP block or a block RAM counts for as many look-up tables as the chip has for each such block.
     Area,
     Luts,
-    /// The number of DSP blocks, and among equal numbers the area.
+    /// The number of DSP blocks, and the area among equal numbers.
     Dsps,
-    /// The number of bits in the ROMs, and among equal numbers the area.
+    /// The number of bits in the ROMs, and the area among equal numbers.
     Memory,
 }
 
@@ -72,9 +71,9 @@ pub struct TuningGoal {
     /// The FPGA family for which costs are estimated.
     pub target: Target,
     pub objective: Objective,
-    /// The lowest acceptable clock frequency in MHz, by the estimate.
+    /// The lowest acceptable clock frequency in MHz, estimated.
     pub clock: Option<f64>,
-    /// The lowest acceptable rate in million points a second, by the estimate of the clock.
+    /// The lowest acceptable rate in million points a second, at the estimated clock frequency.
     pub rate: Option<f64>,
     pub most_dsps: Option<u64>,
 }
@@ -82,21 +81,20 @@ pub struct TuningGoal {
 /// The longest interval that is tried, in clocks. No sequential core of the catalogue takes more clocks for a point.
 const LONGEST: i64 = 64;
 
-/// The keys that decide the rate of a pipeline. The answer lists them among the keys that the search has changed.
+/// The keys that decide a pipeline's rate. The answer lists them among the keys that the search has changed.
 const ARCHITECTURE: [&str; 2] = ["architecture", "pipeline.interval"];
 
-/// Searches for the configuration with the smallest cost that meets `goal`. The search is local, so a smaller configuration may
-/// exist.
+/// Searches for the configuration with the smallest cost that meets `goal`.
 ///
 /// `base` has the keys that are part of the user's question. The search changes the other keys, except the keys in `fixed`. It
 /// also tries pipelines if the goal has a rate or a limit of DSP blocks, and the target is an FPGA family. Such a pipeline
-/// accepts a point (a set of operands) as seldom as the goal allows, so that several products can share a multiplier. The
-/// search tries no pipeline if `fixed` contains `pipeline.interval`, or contains `architecture` and `base` is sequential.
-/// `progress` is called with the number of configurations that were evaluated.
+/// accepts a point (a set of operands) as seldom as the goal allows, so several products can share a multiplier. The search tries
+/// no pipeline if `fixed` contains `pipeline.interval`, or contains `architecture` and `base` is sequential. `progress` is called
+/// with the number of configurations that were evaluated.
 ///
 /// # Errors
-/// Fails if `base` makes no design, or if the search finds no configuration that meets the goal. The message then says which
-/// term of the bound, the clock, or the DSP blocks prevent this.
+/// Fails if `base` makes no design, or if the search finds no configuration that meets the goal. The message then names the term
+/// of the bound, the clock, or the DSP blocks that prevent this.
 pub fn tune(
     device: &Device,
     base: &Config,
@@ -172,7 +170,7 @@ fn pipelines(device: &Device, base: &Config, fixed: &[&str], goal: &TuningGoal) 
     pipelines
 }
 
-/// Searches as [`tune`] does, in the architecture of `base` alone.
+/// Searches like [`tune`], but only in the architecture of `base`.
 fn of_architecture(
     device: &Device,
     base: &Config,
@@ -196,8 +194,8 @@ fn of_architecture(
     Ok(if fits(&shared) { shared } else { answer })
 }
 
-/// Tries all combinations of the `values` of keys, and returns the configuration with the smallest cost that meets the goal.
-/// Use it for tests of the search, and for small spaces.
+/// Tries all combinations of the `values` of keys, and returns the configuration with the smallest cost that meets the goal. It
+/// is for tests of the search, and for small spaces.
 ///
 /// # Errors
 /// Fails if `base` makes no design, or if a key does not exist.

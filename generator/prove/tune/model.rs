@@ -1,7 +1,7 @@
 //! Estimates the area and the clock frequency of a core from its netlist, without synthesis.
 //!
-//! DSP blocks and block RAMs follow from the bit widths. LUTs are a weighted sum of [`Features`] of the netlist. The frequency follows from the longest path between
-//! registers, with the delays of [`Timing`](glint_base::target::Timing), which the scheduler of pipelines uses too.
+//! DSP blocks and block RAMs follow from the bit widths. LUTs are a weighted sum of [`Features`] of the netlist. The frequency
+//! follows from the longest path between registers, with the delays of [`Timing`](glint_base::target::Timing).
 
 use std::collections::BTreeSet;
 
@@ -23,13 +23,13 @@ pub struct Cost {
     pub mhz: f64,
 }
 
-/// Returns the family of a target. Standard cells have no model of their own and use the model of ECP5, the most similar family.
+/// Returns a target's family. Standard cells have no model of their own and use the model of ECP5, the most similar family.
 pub fn family(target: Target) -> &'static Family {
     target.family().unwrap_or(&ECP5)
 }
 
 impl Cost {
-    /// For standard cells, the estimate is the one for ECP5.
+    /// Estimates the cost of `design` on `target`. Standard cells get the estimate for ECP5.
     pub fn new(design: &Design, target: Target) -> Self {
         let family = family(target);
         let luts = Features::new(design, family).luts(family);
@@ -51,13 +51,13 @@ impl Cost {
         }
     }
 
-    /// Returns the area in look-up tables, as [`area`] counts it.
+    /// Returns the area in look-up tables ([`area`]).
     pub fn area(&self, target: Target) -> f64 {
         area(target, self.luts, self.dsps, self.block_rams)
     }
 
-    /// Returns the resources that the usual chip of the target lacks, in words: for example, `it does not fit the iCE40 UP5K:
-    /// it takes 9 of 8 DSP blocks`. The text is empty if the core fits.
+    /// Returns the resources that the usual chip of the target lacks, in words. For example, `the core does not fit the iCE40
+    /// UP5K: it takes 9 of 8 DSP blocks`. The text is empty if the core fits.
     pub fn excess(&self, target: Target) -> String {
         let chip = &family(target).chips[0];
         let wanted = [self.luts.ceil() as u64, self.dsps, self.block_rams];
@@ -73,9 +73,8 @@ impl Cost {
     }
 }
 
-/// Returns an area in look-up tables. A DSP block or block RAM counts as many look-up tables as the usual chip of the target
-/// has for each such block. For example, iCE40 UP5K has 5280 look-up tables and 8 DSP blocks, so that a DSP block counts as
-/// 660.
+/// Returns an area in look-up tables. A DSP block or block RAM counts for as many look-up tables as the usual chip of the target
+/// has for each such block. For example, iCE40 UP5K has 5280 look-up tables and 8 DSP blocks, so a DSP block counts for 660.
 pub fn area(target: Target, luts: f64, dsps: u64, block_rams: u64) -> f64 {
     let [all_luts, all_dsps, all_blocks] = family(target).chips[0].has.map(|has| has as f64);
     // On a chip without DSP blocks, a core takes none, so they cost nothing.
@@ -93,8 +92,8 @@ fn dsps_of_product(design: &Design, family: &Family, a: NetId, b: NetId) -> u64 
     dsps_one_way(family, a, b).min(dsps_one_way(family, b, a))
 }
 
-/// Returns the number of DSP blocks for a product of two widths in bits, if the operand `first` is at the wider input of the
-/// blocks. Partial products that Yosys makes of look-up tables do not count.
+/// Returns the number of DSP blocks for a product of `first` by `second` bits, if the first operand is at the wider input of the
+/// blocks.
 fn dsps_one_way(family: &Family, first: u32, second: u32) -> u64 {
     let (wide, narrow) = family.timing.multiplier;
     let second_slices = slices(second, narrow);
@@ -109,8 +108,8 @@ fn dsps_one_way(family: &Family, first: u32, second: u32) -> u64 {
     blocks
 }
 
-/// Returns the smaller number of partial products in both orders. For example, on iCE40, whose blocks multiply 16 by 16 bits,
-/// a product of 20 by 12 bits has 2.
+/// Returns the number of partial products, in the better order of the operands. For example, with the 16 by 16 bits of iCE40's
+/// blocks, a product of 20 by 12 bits has 2.
 fn blocks(family: &Family, a: u32, b: u32) -> u64 {
     let (wide, narrow) = family.timing.multiplier;
     let one_way = count_slices(a, wide) * count_slices(b, narrow);
@@ -122,7 +121,7 @@ fn count_slices(operand: u32, block: u32) -> u64 {
     u64::from(operand.div_ceil(block).max(1))
 }
 
-/// A synchronous ROM takes block RAMs if it is large enough and does not share the block of another ROM.
+/// Counts the block RAMs. A synchronous ROM takes some if it is large enough and does not share the block of another ROM.
 fn block_rams(design: &Design, family: &Family) -> u64 {
     let mut blocks = 0;
     for rom in &design.roms {
@@ -135,7 +134,7 @@ fn block_rams(design: &Design, family: &Family) -> u64 {
     blocks
 }
 
-/// Returns the longest delay between registers, in nanoseconds, including the delay of a register.
+/// Returns the longest delay between registers, in nanoseconds, including a register's delay.
 fn period(design: &Design, family: &Family) -> f64 {
     let delays = &family.timing;
     let order = design.levelise().unwrap_or_default();

@@ -1,8 +1,8 @@
-//! Searches for the configuration with the smallest cost whose error, clock, rate and DSP blocks meet a goal.
+//! Searches for the configuration with the smallest cost among those with an error, clock, rate and DSP blocks that meet a goal.
 //!
-//! The search moves from a configuration to a neighbour, which has another value of one key. It first moves toward the goal,
-//! and fails if no neighbour is nearer. Then it moves to smaller configurations that still meet the goal. If no change of one
-//! key helps, it tries changes of two keys. The result may be a local minimum.
+//! The search moves from a configuration to a neighbour, which has a different value of one key. It first moves toward the goal,
+//! and fails if no neighbour is nearer. Then it moves to smaller configurations that still meet the goal. If no change of one key
+//! helps, it tries changes of two keys. The result may be a local minimum.
 
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
@@ -41,17 +41,16 @@ impl Candidate {
 #[derive(Clone, Debug)]
 pub struct Answer {
     pub best: Candidate,
-    /// The Pareto front, by rising error: the configurations for which no other has both a smaller error and a smaller cost.
-    /// It covers the configurations that the search has evaluated and that have the wanted clock, rate and DSP blocks. Their
-    /// errors may exceed the limit.
+    /// The Pareto front, by rising error: the configurations for which no other has both a smaller error and a smaller cost. It
+    /// covers the configurations that the search has evaluated and that have the wanted clock, rate and DSP blocks.
     pub front: Vec<Candidate>,
     /// The keys that the search was allowed to change.
     pub free: Vec<&'static str>,
     pub looked_at: usize,
 }
 
-/// A search in progress. `seen` caches the candidates by the text of their configurations; `None` is for a configuration that
-/// makes no design with the same interface.
+/// A search in progress. `seen` caches the candidates by the text of their configurations. An entry is `None` if the
+/// configuration makes no design with the same interface.
 pub struct Search<'a> {
     device: &'a Device,
     space: &'a SearchSpace,
@@ -124,8 +123,8 @@ impl<'a> Search<'a> {
         Ok(self.smallest(found))
     }
 
-    /// Returns the candidate of a configuration, if possible from the cache, or `None` if the configuration makes no design
-    /// with the same interface.
+    /// Returns a configuration's candidate, if possible from the cache. Returns `None` if the configuration makes no design with
+    /// the same interface.
     fn look(&self, config: &Config) -> Option<Candidate> {
         let text = config.to_toml(self.space.schema());
         if let Some(known) = self.lock_seen().get(&text) {
@@ -170,7 +169,7 @@ impl<'a> Search<'a> {
         self.goal.most_dsps.is_none_or(|most| candidate.cost.dsps <= most)
     }
 
-    /// Returns the clock that a candidate needs for the goal, in MHz. It is infinite if a rate is wanted and the candidate
+    /// Returns the clock that a candidate needs for the goal, in MHz. It is infinite if the goal has a rate and the candidate
     /// never shows a result. For example, 2 million points a second at 10 clocks a point need 20 MHz.
     fn wanted_mhz(&self, candidate: &Candidate) -> f64 {
         let of_rate = match (self.goal.rate, candidate.clocks) {
@@ -202,7 +201,7 @@ impl<'a> Search<'a> {
         smallest.map(|(_, candidate)| candidate)
     }
 
-    /// Returns the candidates that differ from `candidate` by `changes` changed keys, 1 or 2.
+    /// Returns the candidates that differ from `candidate` in `changes` keys, 1 or 2.
     fn around(&self, candidate: &Candidate, changes: usize) -> Vec<Candidate> {
         let moves = self.space.moves(&candidate.config);
         let mut changed: Vec<Vec<(&'static str, Value)>> = Vec::new();
@@ -221,8 +220,8 @@ impl<'a> Search<'a> {
         all.filter_map(|values| self.look(&self.space.with(&candidate.config, values)?)).collect()
     }
 
-    /// Moves from `base` to the neighbour that is nearest to the goal, again and again, until the goal is met. Fails if no
-    /// neighbour is nearer.
+    /// Moves from `base` to the neighbour that is nearest to the goal, repeatedly, until the goal is met. Fails if no neighbour
+    /// is nearer.
     fn reach(&self, base: Candidate) -> Result<Candidate> {
         let mut here = base;
         while !self.keeps(&here) {
@@ -246,9 +245,9 @@ impl<'a> Search<'a> {
         Ok(here)
     }
 
-    /// Returns a number that is smaller for a candidate nearer to the goal. If `wants_error` is set, it is the error.
-    /// Otherwise it is infinite if the error is too large, the number of DSP blocks if they are too many, and else minus the
-    /// clock, as a share of the wanted clock.
+    /// Returns a number that is smaller for a candidate nearer to the goal. If `wants_error` is set, it is the error. Otherwise
+    /// it is infinite if the error is too large, and the number of DSP blocks if they are too many. In all other cases it is
+    /// minus the clock, as a share of the wanted clock.
     fn distance(&self, candidate: &Candidate, wants_error: bool) -> f64 {
         if wants_error {
             self.error(candidate)
@@ -310,8 +309,8 @@ impl<'a> Search<'a> {
         )
     }
 
-    /// Returns the smallest candidate that differs from `here` in `changes` keys and meets the goal, if it is smaller than
-    /// `here`.
+    /// Returns the smallest candidate that meets the goal and differs from `here` in `changes` keys, or `None` if it is not
+    /// smaller than `here`.
     fn descend(&self, here: &Candidate, changes: usize) -> Option<Candidate> {
         let smallest = self.smallest(self.around(here, changes))?;
         let is_smaller = self.goal.order(&smallest) < self.goal.order(here);
@@ -334,8 +333,8 @@ impl TuningGoal {
         }
     }
 
-    /// Returns numbers by which candidates are compared, the most important first: fit to the chip, objective, area, error
-    /// bound, and bits of ROM. Less is better.
+    /// Returns numbers by which candidates are compared, the most important first: fit to the chip, objective, area, error bound,
+    /// and bits of ROM. A smaller number is better.
     pub(super) fn order(&self, candidate: &Candidate) -> [f64; 5] {
         let (cost, target) = (&candidate.cost, self.target);
         let excess = if cost.excess(target).is_empty() { 0.0 } else { 1.0 };
@@ -361,8 +360,8 @@ impl TuningGoal {
     }
 }
 
-/// Shows at least six digits after the point, and as many more as show that the value is above a limit. For example, 0.5000001
-/// with the limit 0.5 gives `0.5000001`, and 0.75 gives `0.750000`.
+/// Returns `value` with at least six digits after the point, and with as many more as show that it is above `limit`. For example,
+/// 0.5000001 with the limit 0.5 gives `0.5000001`, and 0.75 gives `0.750000`.
 fn above(value: f64, limit: f64) -> String {
     for digits in 6..17 {
         let text = format!("{value:.digits$}");

@@ -1,12 +1,10 @@
 //! Finds the keys that `glint tune` may change, and the steps from a configuration to its neighbours.
 //!
-//! A key is free if no value that is tried for it changes the ports of the core or its formula, and each makes a design.
-//! Formulas are compared at 600 random points. The number of microinstructions must stay the same too, unless the search may
-//! make slower cores. The keys of the tables `domain` and `function` are never free, because they are part of the user's
-//! question.
+//! A key is free if each value that is tried for it makes a design, and none changes the ports of the core or its formula. The
+//! number of microinstructions must also stay the same, unless the search may make slower cores. The keys of the tables `domain`
+//! and `function` are never free, because they are part of the user's question.
 //!
-//! A step gives one free key a value next to its own. For example, the integer 8 becomes 7, 9, 6, 10, 4 or 12, if the key
-//! allows it.
+//! A step gives one free key a neighbouring value. For example, the integer 8 becomes 7, 9, 6, 10, 4 or 12, if the key allows it.
 
 use anyhow::{Context, Result};
 
@@ -22,10 +20,11 @@ const STEPS: [i64; 3] = [1, 2, 4];
 /// The tables of keys that define the computation and its domain.
 const STATEMENT: [&str; 2] = ["domain", "function"];
 
-/// The points are drawn like the points of a test: at most of them the formula is neither 0 nor flat.
+/// The number of points at which formulas are compared. Like a test's points, they mostly lie where the formula is neither 0 nor
+/// flat.
 const POINTS: u32 = 600;
 
-/// The keys that `glint tune` may change: the core keeps its ports and its formula with every value of these keys.
+/// The keys that `glint tune` may change. The core keeps its ports and its formula with every value of these keys.
 pub struct SearchSpace {
     schema: Schema,
     free: Vec<&'static str>,
@@ -35,9 +34,10 @@ pub struct SearchSpace {
 }
 
 impl SearchSpace {
-    /// Keys that add microinstructions are free only if `slower` is set, and keys in `fixed` never are.
+    /// Finds the free keys. Keys that add microinstructions are free only if `slower` is set, and keys in `fixed` never are.
     ///
     /// # Errors
+    ///
     /// Fails if `base` makes no design.
     pub fn new(device: &Device, base: &Config, fixed: &[&str], slower: bool) -> Result<Self> {
         let schema = (device.schema)();
@@ -55,8 +55,8 @@ impl SearchSpace {
         Ok(space)
     }
 
-    /// Returns whether each value that is tried for a key makes a design with the same interface. A key whose value is a
-    /// number with a fraction is not free.
+    /// Returns whether each value that is tried for `key` makes a design with the same interface. A number with a fraction is
+    /// never free.
     fn is_free(&self, device: &Device, base: &Config, key: &Key) -> bool {
         let (table, _) = key.table_and_leaf();
         if STATEMENT.contains(&table) {
@@ -108,7 +108,8 @@ impl SearchSpace {
         moves
     }
 
-    /// Replaces some values. Returns `None` if the schema refuses the result or if a replaced key does not apply.
+    /// Returns `config` with some values replaced. Returns `None` if the schema refuses the result, or if a replaced key does not
+    /// apply.
     pub fn with(&self, config: &Config, values: &[(&'static str, Value)]) -> Option<Config> {
         with(&self.schema, config, values)
     }
@@ -137,8 +138,7 @@ fn with(schema: &Schema, config: &Config, values: &[(&'static str, Value)]) -> O
     values.iter().all(|(key, value)| config.value(key) == value).then_some(config)
 }
 
-/// Returns whether a key applies if the other keys have the values `values`. Its condition must hold, and so must the
-/// condition of the key that this condition names, and so on.
+/// Returns whether the key `name` applies if the keys have the values `values`.
 fn applies(schema: &Schema, values: &[(String, Value)], name: &str) -> bool {
     let mut key = schema.key(name);
     while let Some(condition) = key.and_then(|key| key.condition) {
@@ -150,7 +150,7 @@ fn applies(schema: &Schema, values: &[(String, Value)], name: &str) -> bool {
     true
 }
 
-/// The interface of a core: its ports, its number of microinstructions, and the values of its formula at 600 random points.
+/// A core's interface: its ports, its number of microinstructions, and the values of its formula at 600 random points.
 struct CoreInterface {
     ports: Vec<String>,
     microinstructions: usize,
@@ -170,8 +170,8 @@ impl CoreInterface {
         }
     }
 
-    /// At a jump of a formula, two values are right, and the widths decide which one the hardware computes. One of the two
-    /// values must be a value of the other formula.
+    /// Returns whether the contract has the same formula. At a jump of a formula, two values are right, and the widths decide
+    /// which one the hardware computes. It is enough that one of the two is also right for the second formula.
     fn has_formula(&self, contract: &dyn Contract) -> bool {
         let others = formula(contract, &self.points);
         if others.len() != self.formula.len() {
@@ -186,7 +186,7 @@ impl CoreInterface {
     }
 }
 
-/// Returns texts with name and format, for example `cos_gamma u0.20`.
+/// Returns a text with name and format for each port, for example `cos_gamma u0.20`.
 fn ports(design: &Design) -> Vec<String> {
     let mut ports = Vec::new();
     for port in &design.ports {
@@ -196,7 +196,7 @@ fn ports(design: &Design) -> Vec<String> {
     ports
 }
 
-/// Each result is a pair of values, which differ at a jump of the formula.
+/// Returns the exact values at each point. Each result is a pair of values, which differ at a jump of the formula.
 fn formula(contract: &dyn Contract, points: &[Vec<i64>]) -> Vec<[f64; 2]> {
     let mut values = Vec::new();
     for point in points {
@@ -205,7 +205,7 @@ fn formula(contract: &dyn Contract, points: &[Vec<i64>]) -> Vec<[f64; 2]> {
     values
 }
 
-/// Returns the values that are tried to find the effect of a key: the values next to its own, and the ends of its range.
+/// Returns the values that are tried to find a key's effect: the neighbours of `value`, and the ends of the key's range.
 fn alternatives(key: &Key, value: &Value) -> Vec<Value> {
     let mut values = neighbours(&key.kind, value);
     match (&key.kind, value) {
@@ -221,7 +221,8 @@ fn alternatives(key: &Key, value: &Value) -> Vec<Value> {
 }
 
 /// Returns the values next to `value` that lie in the key's range. For example, the list `[6, 6]` has `[5, 6]`, `[7, 6]`, `[6,
-/// 5]`, `[6, 7]`, `[6, 6, 6]` and `[6]`. A choice or a flag has all its other values. A number with a fraction has none.
+/// 5]`, `[6, 7]`, `[6, 6, 6]` and `[6]`. A choice or a flag has all its remaining values. A number with a fraction has no
+/// neighbours.
 fn neighbours(kind: &KeyKind, value: &Value) -> Vec<Value> {
     match (kind, value) {
         (KeyKind::Integer { min, max }, Value::Integer(value)) => {

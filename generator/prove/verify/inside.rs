@@ -16,7 +16,7 @@ use glint_core::core::{TEST_POINTS, TEST_SEED};
 use glint_core::cosim::exhaustive::{Job, Proof, Record, Shard, ShardState};
 use glint_golden::{Bound, Contract, Sweep};
 
-/// The number of compared results: without `--full`, and with it.
+/// The number of results that are compared without `--full`, and with it.
 const POINTS: [u64; 2] = [TEST_POINTS, 100 * TEST_POINTS];
 
 /// The largest number of evaluations of the golden model without `--full`. They take some seconds.
@@ -28,8 +28,7 @@ const AGAIN: u64 = 1 << 24;
 /// The largest number of faults that are planted without `--full`. The check then takes a minute or two.
 const MOST_FAULTS: usize = 1 << 11;
 
-/// The design rules are checked when the core is built, so a core that breaks one does not exist, and this check repeats
-/// nothing. Its finding also says whether the error bound is below its limit.
+/// The check of the design rules. Its finding also says whether the error bound is below its limit.
 pub const DESIGN: Check = Check {
     id: "design",
     title: "Design rules",
@@ -112,8 +111,8 @@ fn lockstep(subject: &CheckSubject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Resu
     .open("Operands that were not drawn."))
 }
 
-/// A long check is replaced by its record, and a part of the record is computed again. Without a record, a long check is not
-/// run.
+/// The bound's check. A record replaces a long check, and a part of the record is computed again. Without a record, a long check
+/// is not run.
 pub const CONTRACT: Check = Check {
     id: "contract",
     title: "Golden model against the formula",
@@ -130,7 +129,7 @@ pub const CONTRACT: Check = Check {
     run: |subject, _, progress| contract(subject, progress),
 };
 
-/// Counts `f` at every place of the sweep, and the colour products.
+/// Returns the number of evaluations: `f` at every place of the sweep, and the colour products.
 fn evaluations(subject: &CheckSubject<'_>) -> u64 {
     let job = Job::new(subject.core.contract.as_ref());
     job.f.count() + job.colours.count()
@@ -176,7 +175,7 @@ fn contract(subject: &CheckSubject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Resu
     .open(job.f.sweep().omits.clone()))
 }
 
-/// A sweep that leaves out combinations has only passed, and proves nothing.
+/// Returns `Passed` for a sweep that leaves out combinations, because such a sweep proves nothing.
 fn of_sweep(sweep: &Sweep) -> CheckVerdict {
     if sweep.omits.is_empty() { CheckVerdict::Proved } else { CheckVerdict::Passed }
 }
@@ -213,7 +212,7 @@ fn without_record(subject: &CheckSubject<'_>, evaluations: u64) -> Finding {
     Finding { complete_with: Some(command), ..Finding::without(CheckVerdict::NotRun, why) }
 }
 
-/// The check does not apply if the operands have too many bits.
+/// The check of every combination of operands, clock by clock. It does not apply if the operands have too many bits.
 pub const CLOCKS: Check = Check {
     id: "clocks",
     title: "Golden model against simulation, every operand",
@@ -245,8 +244,8 @@ pub const CLOCKS: Check = Check {
     },
 };
 
-/// Without `--full` it plants at most 2048 faults. If more than 1 % of the faults are undecided, the verdict is
-/// [`CheckVerdict::Undecided`]. The check does not apply to a pipeline.
+/// The check that the test notices faults. Without `--full` it plants at most 2048 faults. If more than 1 % of the faults are
+/// undecided, the verdict is [`CheckVerdict::Undecided`]. The check does not apply to a pipeline.
 pub const MUTATION: Check = Check {
     id: "mutation",
     title: "Faults in the netlist",
@@ -334,7 +333,7 @@ fn faults(subject: &CheckSubject<'_>) -> (Faults, usize) {
 /// The largest number of faults that a finding names.
 const NAMED: usize = 20;
 
-/// Returns at most 20 ids of faults as text, and the number of the others. No ids give an empty text.
+/// Returns at most 20 of `ids` as text, with the number of the remaining ones. No ids give an empty text.
 fn named(ids: &[String]) -> String {
     let named = ids[..ids.len().min(NAMED)].join(", ");
     match ids.len() - ids.len().min(NAMED) {

@@ -2,9 +2,8 @@
 //! checks to run, and writes the files.
 //!
 //! A [`Check`] asks one question about a configuration, for example whether golden model and simulation agree. [`Check::run`]
-//! returns a [`CheckAnswer`] with a [`Finding`]: the verdict, the domain for which it holds, and the questions that remain
-//! open. A missing tool is a verdict too, and no error. Run times, which differ from run to run, are separate, in
-//! [`CheckTime`].
+//! returns a [`CheckAnswer`] with a [`Finding`]: the verdict, the domain for which it holds, and the questions that remain open.
+//! A missing tool is a verdict, not an error.
 
 mod inside;
 mod outside;
@@ -27,7 +26,7 @@ use glint_core::core::Core;
 use glint_core::package::{self, FileKind, OutputFiles};
 use glint_tools::{LimitReached, Tool};
 
-/// A configuration that `glint verify` checks, with the settings of the verification.
+/// A configuration that `glint verify` checks, with the verification's settings.
 pub struct CheckSubject<'a> {
     /// The path of the configuration file on the command line.
     pub path: &'a str,
@@ -52,7 +51,7 @@ impl<'a> CheckSubject<'a> {
         Ok(self.files.get_or_init(|| files))
     }
 
-    /// Returns the files of the core that tools read for a target, as pairs of a file name without directories and contents.
+    /// Returns the files of the core that tools read for `target`, as pairs of a file name without directories and contents.
     /// `target` is the name of an FPGA family, or empty for files that suit every target.
     fn sources(&self, target: &str) -> Result<Vec<(String, String)>> {
         Ok(self.files()?.sources_for(FileKind::CORE_SOURCES, target))
@@ -69,7 +68,7 @@ pub struct FileDigest {
 
 #[derive(Clone, Copy, Debug)]
 pub struct Effort {
-    /// Whether to do all the work, however long it takes. Otherwise long checks do a part of their work, or are left out.
+    /// Whether to do all the work, however long it takes. Otherwise long checks do a part of their work or are left out.
     pub full: bool,
     pub without_tools: bool,
     pub time_limit: Duration,
@@ -80,21 +79,20 @@ pub struct Effort {
 pub enum CheckVerdict {
     /// The checked property holds for everything in the domain.
     Proved,
-    /// The checked property held wherever the check tried it.
+    /// The checked property held in all cases that the check tried.
     Passed,
     /// The checked property does not hold.
     Failed,
-    /// The check ran to its end but cannot decide: the test is too weak, the solver answers that it does not know, or Glint
-    /// cannot interpret the Verilog.
+    /// The check ran to its end but cannot decide. For example, the test is too weak, the solver answers that it does not know,
+    /// or Glint cannot interpret the Verilog.
     Undecided,
     /// The check reached a limit of time or memory.
     LimitReached,
-    /// The check could not be run: a tool is missing, or the record of a long check is missing and this effort does not allow
-    /// the check itself.
+    /// The check could not be run: a tool is missing, or a long check's record is missing and the check needs `--full`.
     #[default]
     NotRun,
-    /// The check is a second proof of a fact that another check shows, and did not succeed. For example, Gappa finds no proof
-    /// of the error bound. The finding says why.
+    /// The check is a second proof of a fact that an earlier check shows, and did not succeed. For example, Gappa finds no proof
+    /// of the error bound.
     Unconfirmed,
     /// The check was left out on purpose, by the user or because it would take long without `--full`.
     LeftOut,
@@ -103,7 +101,7 @@ pub enum CheckVerdict {
 }
 
 impl CheckVerdict {
-    /// Returns the verdict as a short text. For example, `proved` or `not run`.
+    /// Returns the verdict as a short text, for example `proved` or `not run`.
     pub fn words(self) -> &'static str {
         match self {
             Self::Proved => "proved",
@@ -118,7 +116,7 @@ impl CheckVerdict {
         }
     }
 
-    /// Returns the conclusion of a verification whose worst verdict is this one.
+    /// Returns the conclusion of a verification with this worst verdict.
     pub fn conclusion(self) -> Conclusion {
         match self {
             Self::Failed => Conclusion::Failed,
@@ -138,13 +136,12 @@ pub struct Finding {
     pub domain: String,
     /// The outcome in a sentence or two.
     pub words: String,
-    /// The questions that the check leaves open; may be empty.
+    /// The questions that the check leaves open; empty if there are no such questions.
     pub open: String,
     /// The path of a record that replaces a part of the work.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub record: Option<String>,
-    /// The command that would run a check that was left out or not run, or that reached its time limit. A check that did a
-    /// part of its work names the rest in `open`.
+    /// The command that would run a check that was left out or not run, or that reached its time limit.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub complete_with: Option<String>,
     /// The failures in words: for example, the seed, the clock and the signal of a difference, or the output of the tool that
@@ -173,8 +170,8 @@ impl Finding {
     }
 }
 
-/// Gets the subject, the check's tools in the order of their names, and a function for progress. It calls this function with
-/// the number of steps that it has finished since the last call.
+/// Runs a check. It gets the subject, the check's tools in the order of their names, and a function for progress. It calls this
+/// function with the number of steps that it has finished since the last call.
 type CheckFunction = fn(&CheckSubject<'_>, &[Tool], &(dyn Fn(u64) + Sync)) -> Result<Finding>;
 
 pub struct Check {
@@ -224,15 +221,14 @@ impl Check {
 
     /// Runs the check, and calls `progress` with the number of newly finished steps. If a tool is missing, the verdict is
     /// [`CheckVerdict::NotRun`]. If the check ends with an error, the verdict is [`CheckVerdict::Failed`], or
-    /// [`CheckVerdict::LimitReached`] if a tool was stopped at its time limit. A check can also handle a failure of its tool
-    /// itself: if Gappa finds no proof in time, the verdict is [`CheckVerdict::Unconfirmed`].
+    /// [`CheckVerdict::LimitReached`] if a tool was stopped at its time limit.
     pub fn run(&self, subject: &CheckSubject<'_>, progress: &(dyn Fn(u64) + Sync)) -> CheckAnswer {
         let begin = Instant::now();
         let (tools, finding) = self.find(subject, progress);
         self.answer(tools, finding, begin.elapsed())
     }
 
-    /// Returns the answer of a check that is left out on purpose, for the reason `why`.
+    /// Returns the answer of a check that is left out on purpose. `why` is the reason.
     pub fn left_out(&self, why: &str) -> CheckAnswer {
         let finding = Finding::without(CheckVerdict::LeftOut, why);
         self.answer(Vec::new(), finding, Duration::ZERO)
@@ -285,13 +281,13 @@ impl Check {
 /// A check of `glint verify`, with its finding and the time that it took.
 #[derive(Clone, Debug, Serialize)]
 pub struct CheckAnswer {
-    /// The same as [`Check::id`].
+    /// The value of [`Check::id`].
     pub check: &'static str,
-    /// The same as [`Check::title`].
+    /// The value of [`Check::title`].
     pub title: &'static str,
-    /// The same as [`Check::question`].
+    /// The value of [`Check::question`].
     pub question: &'static str,
-    /// The same as [`Check::reads`].
+    /// The value of [`Check::reads`].
     pub reads: &'static str,
     /// The versions of the outside tools that the check used; empty if a tool is missing.
     pub tools: Vec<String>,
@@ -302,15 +298,15 @@ pub struct CheckAnswer {
     pub timing: CheckTime,
 }
 
-/// The time is kept apart from the findings because it differs from run to run.
+/// A check's time, apart from its finding, because it differs from run to run.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct CheckTime {
-    /// The same as [`Check::id`].
+    /// The value of [`Check::id`].
     pub check: &'static str,
     pub seconds: f64,
 }
 
-/// The worst verdict of the checks of a configuration decides.
+/// The conclusion about a configuration. The worst verdict of its checks decides.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Conclusion {
@@ -326,7 +322,7 @@ pub enum Conclusion {
 }
 
 impl Conclusion {
-    /// Returns the worst conclusion. Without answers it is [`Conclusion::Incomplete`].
+    /// Returns the worst conclusion, or [`Conclusion::Incomplete`] without answers.
     pub fn of(answers: &[CheckAnswer]) -> Self {
         let verdicts = answers.iter().map(|answer| answer.finding.verdict.conclusion());
         verdicts.max().unwrap_or(Self::Incomplete)
@@ -357,7 +353,7 @@ pub struct VerificationRecord {
     pub files: Vec<FileDigest>,
     pub full: bool,
     pub conclusion: Conclusion,
-    /// A verdict that no check has is left out.
+    /// The number of checks with each verdict, without verdicts that no check has.
     pub counts: BTreeMap<CheckVerdict, usize>,
     /// The answers in the order in which the checks ran.
     pub checks: Vec<CheckAnswer>,

@@ -1,8 +1,7 @@
 //! Defines the checks of `glint verify` that run outside tools: provers, solvers, linters, simulators and synthesis.
 //!
 //! Most of the checks read the emitted files. [`CERTIFICATE`] reads the netlist and the microprogram, [`EQUALITY`] the netlists
-//! of a pipeline and its sequential core, and [`TEXT`] the Verilog and the netlist. The check that runs a C compiler is in
-//! `recomputation`.
+//! of a pipeline and its sequential core, and [`TEXT`] the Verilog and the netlist.
 
 use std::fs;
 use std::path::Path;
@@ -40,11 +39,11 @@ const EQUAL: Duration = Duration::from_secs(300);
 /// The version of cocotb that the benches in Python are written for.
 const COCOTB_VERSION: &str = "2.1.0";
 
-/// The number of results of a bench around a netlist.
+/// The number of results of a bench at gate level.
 const GATE_POINTS: u64 = 40;
 
-/// If the statements cannot be written, or Gappa does not prove one in time, the check is unconfirmed. It does not fail,
-/// because another check shows the bound too. A pipeline has no such check.
+/// The proof of the error bound with Gappa. If the statements cannot be written, or Gappa does not prove one in time, the check
+/// is unconfirmed. It does not fail, because another check also shows the bound. It does not apply to a pipeline.
 pub const CERTIFICATE: Check = Check {
     id: "certificate",
     title: "Proof of the error bound",
@@ -106,7 +105,7 @@ pub const CERTIFICATE: Check = Check {
     },
 };
 
-/// A sequential core has no such check.
+/// The proof that a pipeline equals its sequential core. It does not apply to a sequential core.
 pub const EQUALITY: Check = Check {
     id: "equality",
     title: "Equal to the sequential core",
@@ -145,7 +144,7 @@ pub const EQUALITY: Check = Check {
     },
 };
 
-/// Yosys reads the emitted Verilog, and z3 proves that it equals the netlist. A sequential core has no such check.
+/// The proof with Yosys and z3 that the emitted Verilog of a pipeline equals its netlist. It does not apply to a sequential core.
 pub const TEXT: Check = Check {
     id: "text",
     title: "Emitted Verilog equal to the netlist",
@@ -221,7 +220,7 @@ fn undecided(subject: &CheckSubject<'_>, open: equality::Open, limit: Duration) 
     }
 }
 
-/// Any remark is a failure.
+/// The check by linters. Any remark is a failure.
 pub const LINT: Check = Check {
     id: "lint",
     title: "Lint",
@@ -334,7 +333,7 @@ pub const SYNTHESIS: Check = Check {
     },
 };
 
-/// Products and ROMs are replaced by arbitrary values, so the check says nothing about results.
+/// The handshake's proof. Arbitrary values replace products and ROMs, so the check says nothing about results.
 pub const FORMAL: Check = Check {
     id: "formal",
     title: "Proof of the handshake",
@@ -367,7 +366,7 @@ pub const FORMAL: Check = Check {
     },
 };
 
-/// Runs the emitted benches in Python with cocotb. The benches know the core only from its manifest.
+/// The check that runs the emitted benches in Python with cocotb. The benches know the core only from its manifest.
 pub const COCOTB: Check = Check {
     id: "cocotb",
     title: "Emitted Verilog driven from Python",
@@ -430,7 +429,8 @@ pub(super) fn directory_of<'f>(
     Ok(dir)
 }
 
-/// The netlists are of the FPGA families whose cells have models, and of cells of 0.18 µm if their library is installed.
+/// The check of netlists after synthesis: for the FPGA families with cell models, and of 0.18 µm cells if their library is
+/// installed.
 pub const GATES: Check = Check {
     id: "gates",
     title: "Netlists at gate level",

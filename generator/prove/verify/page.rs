@@ -48,9 +48,11 @@ impl<'a> CheckView<'a> {
     }
 }
 
-/// `timings` has the time of each check, in the order of the record's checks. Only the last section of the page depends on it.
+/// Writes the page. `timings` has each check's time, in the order of the record's checks. Only the last section of the page shows
+/// times.
 ///
 /// # Errors
+///
 /// Fails if the template fails.
 pub fn page(record: &VerificationRecord, timings: &[CheckTime]) -> Result<String> {
     let counts = record.counts.iter();

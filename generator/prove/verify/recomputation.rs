@@ -1,12 +1,12 @@
-//! Checks the error bound with a generated C program. The program computes the result of the core's C model for every
-//! combination of operands, and compares it with the exact value of the formula. It evaluates the formula with MPFR and the C
-//! library, so that the verdict does not depend on Glint's own arithmetic.
+//! Checks the error bound with a generated C program. The program computes the result of the core's C model for every combination
+//! of operands, and compares the result with the exact value of the formula. It evaluates the formula with MPFR and the C
+//! library, so the verdict does not depend on Glint's own arithmetic.
 //!
 //! For the device `function`, the program uses MPFR at every operand. For `expression`, the program evaluates in doubles first.
 //! It uses MPFR only if the rounding errors of the doubles leave the verdict open.
 //!
-//! Without `--full`, `glint verify` skips this check if it would take minutes: for an `expression` with more than 2^24
-//! combinations of operands, and for a `function` with more than 2^20 operands.
+//! Without `--full`, `glint verify` skips this check for an `expression` with more than 2^24 combinations of operands, and for a
+//! `function` with more than 2^20 operands.
 
 use std::fs;
 use std::path::Path;
@@ -24,10 +24,10 @@ use glint_core::package::{FileKind, OutputFile};
 use glint_golden::Operand;
 use glint_tools::Tool;
 
-/// MPFR computes the result of each of these operands.
+/// The largest number of operands of a `function` without `--full`. MPFR computes the result of each.
 const MOST_OPERANDS: u128 = 1 << 20;
 
-/// Doubles decide most of these combinations.
+/// The largest number of combinations of an `expression` without `--full`. Doubles decide most of them.
 const MOST_COMBINATIONS: u128 = 1 << 24;
 
 /// The exit code of the program if it finds no error, but cannot decide about some combinations.
@@ -67,7 +67,7 @@ pub const RECOMPUTATION: Check = Check {
     },
 };
 
-/// Returns the finding [`CheckVerdict::LeftOut`] if the operands have more combinations than this effort allows.
+/// Returns the finding [`CheckVerdict::LeftOut`] if the operands have too many combinations for a check without `--full`.
 fn left_out(subject: &CheckSubject<'_>) -> Option<Finding> {
     let contract = &subject.core.contract;
     let most = if contract.conditions().is_some() { MOST_COMBINATIONS } else { MOST_OPERANDS };
@@ -101,7 +101,7 @@ impl ProgramCompiler<'_> {
         Ok((run.status.success(), run.output))
     }
 
-    /// Returns whether the compiler can compile a program that includes MPFR, so that MPFR is installed.
+    /// Returns whether MPFR is installed: the compiler can compile a program that includes it.
     fn has_mpfr(&self) -> Result<bool> {
         let probe = "#include <mpfr.h>\nint main(void) { return 0; }\n";
         fs::write(self.dir.join("probe.c"), probe)
@@ -142,7 +142,7 @@ fn is_about_memories(line: &str) -> bool {
     line.starts_with("no memory is checked")
 }
 
-/// Returns a text such as `every operand: x = 0 to 255`.
+/// Returns the domain as text, such as `every operand: x = 0 to 255`.
 fn domain(operands: &[Operand]) -> String {
     let mut ranges = Vec::new();
     for operand in operands {

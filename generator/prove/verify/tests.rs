@@ -1,5 +1,5 @@
-//! Tests the checks of `glint verify` that need no outside tool: the worst verdict of its checks decides, and a fault in the
-//! design fails the check `lockstep` but not the check `contract`.
+//! Tests the checks of `glint verify` that need no outside tool. A fault in the design must fail the check `lockstep` but not the
+//! check `contract`.
 
 use std::path::Path;
 use std::time::Duration;

@@ -1,8 +1,9 @@
 //! Finds the configuration keys that would reduce the error bound of a core.
 //!
-//! If the core does not keep its accuracy contract, the module looks for changes with which it does, in at most 40 steps.
-//! Otherwise, or if it finds none, it names the one key that reduces the bound most. It never changes keys of the table
-//! `domain`, because a narrower domain promises less. For example, it suggests `intensity.fraction = 17` in place of 16.
+//! If the core does not keep its accuracy contract, the module looks for changes with which the core keeps it, in at most 40
+//! steps. Otherwise, or without such changes, it names the one key that reduces the bound most. For example, it suggests
+//! `intensity.fraction = 17` in place of 16. It never changes keys of the table `domain`, because a narrower domain promises
+//! less.
 
 use std::fmt;
 
@@ -13,10 +14,10 @@ use glint_core::core::Core;
 use glint_core::registry::Device;
 use glint_golden::{Bound, Contract};
 
-/// A larger step is tried only if no smaller one reduces the bound.
+/// The steps of an integer key. A larger step is tried only if no smaller one reduces the bound.
 const STEPS: [i64; 4] = [1, 2, 4, 8];
 
-/// Smaller reductions of the bound do not count, in output units.
+/// The smallest reduction of the bound that counts, in output units.
 const GAIN: f64 = 1e-6;
 
 /// The largest number of changes that are tried one after the other until the core keeps its contract.
@@ -26,7 +27,7 @@ const MOST: usize = 40;
 /// bring the bound to 0.812 units".
 #[derive(Clone, Debug, PartialEq)]
 pub struct Advice {
-    /// The name of each key, its present value and the value that helps, both as TOML.
+    /// Each key's name, its present value, and the value that helps. The values are in TOML.
     pub changes: Vec<(&'static str, String, String)>,
     /// The error bound with all of these changes, in output units.
     pub units: f64,
@@ -48,9 +49,9 @@ struct Better {
     bound: Bound,
 }
 
-/// Returns changes that reduce the error bound of a core. If the core violates its accuracy contract, the function looks for
-/// changes that keep it, in at most 40 steps. Otherwise only one key changes: among the smallest steps that help any key, the
-/// key that reduces the bound most.
+/// Returns changes that reduce the error bound of a core, or `None` if no change does. If the core violates its accuracy
+/// contract, the function looks for changes that keep it, in at most 40 steps. Otherwise only one key changes: among the smallest
+/// steps that help any key, the key that reduces the bound most.
 pub fn of(core: &Core) -> Option<Advice> {
     let device = core.device();
     let bound = core.contract.bounds().governing().clone();
@@ -112,8 +113,8 @@ fn output_formats(contract: &dyn Contract) -> Vec<Format> {
     contract.outputs().iter().map(|output| output.format).collect()
 }
 
-/// Undoes the changes without which the core still keeps its contract, one key after the other. `config` is the configuration
-/// before all changes.
+/// Undoes changes, one key after the other, as long as the core keeps its contract. `config` is the configuration before all
+/// changes.
 fn needed(device: &Device, config: &Config, mut kept: Better) -> Better {
     let schema = (device.schema)();
     for (key, ..) in changes(device, config, &kept.config) {
@@ -132,7 +133,7 @@ fn advice(device: &Device, config: &Config, better: &Better) -> Advice {
     Advice { changes: changes(device, config, &better.config), units: better.bound.units }
 }
 
-/// Returns the keys with different values in two configurations, with both values as TOML.
+/// Returns the keys with different values in two configurations, with both values in TOML.
 fn changes(
     device: &Device,
     config: &Config,
@@ -148,8 +149,8 @@ fn changes(
     changes
 }
 
-/// Returns the keys that the bound depends on, each with the values that differ from its own by `step`. A key counts if a term
-/// of the bound names it, or if it is a choice or a flag in the table of such a key.
+/// Returns the keys on which the bound depends, each with the values that differ from its own by `step`. A term of the bound must
+/// name the key, or the key must be a choice or a flag in the table of a key that a term names.
 fn candidates(
     schema: &Schema,
     config: &Config,
@@ -172,7 +173,7 @@ fn candidates(
     candidates
 }
 
-/// Returns the table of a key, for example `exponent` for `exponent.bits`. A key outside of all tables gives an empty text.
+/// Returns a key's table, for example `exponent` for `exponent.bits`. A key outside of all tables gives an empty text.
 fn table_of(key: &str) -> &str {
     match key.split_once('.') {
         Some((table, _)) => table,
@@ -180,8 +181,8 @@ fn table_of(key: &str) -> &str {
     }
 }
 
-/// Returns the values that differ from `value` by `step`. For example, the integer 8 and the step 2 give 6 and 10. A choice or
-/// a flag gives all its other values. A list gives each list in which one entry differs by `step`.
+/// Returns the values that differ from `value` by `step`. For example, the integer 8 and the step 2 give 6 and 10. A choice or a
+/// flag gives all its remaining values. A list gives each list in which one entry differs by `step`.
 fn neighbours(kind: &KeyKind, value: &Value, step: i64) -> Vec<Value> {
     match (kind, value) {
         (_, Value::Integer(value)) => [value - step, value + step].map(Value::Integer).to_vec(),
@@ -205,7 +206,7 @@ fn neighbours(kind: &KeyKind, value: &Value, step: i64) -> Vec<Value> {
     }
 }
 
-/// Returns `None` if the device does not accept the value.
+/// Returns `config` with a new value of `key`, or `None` if the schema refuses it.
 fn with(schema: &Schema, config: &Config, key: &str, value: &Value) -> Option<Config> {
     let mut given = Vec::new();
     for (name, before) in config.values() {

@@ -12,10 +12,10 @@ pub enum AxisScale {
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ChartAxis {
-    /// The quantity with its unit. For example, `γ (degrees)`.
+    /// The quantity with its unit, for example `γ (degrees)`.
     pub label: String,
     pub scale: AxisScale,
-    /// The ends of the plotted range. The plot clips values outside; the table of values shows them.
+    /// The ends of the plotted range. The plot clips values outside the range; the table of values shows them.
     pub range: (f64, f64),
 }
 
@@ -28,8 +28,8 @@ impl ChartAxis {
         Self { scale: AxisScale::Logarithmic, ..Self::linear(label, low, high) }
     }
 
-    /// Returns the position of a value on the axis, which is its logarithm to base 10 on a logarithmic axis. For example, 100
-    /// is at 2 there, and 0 has no position.
+    /// Returns the position of `value` on the axis: on a logarithmic axis, its logarithm to base 10. For example, 100 is at 2
+    /// there. Returns `None` if there is no position, such as for 0.
     pub fn place(&self, value: f64) -> Option<f64> {
         let place = match self.scale {
             AxisScale::Linear => value,
@@ -42,7 +42,7 @@ impl ChartAxis {
 
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Series {
-    /// The name for the legend and the head of the table.
+    /// The name for the legend and the table's head.
     pub name: String,
     /// One value for each position in [`Chart::places`]. A position without a value has NaN, which is `null` in JSON.
     pub values: Vec<f64>,
@@ -62,20 +62,20 @@ pub struct Chart {
     /// The identifier in HTML, which must be unique on the page.
     pub id: String,
     pub title: String,
-    /// A sentence or two, which a screen reader also reads.
+    /// One or two sentences, which a screen reader also reads.
     pub caption: String,
     pub x: ChartAxis,
     pub y: ChartAxis,
     /// The positions on the horizontal axis at which the curves have values, in ascending order.
     pub places: Vec<f64>,
-    /// The curves, at most [`crate::pages::plots::STYLES`], so that a reader can tell them apart.
+    /// The curves, at most [`crate::pages::plots::STYLES`], so a reader can tell them apart.
     pub series: Vec<Series>,
     pub marks: Vec<Mark>,
 }
 
 impl Chart {
-    /// Returns about `rows` evenly spread indices into [`Chart::places`], the first and the last among them. For example, 5
-    /// rows of 101 places are 0, 25, 50, 75 and 100. The chart must have places.
+    /// Returns about `rows` evenly spread indices into [`Chart::places`], the first and the last among them. For example, 5 rows
+    /// of 101 positions are 0, 25, 50, 75 and 100.
     pub fn rows(&self, rows: usize) -> Vec<usize> {
         let last = self.places.len().saturating_sub(1);
         let mut chosen: Vec<usize> =
@@ -91,9 +91,8 @@ pub fn even(low: f64, high: f64, steps: u32) -> Vec<f64> {
     (0..=steps).map(|step| low + (high - low) * f64::from(step) / f64::from(steps)).collect()
 }
 
-/// Returns integers that are spaced evenly on a logarithmic axis, about `per_decade` of them for each power of ten, with both
-/// ends. For example, 1 to 1000 with 4 for each power of ten begins with 1, 2, 3, 6 and 10. `low` must be at least 1, and less
-/// than `high`.
+/// Returns about `per_decade` integers for each power of ten, evenly spaced on a logarithmic axis, with both ends. For example, 1
+/// to 1000 with 4 for each power of ten begins with 1, 2, 3, 6 and 10. `low` must be at least 1, and less than `high`.
 pub fn exponents(low: u32, high: u32, per_decade: u32) -> Vec<u32> {
     let value = |step: u32| {
         let value = f64::from(low) * libm::pow(10.0, f64::from(step) / f64::from(per_decade));

@@ -1,4 +1,4 @@
-//! Compares devices at one exponent n: how near each one comes to `cosⁿγ`, and how much hardware it takes.
+//! Compares devices at one exponent n: how near each device comes to `cosⁿγ`, and how much hardware it takes.
 //!
 //! `cosⁿγ` is Blinn's specular highlight. A device that is no highlight, or whose operands cannot represent n, has no error
 //! here. The error is measured at 9001 angles from 0 to 90° and split by cause: the device's formula, the rounding of its
@@ -20,7 +20,7 @@ pub const ANGLES_PER_DEGREE: u32 = 100;
 /// The number of angles from 0 to 90°, both included.
 pub const ANGLES: u32 = 90 * ANGLES_PER_DEGREE + 1;
 
-/// The exponent n at which the clocks per point are counted, if they depend on n.
+/// The exponent n at which the clocks per point are counted, because they may depend on n.
 pub const EXPONENT: f64 = 35.0;
 
 /// The angle γ, in degrees, at which the clocks per point are counted.
@@ -33,7 +33,7 @@ pub struct Spread {
 }
 
 impl Spread {
-    /// The mean is right after an error was added for each angle.
+    /// Adds the error at one angle. The mean is right after one call for each angle.
     fn take(&mut self, error: f64) {
         let error = error.abs();
         self.largest = self.largest.max(error);
@@ -41,8 +41,8 @@ impl Spread {
     }
 }
 
-/// The error of a device's reflectance `f` against `cosⁿγ`, in total and by cause. At every angle the total error is the sum
-/// of the signed errors by cause. The largest values of two causes may be at different angles.
+/// The error of a device's reflectance `f` against `cosⁿγ`, in total and by cause. At every angle the total error is the sum of
+/// the signed errors by cause.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Accuracy {
     /// The reflectance f that the hardware computes, against `cosⁿγ`.
@@ -50,14 +50,14 @@ pub struct Accuracy {
     pub whole: Spread,
     /// The device's formula in f64, at the quantised operands, against `cosⁿ` of the angle that these operands denote.
     pub formula: Spread,
-    /// `cosⁿ` of the angle that the quantised operands denote, against `cosⁿγ`. The error is 0 if a contract does not tell
-    /// that angle ([`Highlight::cosine`]); the formula's error then includes it.
+    /// `cosⁿ` of the angle that the quantised operands denote, against `cosⁿγ`. The error is 0 if the operands determine no angle
+    /// ([`Highlight::cosine`]); the formula's error then includes it.
     pub operands: Spread,
     /// The reflectance f that the hardware computes, against the formula at the quantised operands.
     pub fixed_point: Spread,
 }
 
-/// Returns the value of the formula at the quantised operands; at a jump, the value on the side that is nearer to `f`.
+/// Returns the formula's value at the quantised operands. At a jump, returns the value that is nearer to `f`.
 pub fn formula(highlight: &Highlight, control: &[i64], f: f64) -> f64 {
     let [one, other] = highlight.references(control);
     if (f - other).abs() < (f - one).abs() { other } else { one }
@@ -107,7 +107,7 @@ pub fn clocks_per_point(design: &Design, contract: &dyn Contract, n: f64) -> Res
     Ok(f64::from(clocks) / f64::from(points))
 }
 
-/// The operand widths of a multiplier in bits, the wider one first. For example, as text: `21x10`.
+/// The operand widths of a multiplier in bits, the wider one first. As text, for example, `21x10`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct MultiplierSize {
     pub first: u32,

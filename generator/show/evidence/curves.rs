@@ -1,7 +1,7 @@
 //! Measures the error curves of a configuration, over the exponent n and over the angle γ.
 //!
-//! One curve is the error of the device's formula against `cosⁿγ`, Blinn's specular highlight. Another is the error of its
-//! fixed-point results against the formula.
+//! One kind of curve is the error of the device's formula against `cosⁿγ`, Blinn's specular highlight. The second kind is the
+//! error of the fixed-point results against the formula.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -21,12 +21,12 @@ const SHOWN: [u32; 5] = [2, 8, 35, 128, 1000];
 /// The largest value of `√n·γ` on the curves over the angle.
 const REACH: f64 = 4.0;
 
-/// The number of steps between the first and the last position of a curve over the angle. At each position, the largest error
-/// of [`ANGLES`] steps around it counts.
+/// `PLACES` is the number of steps between the first and the last position of a curve over the angle. A position has the largest
+/// error of [`ANGLES`] steps around it.
 const PLACES: u32 = 100;
 const ANGLES: u32 = 12;
 
-/// The lowest error on a logarithmic axis. Smaller errors are shown there.
+/// The lowest error on a logarithmic axis. Smaller errors are drawn there.
 const FLOOR: f64 = 1e-6;
 
 /// The error curves of a device, with the facts that a page shows next to them.
@@ -39,7 +39,7 @@ pub struct DeviceCurves {
     /// The largest value of a colour operand; 0 for a device without colours. An error of `f` times this value is an error in
     /// output units.
     pub largest_colour: f64,
-    /// The largest errors for each exponent; empty if no operands of the device denote γ and n.
+    /// The largest errors for each exponent; empty if the operands of the device do not denote γ and n.
     pub exponents: Vec<AtExponent>,
     /// The charts; empty if `exponents` is empty.
     pub charts: Vec<Chart>,
@@ -57,7 +57,7 @@ pub struct AtExponent {
     pub whole: f64,
 }
 
-/// The number of calls of `done` by [`device`], so that a caller can show progress.
+/// The number of times that [`device`] calls `done`.
 pub const STEPS: usize = EXPONENTS.len() + SHOWN.len();
 
 /// The signed error of the formula against `cosⁿγ`, and the absolute error of the fixed-point arithmetic against the formula,
@@ -68,14 +68,14 @@ struct AtAngle {
     fixed_point: f64,
 }
 
-/// Measures the curves of the default configuration. The function calls `done` after each of [`STEPS`] steps.
+/// Measures the curves of the default configuration. Calls `done` after each of [`STEPS`] steps.
 pub fn device(device: &Device, done: &(dyn Fn() + Sync)) -> DeviceCurves {
     let opened = device.open(device.defaults()).expect("the defaults of a device can be opened");
     let contract = opened.contract();
     configuration(device, contract.as_ref(), done)
 }
 
-/// Does the same as [`device`] for a configuration with the given contract.
+/// Measures the curves of a configuration with the contract `contract`, see [`device`].
 pub fn configuration(
     device: &Device,
     contract: &dyn Contract,
@@ -127,14 +127,13 @@ pub fn configuration(
     }
 }
 
-/// Returns values of `√n·γ` from 0 to 4, in 100 steps.
+/// Returns 101 values of `√n·γ` from 0 to 4.
 fn places() -> Vec<f64> {
     even(0.0, REACH, PLACES)
 }
 
-/// Returns the signed error of the formula at each position of [`places`], and the largest fixed-point error near the
-/// position. Both are NaN for angles beyond 90°, at which there is no highlight. For example, the curve of n = 2 ends at √n·γ
-/// = 2.2.
+/// Returns the signed error of the formula at each position of [`places`], and the largest fixed-point error near the position.
+/// Both are NaN for angles beyond 90°, at which the surface faces away. For example, the curve of n = 2 ends at √n·γ = 2.2.
 fn over_angle(contract: &dyn Contract, n: f64) -> Option<Vec<AtAngle>> {
     let highlight = contract.highlight()?;
     let half = REACH / f64::from(PLACES) / 2.0;
@@ -154,7 +153,7 @@ fn over_angle(contract: &dyn Contract, n: f64) -> Option<Vec<AtAngle>> {
     Some(curve)
 }
 
-/// Returns the errors at the angle γ = x/√n.
+/// Returns the errors at the angle γ = x/√n, or `None` if the operands cannot represent it.
 fn at_angle(highlight: &Highlight, x: f64, n: f64) -> Option<AtAngle> {
     let gamma = (x / n.sqrt()).clamp(0.0, FRAC_PI_2);
     let control = highlight.at(gamma, n)?;
@@ -245,8 +244,8 @@ fn charts(
     vec![over_n, over_gamma, fixed_point]
 }
 
-/// Returns the end of an axis. It is the smallest round number from 0.001 to 0.5 that is at least as large as every finite
-/// absolute value of the curves. For example, values up to 0.013 give 0.02. If a value is above 0.5, the end is 1.
+/// Returns the end of an axis: the smallest round number from 0.001 to 0.5 that no finite absolute value of the curves exceeds.
+/// For example, values up to 0.013 give 0.02.
 fn reach(series: &[Series]) -> f64 {
     let mut largest: f64 = 0.0;
     for value in series.iter().flat_map(|series| &series.values) {
@@ -262,7 +261,7 @@ fn reach(series: &[Series]) -> f64 {
     1.0
 }
 
-/// NaN stays NaN.
+/// Raises errors below `FLOOR` to it, so a logarithmic axis can show them. NaN stays NaN.
 fn floored(error: f64) -> f64 {
     if error.is_nan() { f64::NAN } else { error.max(FLOOR) }
 }

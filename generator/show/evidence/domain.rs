@@ -1,15 +1,15 @@
 //! Makes the charts of a device that computes a function of one operand, such as a square root: the function and its error
 //! over the domain.
 //!
-//! If the domain is large, the charts show a sample of the operands, so that they may miss the largest error.
+//! For a large domain, the charts show a sample of the operands, so they may miss the largest error.
 
 use super::chart::{Chart, ChartAxis, Mark, Series};
 use glint_golden::Contract;
 
-/// A domain with fewer values has one position for each.
+/// The largest number of positions. A small domain has one position for each value.
 const PLACES: i64 = 160;
 
-/// The approximate number of operands that are tried at each position. The chart shows the largest error among them.
+/// The approximate number of operands that are tried for each position. The chart shows their largest error.
 const OPERANDS: i64 = 256;
 
 /// Returns the charts of a device with one operand and one output: the function and its error over the domain. Returns no

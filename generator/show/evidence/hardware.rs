@@ -1,5 +1,5 @@
-//! Asks a synthesis tool how many cells a core takes on each FPGA family that Glint compares: LUTs, DSP blocks and block RAMs.
-//! The cells are counted before placement.
+//! Asks a synthesis tool how many cells a core takes before placement: LUTs, DSP blocks and block RAMs, on each FPGA family that
+//! Glint compares.
 
 use anyhow::{Context, Result};
 use rayon::prelude::*;
@@ -8,12 +8,13 @@ use serde::Serialize;
 use glint_base::target::{COMPARED, Family, Usage};
 use glint_core::core::Core;
 
-/// A synthesis tool that counts the cells of a core.
+/// A synthesis tool that counts a core's cells.
 pub trait Synthesis: Sync {
-    /// Returns the version of the tool, for people: for example, `Yosys 0.23`.
+    /// Returns the tool's version as a page shows it, for example `Yosys 0.23`.
     ///
     /// # Errors
-    /// Fails if the tool does not say its version.
+    ///
+    /// Fails if the tool does not state its version.
     fn version(&self) -> Result<String>;
 
     /// Counts the cells of the module `top` on an FPGA family. `files` are the Verilog and memory files: pairs of a file name
@@ -33,10 +34,10 @@ pub struct FamilyUsage {
     pub block_rams: u64,
 }
 
-/// Returns the cells on each of the FPGA families [`COMPARED`], in their order. The function calls `done` after each family,
-/// so that a caller can show progress.
+/// Returns the cells on each of the FPGA families [`COMPARED`], in their order. Calls `done` after each family.
 ///
 /// # Errors
+///
 /// Fails if synthesis fails.
 pub fn usage(
     core: &Core,

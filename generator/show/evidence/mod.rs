@@ -1,4 +1,4 @@
-//! Analyses devices and configurations for pages: errors against their formulas, and the hardware that they take.
+//! Analyses devices and configurations for pages: their errors against formulas, and the hardware that they take.
 
 pub mod advice;
 pub mod chart;

@@ -4,7 +4,7 @@ use anyhow::Result;
 use glint_base::fill;
 use glint_base::template::Template;
 
-/// Lines, boxes and text, in units of the page at full size. Each [`Item::Open`] must have an [`Item::Close`].
+/// A drawing of lines, boxes and text, in units of the page at full size. Each [`Item::Open`] must have an [`Item::Close`].
 #[derive(Clone, Debug)]
 #[glint_base::template::template("drawing.svg")]
 pub struct Drawing {
@@ -20,13 +20,13 @@ pub struct Drawing {
     pub items: Vec<Item>,
 }
 
-/// The class of a part selects colours in the style sheet.
+/// A part of a drawing. Its class selects colours in the style sheet.
 #[derive(Clone, Debug)]
 pub enum Item {
     /// Lines, by SVG's path syntax.
     Path {
         class: &'static str,
-        /// The attribute `d` of SVG. For example, `M0 0H10V5` goes 10 to the right and 5 down.
+        /// The attribute `d` of SVG. For example, `M0 0H10V5` draws a line 10 units to the right and 5 down.
         d: String,
     },
     Text {
@@ -34,7 +34,7 @@ pub enum Item {
         class: &'static str,
         /// The horizontal position at which the text starts, is centred or ends, as its class says.
         x: i32,
-        /// The vertical position of the base line.
+        /// The vertical position of the text's base line.
         y: i32,
         text: String,
     },
@@ -60,17 +60,19 @@ impl Item {
 }
 
 impl Drawing {
-    /// Returns an `svg` element.
+    /// Returns the drawing as an `svg` element.
     ///
     /// # Errors
+    ///
     /// Fails if the template cannot be printed.
     pub fn svg(&self) -> Result<String> {
         Ok(self.render()?)
     }
 
-    /// Returns an SVG file that ends with a newline.
+    /// Returns the drawing as an SVG file that ends with a newline.
     ///
     /// # Errors
+    ///
     /// Fails if a template cannot be printed.
     pub fn file(&self) -> Result<String> {
         fill!("standalone.svg" {
@@ -84,7 +86,7 @@ impl Drawing {
 /// The font size of text in drawings, in units of the page.
 pub const SIZE: f64 = 11.0;
 
-/// Estimates the width of a text: 10 characters are 66 units wide.
+/// Estimates a text's width: 10 characters are 66 units wide.
 pub fn text_width(text: &str) -> i32 {
     (text.chars().count() as f64 * SIZE * 0.6).ceil() as i32
 }

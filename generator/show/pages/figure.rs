@@ -1,4 +1,4 @@
-//! Makes the figures of a page from charts: the plot, its legend, and a table of some of its values.
+//! Makes a page's figures from charts: the plot, its legend, and a table of some of its values.
 
 use anyhow::Result;
 use rayon::prelude::*;
@@ -11,18 +11,19 @@ const ROWS: usize = 11;
 
 pub struct Figure<'a> {
     pub chart: &'a Chart,
-    /// The place of the reproduced figure in the source document; empty for a figure of Glint's own.
+    /// The source document's figure that this one reproduces; empty for a figure of Glint's own.
     pub source: &'a str,
     pub svg: String,
-    /// The class and the name of each curve.
+    /// The class and each curve's name.
     pub legend: Vec<(String, &'a str)>,
-    /// Some values for the table: a position on the horizontal axis, and the value of each curve.
+    /// Some values for the table: a position on the horizontal axis, and each curve's value.
     pub rows: Vec<(String, Vec<String>)>,
 }
 
-/// Each chart comes with the text for [`Figure::source`], which may be empty.
+/// Makes the figures. `charts` has each chart with the text for [`Figure::source`], which may be empty.
 ///
 /// # Errors
+///
 /// Fails if a chart cannot be plotted.
 pub fn figures<'a>(charts: &[(&'a Chart, &'a str)]) -> Result<Vec<Figure<'a>>> {
     charts.par_iter().map(|(chart, source)| figure(chart, source)).collect()
@@ -49,7 +50,8 @@ fn figure<'a>(chart: &'a Chart, source: &'a str) -> Result<Figure<'a>> {
     Ok(Figure { chart, source, svg: plots::svg(chart)?, legend, rows })
 }
 
-/// Uses scientific notation if the axis is logarithmic, otherwise four digits after the point. NaN becomes a dash.
+/// Writes a value for the table. A logarithmic axis has scientific notation, a linear axis four digits after the point. NaN
+/// becomes a dash.
 fn cell(value: f64, scale: AxisScale) -> String {
     match scale {
         _ if value.is_nan() => "\u{2013}".to_owned(),
@@ -58,7 +60,7 @@ fn cell(value: f64, scale: AxisScale) -> String {
     }
 }
 
-/// The text has one digit after the point. For example, 0.00123 is `1.2e−3`, and 0 is `0`.
+/// Writes a value with one digit after the point and an exponent. For example, 0.00123 is `1.2e−3`, and 0 is `0`.
 pub fn scientific(value: f64) -> String {
     match value {
         0.0 => "0".to_owned(),
@@ -66,7 +68,7 @@ pub fn scientific(value: f64) -> String {
     }
 }
 
-/// The text has at most three digits after the point. For example, 2.5 is `2.5`, and 0.12345 is `0.123`.
+/// Writes a value with at most three digits after the point. For example, 2.5 is `2.5`, and 0.12345 is `0.123`.
 fn number(value: f64) -> String {
     let text = format!("{value:.3}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()

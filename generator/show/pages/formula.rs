@@ -1,11 +1,11 @@
 //! Converts a formula in plain text to MathML.
 //!
-//! A device's description writes a formula in the syntax of programs, for example `out = colour * (n/2 * (c - 1) + 1)^2`. If
-//! the parser does not understand a formula, its functions return `None`, and the page shows plain text.
+//! A device's description writes a formula in the syntax of programs, for example `out = colour * (n/2 * (c - 1) + 1)^2`. If the
+//! parser does not understand a formula, `mathml` returns `None`, and the page shows plain text.
 
 use super::markup::html;
 
-/// These functions may have an exponent after the name, such as `cos^2(x)`. Parentheses around a single name are not shown.
+/// Functions that may have an exponent after the name, such as `cos^2(x)`. Parentheses around a single name are not shown.
 const FUNCTIONS: [&str; 4] = ["cos", "sin", "tan", "log"];
 
 /// Words that may occur between formulas, which the page shows as text.
@@ -27,7 +27,8 @@ const GREEK: [(&str, &str); 12] = [
     ("psi", "ψ"),
 ];
 
-/// Returns a formula as `math` elements, with operators between them at which a line may break.
+/// Returns a formula as `math` elements with commas or semicolons between them, at which a line may break. Returns `None` if the
+/// parser does not understand the formula.
 pub fn mathml(text: &str) -> Option<String> {
     let mut reader = FormulaReader { tokens: tokens(text)?, at: 0 };
     let mut clauses = String::new();
@@ -42,7 +43,7 @@ pub fn mathml(text: &str) -> Option<String> {
     }
 }
 
-/// Returns HTML: a typeset formula if the parser understands it, otherwise the plain text as code.
+/// Returns a formula as HTML: typeset if the parser understands it, otherwise the plain text as code.
 pub fn typeset(text: &str) -> String {
     match mathml(text) {
         Some(formula) => format!("<div class=\"formula\">{formula}</div>"),
@@ -72,7 +73,7 @@ fn tokens(text: &str) -> Option<Vec<&str>> {
     Some(tokens)
 }
 
-/// The MathML of a part and, if it has parentheses around it, the MathML inside them.
+/// The MathML of a part, and the MathML inside its parentheses if it has some.
 struct FormulaPart {
     mathml: String,
     inside: Option<String>,
@@ -84,7 +85,7 @@ impl FormulaPart {
     }
 
     /// Returns the MathML without the parentheses around it. A numerator, a denominator, an exponent and the operand of a root
-    /// need none: `(a + b) / 2` becomes a fraction with a + b above the line.
+    /// need no parentheses. For example, `(a + b) / 2` becomes a fraction with a + b above the line.
     fn bare(self) -> String {
         format!("<mrow>{}</mrow>", self.inside.unwrap_or(self.mathml))
     }
@@ -170,8 +171,8 @@ impl<'a> FormulaReader<'a> {
         Some(sum)
     }
 
-    /// Parses products and quotients from left to right. The whole product before a `/` is the numerator: `a * b / c` is a
-    /// fraction with a·b above c.
+    /// Parses products and quotients from left to right. The whole product before a `/` is the numerator. For example, `a * b /
+    /// c` is a fraction with a·b above c.
     fn product(&mut self) -> Option<String> {
         let mut product = self.power()?;
         while let Some(sign) = self.sign(&["*", "/"]) {
@@ -201,8 +202,7 @@ impl<'a> FormulaReader<'a> {
         self.at += 1;
         let mut exponent = None;
         if self.sign(&["^"]).is_some() {
-            // Parentheses after the exponent contain the argument of the function: in `cos^n(gamma)`, n is not applied to
-            // gamma.
+            // Parentheses after the exponent contain the function's argument: in `cos^n(gamma)`, n is not applied to gamma.
             exponent = Some(match self.peek()? {
                 "(" => self.parentheses()?.bare(),
                 _ => self.single()?.bare(),
@@ -274,8 +274,8 @@ impl<'a> FormulaReader<'a> {
     }
 }
 
-/// The name of a Greek letter becomes the letter, and `delta_x` becomes Δx. The part after `_`, or a number at the end,
-/// becomes a subscript. For example, `zeta_start` is ζ with the subscript "start", and `dgamma` is dγ.
+/// Returns a name's MathML. The name of a Greek letter becomes the letter, and `delta_x` becomes Δx. The part after `_`, or a
+/// number at the end, becomes a subscript. For example, `zeta_start` is ζ with the subscript "start", and `dgamma` is dγ.
 fn name(token: &str) -> String {
     if let Some(of) = token.strip_prefix("delta_") {
         return format!("<mrow><mi mathvariant=\"normal\">Δ</mi>{}</mrow>", name(of));

@@ -1,6 +1,7 @@
 //! Converts plain text with names in backquotes to HTML.
 
-/// Also escapes `&`, `<`, `>` and `"`. For example, `` `a<b` `` becomes `<code>a&lt;b</code>`.
+/// Returns `text` as HTML, with names in `code` elements. Escapes `&`, `<`, `>` and `"`. For example, `` `a<b` `` becomes
+/// `<code>a&lt;b</code>`.
 pub fn html(text: &str) -> String {
     let mut html = String::with_capacity(text.len());
     // A last backquote without a partner remains a backquote.

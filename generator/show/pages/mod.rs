@@ -22,8 +22,8 @@ use crate::evidence::advice;
 use glint_base::input;
 use glint_core::core::Core;
 
-/// Returns the documentation page of `core` in Markdown. `config` is the path of the configuration file, as the user gave it.
-/// The page cites the records in the directory `proofs` as evidence for the error bound.
+/// Returns the documentation page of `core` in Markdown. `config` is the configuration file's path, as the user gave it. The page
+/// cites the records in the directory `proofs` as evidence for the error bound.
 ///
 /// # Errors
 /// Fails if a simulated computation does not finish within 65 536 clocks, or never raises `valid`. Fails if a record cannot be

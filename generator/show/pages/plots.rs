@@ -14,12 +14,12 @@ pub const STYLES: usize = 10;
 /// so finer units make smoother curves.
 const FINE: u32 = 4;
 
-/// The width of a plot, in units of the plotting library.
+/// A plot's width, in units of the plotting library.
 pub const WIDTH: u32 = 480 * FINE;
-/// The height of a plot, in units of the plotting library.
+/// A plot's height, in units of the plotting library.
 pub const HEIGHT: u32 = 300 * FINE;
 
-/// Placeholder colours for the roles of lines and text; [`themed`] replaces them by classes.
+/// Placeholder colours for lines and text; [`themed`] replaces them by classes.
 const INK: RGBColor = RGBColor(1, 0, 0);
 const GRID: RGBColor = RGBColor(2, 0, 0);
 const MARK: RGBColor = RGBColor(3, 0, 0);
@@ -29,15 +29,16 @@ fn style(at: usize) -> RGBColor {
     RGBColor(4, 0, (at % STYLES) as u8)
 }
 
-/// Curve 0 has the class `s1`, and so has curve 10.
+/// Returns the class of curve number `at`. Curves 0 and 10 have the class `s1`.
 pub fn class(at: usize) -> String {
     format!("s{}", at % STYLES + 1)
 }
 
-/// Returns an `svg` element that scales to the available width. Its colours come from the classes `ink`, `grid` and `mark`,
-/// and from [`class`].
+/// Plots a chart as an `svg` element that scales to the available width. Its colours come from the classes `ink`, `grid` and
+/// `mark`, and from [`class`].
 ///
 /// # Errors
+///
 /// Fails if the plotting library fails, for example because a range is empty.
 pub fn svg(chart: &Chart) -> Result<String> {
     let mut text = String::new();
@@ -129,7 +130,7 @@ fn draw(chart: &Chart, text: &mut String) -> Result<(), Box<dyn std::error::Erro
     Ok(())
 }
 
-/// Returns a label: the position 2 of a logarithmic axis has the label `100`.
+/// Returns a position's label. For example, the position 2 of a logarithmic axis has the label `100`.
 fn tick_label(axis: &ChartAxis, place: f64) -> String {
     match axis.scale {
         AxisScale::Linear => number(place),
@@ -137,7 +138,7 @@ fn tick_label(axis: &ChartAxis, place: f64) -> String {
     }
 }
 
-/// Returns `None` if the series has several values, or none.
+/// Returns the position of a series with only one value, and `None` for any other series.
 fn only_place(chart: &Chart, values: &[f64]) -> Option<(f64, f64)> {
     let mut known = chart.places.iter().zip(values).filter(|(_, value)| value.is_finite());
     let (x, y) = known.next()?;
@@ -152,8 +153,7 @@ fn ends(axis: &ChartAxis) -> Option<(f64, f64)> {
     Some((axis.place(axis.range.0)?, axis.place(axis.range.1)?))
 }
 
-/// Returns for each series with only one value its index, its position, and whether its name is left of the point. The name is
-/// on the side with more room, unless the name of a point just above is in the way.
+/// Returns the index of each series with only one value, its position, and whether its name is left of the point.
 fn points(chart: &Chart) -> Vec<(usize, (f64, f64), bool)> {
     let mut places: Vec<(usize, (f64, f64))> = Vec::new();
     for (at, series) in chart.series.iter().enumerate() {
@@ -178,7 +178,7 @@ fn points(chart: &Chart) -> Vec<(usize, (f64, f64), bool)> {
 }
 
 /// Returns the connected parts of a curve inside the range of the vertical axis, as positions. A line that leaves the range is
-/// cut at its border. A line between two points outside the range is left out, and so is a point without neighbours in the
+/// cut at the range's end. The parts leave out a line between two points outside the range, and a point without neighbours in the
 /// range.
 fn runs(chart: &Chart, values: &[f64]) -> Vec<Vec<(f64, f64)>> {
     let low = chart.y.place(chart.y.range.0).unwrap_or(f64::NEG_INFINITY);
@@ -221,8 +221,8 @@ fn runs(chart: &Chart, values: &[f64]) -> Vec<Vec<(f64, f64)>> {
     runs
 }
 
-/// Returns round values within the range of an axis, in order. For example, a linear axis from 0 to 10 has 0, 2, 4, 6, 8 and
-/// 10. A logarithmic axis from 2 to 60 has 2, 5, 10, 20 and 50.
+/// Returns the round values within the range of an axis, in order. For example, a linear axis from 0 to 6 has 0, 2, 4 and 6.
+/// A logarithmic axis from 2 to 60 has 2, 5, 10, 20 and 50.
 fn ticks(axis: &ChartAxis) -> Vec<f64> {
     let (low, high) = axis.range;
     match axis.scale {
@@ -253,8 +253,8 @@ fn ticks(axis: &ChartAxis) -> Vec<f64> {
     }
 }
 
-/// The text has at most six digits after the point, without trailing zeros. A number nearer to 0 than 0.001 has at most two
-/// digits and an exponent. For example, `0.5`, or `1.5e−4`.
+/// Writes a value with at most six digits after the point, without trailing zeros. A number nearer to 0 than 0.001 has at most
+/// two digits and an exponent. For example, `0.5`, or `1.5e−4`.
 fn number(value: f64) -> String {
     if value != 0.0 && value.abs() < 0.001 {
         return format!("{value:.1e}").replace(".0e", "e").replace("e-", "e\u{2212}");
@@ -264,7 +264,7 @@ fn number(value: f64) -> String {
     if shortest == "-0" { "0" } else { shortest }.replace('-', "\u{2212}")
 }
 
-/// Returns a colour in the notation of the library's SVG: [`INK`] is `#010000`.
+/// Returns a colour in the notation of the library's SVG. For example, [`INK`] is `#010000`.
 fn hex(RGBColor(r, g, b): RGBColor) -> String {
     format!("#{r:02X}{g:02X}{b:02X}")
 }

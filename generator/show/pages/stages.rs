@@ -3,8 +3,8 @@
 use super::account::{TextTable, code};
 use glint_rtl::netlist::{Design, Pipeline};
 
-/// Shows for each time slot (the clock's number modulo the interval) the product that each shared multiplier computes. The
-/// cell of an idle slot is `–`. Returns `None` if no multiplier is shared.
+/// Makes a table of the product that each shared multiplier computes in each slot. The cell of an idle slot is `–`. Returns
+/// `None` if no multiplier is shared.
 pub fn reservations(pipeline: &Pipeline) -> Option<TextTable> {
     let slots = (0..pipeline.interval).map(|slot| format!("slot {slot}"));
     let headings: Vec<String> = ["multiplier".to_owned()].into_iter().chain(slots).collect();
@@ -16,8 +16,8 @@ pub fn reservations(pipeline: &Pipeline) -> Option<TextTable> {
     (!pipeline.units.is_empty()).then_some(table)
 }
 
-/// Makes a row for each stage. The row has the microinstructions whose values the stage computes, and the delay and slack of
-/// its logic in nanoseconds. It also has the register bits, the bits in delay lines, and the names of the values.
+/// Makes a table with a row for each stage. The row has the microinstructions whose values the stage computes, and the delay and
+/// slack of its logic in nanoseconds. It also has the register bits, the bits in delay lines, and the names of the values.
 pub fn table(design: &Design, pipeline: &Pipeline) -> TextTable {
     let mut table = TextTable::of(
         "stage: | microinstructions | logic, ns: | slack, ns: | register bits: | in delay lines: | computes",

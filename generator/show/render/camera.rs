@@ -14,13 +14,13 @@ pub struct Camera {
     half: (f64, f64),
 }
 
-/// Settings that are left out follow from the size of the scene.
+/// The user's settings of the camera. Settings that are left out follow from the scene's size.
 #[derive(Clone, Copy, Debug)]
 pub struct View {
     /// The position in the scene. The default is the nearest position, in front of the scene and a little above, from which
     /// all objects are visible.
     pub eye: Option<Vector>,
-    /// The point at which the camera looks; by default the middle of the scene.
+    /// The point at which the camera looks; by default the scene's middle.
     pub target: Option<Vector>,
     /// The vertical field of view in degrees.
     pub field: f64,
@@ -33,10 +33,11 @@ const DIRECTION: Vector = Vector::new(0.0, 0.28, 1.0);
 const FILLED: f64 = 0.92;
 
 impl Camera {
-    /// `aspect` is the picture's width divided by its height. The camera shows all of `things`, which are balls with their
-    /// middle and radius, unless `view` says otherwise. `middle` is the middle of them all.
+    /// Makes the camera. `aspect` is the picture's width divided by its height. The camera shows all of `things`, balls with
+    /// their middle and radius, unless `view` says otherwise. `middle` is the middle of all balls.
     ///
     /// # Errors
+    ///
     /// Fails if the camera's position is the point at which it looks, or if the position is not finite.
     pub fn new(
         view: &View,
@@ -73,7 +74,8 @@ impl Camera {
         Ok(camera)
     }
 
-    /// Returns the distance from the target at which the camera sees all of `things`. The eye must still be at the target.
+    /// Returns the smallest distance from the target at which the camera sees all of `things`. The eye must still be at the
+    /// target.
     fn distance(&self, things: impl Iterator<Item = (Vector, f64)>) -> f64 {
         let slopes = [self.half.0 * FILLED, self.half.1 * FILLED];
         let needed = things.flat_map(|(middle, radius)| {
@@ -99,7 +101,7 @@ impl Camera {
         Vector::new(from.dot(self.right), from.dot(self.up), from.dot(self.back))
     }
 
-    /// Converts a direction from the camera's coordinates to the coordinates of the scene.
+    /// Converts a direction from the camera's coordinates to the scene's coordinates.
     #[inline]
     pub fn outward(&self, direction: Vector) -> Vector {
         let [x, y, z] = direction.0;
@@ -141,7 +143,7 @@ mod tests {
             for (middle, radius) in things {
                 let [x, y, z] = camera.place(middle).0;
                 for (aside, half) in [(x, camera.half().0), (y, camera.half().1)] {
-                    // The angle of the line from the eye that touches the ball, in the plane of this axis.
+                    // The line's angle from the eye that touches the ball, in the plane of this axis.
                     let angle =
                         libm::atan(aside.abs() / -z) + libm::asin(radius / libm::hypot(aside, z));
                     fullest = fullest.max(libm::tan(angle) / half);

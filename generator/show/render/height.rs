@@ -6,15 +6,15 @@ use png::{BitDepth, ColorType, Decoder, Limits, Transformations};
 /// The largest width or height of a map, in pixels.
 const LARGEST_SIDE: u32 = 8192;
 
-/// The decoder may use this number of bytes.
+/// The largest number of bytes that the decoder may use.
 const MEMORY: usize = 512 << 20;
 
-/// The map is repeated in all directions, like tiles.
+/// A height map, which is repeated in all directions, like tiles.
 #[derive(Clone, Debug)]
 pub struct Relief {
     width: usize,
     height: usize,
-    /// For each pixel, the rise per pixel to the right and upward, where the rise from black to white is 1.
+    /// The rise per pixel to the right and upward, for each pixel; from black to white the surface rises by 1.
     slopes: Vec<[f32; 2]>,
     /// The height of white above black, in the scene's unit.
     depth: f64,
@@ -23,11 +23,12 @@ pub struct Relief {
 }
 
 impl Relief {
-    /// Reads the contents of a PNG file. `depth` is the height of white above black, in the unit of the scene; `repeat` is the
-    /// number of copies of the map for each unit of the texture coordinates.
+    /// Reads the contents of a PNG file. `depth` is the height of white above black, in the scene's unit. `repeat` is the number
+    /// of copies of the map for each unit of the texture coordinates.
     ///
     /// # Errors
-    /// Fails if the file is not a whole PNG, has colours or transparency, has more than 8192 pixels along a side, or needs too
+    ///
+    /// Fails if the file is not a complete PNG, has colours or transparency, has more than 8192 pixels along a side, or needs too
     /// much memory.
     pub fn decode(png: &[u8], depth: f64, repeat: f64) -> Result<Self> {
         let limits = Limits { bytes: MEMORY };
@@ -65,8 +66,8 @@ impl Relief {
         Ok(Self { slopes: slopes(&heights, width, height), width, height, depth, repeat })
     }
 
-    /// Returns the rise of the surface at the texture coordinates `u` and `v`, in units of the scene, per unit of u and of v.
-    /// It is interpolated between the middles of pixels, so no edges are visible.
+    /// Returns the surface's rise at the texture coordinates `u` and `v`, in units of the scene, per unit of u and of v. The rise
+    /// is interpolated between the middles of pixels, so no edges are visible.
     pub fn rise(&self, u: f64, v: f64) -> [f64; 2] {
         let (width, height) = (self.width as f64, self.height as f64);
         // The first row is the upper edge, v = 1.
@@ -101,7 +102,7 @@ fn between(from: f32, to: f32, share: f64) -> f64 {
     from + (to - from) * share
 }
 
-/// Returns the rise per pixel to the right and upward: half the difference of the neighbours.
+/// Returns the rise per pixel to the right and upward: half the difference between the neighbours.
 fn slopes(heights: &[f32], width: usize, height: usize) -> Vec<[f32; 2]> {
     let height_at = |column: usize, row: usize| heights[row % height * width + column % width];
     let mut slopes = Vec::with_capacity(heights.len());
@@ -138,7 +139,7 @@ mod tests {
             depth: 0.5,
             repeat: 3.0,
         };
-        // The middles of the pixels of the first copy are at 1/12 and 3/12.
+        // The middles of the first copy's pixels are at 1/12 and 3/12.
         let rise = |u| relief.rise(u, 0.7)[0];
         assert!((rise(1.0 / 12.0) - 0.25 * 2.0 * 3.0 * 0.5).abs() < 1e-12);
         assert!((rise(3.0 / 12.0 - 1.0) - 0.5 * 2.0 * 3.0 * 0.5).abs() < 1e-12);

@@ -1,5 +1,5 @@
-//! Defines triangle meshes with normals and texture coordinates, and computes normals that are missing. A computed normal is
-//! the mean over the triangles around a corner, as far as no sharp edge separates them.
+//! Defines triangle meshes with normals and texture coordinates, and computes normals that are missing. A computed normal is the
+//! mean over the triangles around a corner that no sharp edge separates from the corner's triangle.
 
 use std::collections::HashMap;
 
@@ -7,16 +7,16 @@ use anyhow::{Result, bail, ensure};
 
 use super::vector::Vector;
 
-/// This limit keeps indices in 32 bits and memory in gigabytes.
+/// The largest number of triangles. It keeps indices in 32 bits and memory in gigabytes.
 pub const MOST_TRIANGLES: usize = 20_000_000;
 
 /// The default angle, in degrees, beyond which an edge of a mesh without normals is drawn as sharp.
 pub const CREASE: f64 = 40.0;
 
-/// At this angle no edge is drawn as sharp.
+/// The angle, in degrees, at which no edge is drawn as sharp.
 pub const SMOOTH: f64 = 180.0;
 
-/// Up to this limit of coordinates, the areas of triangles and their squares are finite.
+/// The largest absolute value of a coordinate, with which the areas of triangles and their squares are finite.
 const FARTHEST: f64 = 1e30;
 
 /// A mesh of triangles. Every corner has a normal, and may have texture coordinates.
@@ -24,10 +24,10 @@ const FARTHEST: f64 = 1e30;
 pub struct Mesh {
     /// The corners' positions, in coordinates of the scene.
     pub positions: Vec<Vector>,
-    /// The normals have the length 1.
+    /// The normals, of length 1.
     pub normals: Vec<Vector>,
     pub textures: Vec<[f64; 2]>,
-    /// The corners are indices into the other lists.
+    /// The triangles. Their corners are indices into the lists above.
     pub triangles: Vec<[Corner; 3]>,
     /// The number of triangles without area that were left out.
     pub degenerate: usize,
@@ -41,7 +41,7 @@ pub struct Corner {
     pub texture: Option<u32>,
 }
 
-/// A corner as a file gives it, perhaps without a normal.
+/// A corner in a file, perhaps without a normal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RawCorner {
     pub position: u32,
@@ -50,7 +50,7 @@ pub struct RawCorner {
 }
 
 impl Mesh {
-    /// Makes a mesh without triangles that have no area. The function panics if an index of a corner does not exist.
+    /// Makes a mesh, without triangles that have no area. Panics if an index of a corner does not exist.
     ///
     /// A corner without a normal, or with a normal of length 0, gets the mean normal of the triangles that meet at its
     /// position. Their areas weight the mean. The mean includes only triangles that are connected to the corner's own triangle
@@ -131,13 +131,13 @@ impl Mesh {
     }
 }
 
-/// Returns a normal whose length is twice the area of the triangle.
+/// Returns a normal of the triangle; its length is twice the area.
 fn area_vector(positions: &[Vector], corners: &[RawCorner; 3]) -> Vector {
     let [a, b, c] = corners.map(|corner| positions[corner.position as usize]);
     (b - a).cross(c - a)
 }
 
-/// Returns the index of a corner's given normal, if its length is not 0.
+/// Returns the index of a corner's normal in the file, or `None` without a normal or if its length is 0.
 fn usable_normal(corner: &RawCorner, given: &[Option<Vector>]) -> Option<u32> {
     corner.normal.filter(|&normal| given[normal as usize].is_some())
 }
@@ -149,12 +149,12 @@ fn finite(what: &str, vectors: &[Vector]) -> Result<()> {
     }
 }
 
-/// Returns the index of the first equal position: four positions a, b, a, b give 0, 1, 0, 1.
+/// Returns for each position the index of the first equal position. For example, the positions a, b, a, b give 0, 1, 0, 1.
 fn first_of_same(positions: &[Vector]) -> Vec<u32> {
     let mut first = HashMap::with_capacity(positions.len());
     let mut same = Vec::with_capacity(positions.len());
     for (at, position) in positions.iter().enumerate() {
-        // Adding 0.0 turns −0.0 into 0.0, so that both have the same bits.
+        // Adding 0.0 turns −0.0 into 0.0, so both have the same bits.
         let key = position.0.map(|component| (component + 0.0).to_bits());
         same.push(*first.entry(key).or_insert(at as u32));
     }
@@ -162,7 +162,7 @@ fn first_of_same(positions: &[Vector]) -> Vec<u32> {
 }
 
 /// Computes the mean normals of [`Mesh::new`], and appends them to `normals`. Returns the index of the normal of every corner,
-/// three for each triangle. `areas` are the triangles' normals, each as long as twice the triangle's area.
+/// three for each triangle.
 fn creased_normals(
     positions: &[Vector],
     triangles: &[[RawCorner; 3]],

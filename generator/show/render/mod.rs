@@ -1,9 +1,9 @@
 //! Renders pictures whose specular highlights are bit-exact results of a device.
 //!
-//! The host is the software around the device. It computes visibility, normals, half vectors, and the ambient and diffuse
-//! light in f64. An [`Engine`] computes the specular term of each sample for each light that falls on it, point by point or
-//! along lines of points. A device that takes normals as operands, such as `shading`, also computes the ambient and diffuse
-//! light. A device without colours, such as a formula of a cosine, computes the share of the light that is reflected.
+//! The host is the software around the device. It computes visibility, normals, half vectors, and the ambient and diffuse light
+//! in f64. An [`Engine`] computes the specular term of each sample for each light that falls on it, point by point or along lines
+//! of points. A device that takes normals as operands, such as `shading`, also computes the ambient and diffuse light. A device
+//! without colours computes the share of the light that is reflected.
 //!
 //! The same picture has the same bytes on every machine, because `libm` computes the transcendental functions. For a core
 //! without mistakes, the bytes depend neither on the engine nor on the number of threads.
@@ -46,7 +46,7 @@ pub const LARGEST_SIDE: u32 = 8192;
 /// The largest number of samples along each side of a pixel.
 pub const MOST_SAMPLES: u32 = 8;
 
-/// Pixels times samples per pixel.
+/// The largest number of samples of a picture: pixels times samples per pixel.
 pub const LARGEST: u64 = 1 << 28;
 
 pub const MOST_LIGHTS: usize = 16;
@@ -63,15 +63,15 @@ const PORTION: usize = 1 << 18;
 #[derive(Clone, Debug)]
 pub struct Settings {
     pub size: (u32, u32),
-    /// The number along each side of a pixel. The colour of the pixel is their mean.
+    /// The number of samples along each side of a pixel. The colour of the pixel is their mean.
     pub samples: u32,
     pub view: View,
     pub material: Material,
     /// The colour where no object is visible, from 0 to 1.
     pub background: Vector,
-    /// Whether to render also Blinn's function cosⁿγ in f64, for comparison.
+    /// Whether to render Blinn's function cosⁿγ in f64 as well, for comparison.
     pub compare: bool,
-    /// What the user gives for operands, among them all operands that a scene cannot supply by their names.
+    /// The user's values for operands, among them all operands that a scene cannot supply by their names.
     pub operands: Vec<(String, GivenOperand)>,
 }
 
@@ -79,14 +79,14 @@ pub struct Settings {
 pub struct Rendered {
     pub picture: Picture,
     pub points: u64,
-    /// The number of points whose roughness angle dγ (the deviation of the normal) was outside the device's domain, so that
-    /// the renderer limited it to the domain.
+    /// The number of points with a roughness angle dγ (the normal's deviation) outside the device's domain. The renderer limited
+    /// these angles to the domain.
     pub beyond: u64,
     pub comparison: Option<PictureComparison>,
 }
 
 impl Rendered {
-    /// With a comparison, returns the two pictures and their difference side by side, with captions.
+    /// Returns the picture. With a comparison, returns the two pictures and their difference side by side, with captions.
     pub fn whole(&self, device: &str) -> Picture {
         let Some(comparison) = &self.comparison else {
             return self.picture.clone();
@@ -121,6 +121,10 @@ pub fn draws(core: &Core) -> bool {
     Feed::new(core.device().name, contract).is_ok()
 }
 
+/// Checks the settings and the scene before rendering.
+///
+/// # Errors
+///
 /// Fails if the size, the number of samples or the number of lights is outside its limits. Fails if the picture has too many
 /// samples in all. Fails if the scene has a height map and a mesh without texture coordinates.
 pub fn check(settings: &Settings, scene: &Scene) -> Result<()> {
@@ -156,12 +160,13 @@ pub fn check(settings: &Settings, scene: &Scene) -> Result<()> {
     Ok(())
 }
 
-/// Renders a scene, whose highlights are results of `engine`, for example the golden model or a simulation of the Verilog. The
-/// function calls `progress` with the number of finished rows of pixels, several times up to the height of the picture.
+/// Renders a scene with highlights that `engine` computes, for example the golden model or a simulation of the Verilog. Calls
+/// `progress` with the number of finished rows of pixels, several times up to the picture's height.
 ///
 /// # Errors
-/// Fails if [`check`] does, if the camera is at the point at which it looks, if a scene cannot supply an operand, or if the
-/// engine fails. Fails also if the scene has a height map and the device computes lines of points.
+///
+/// Fails if [`check`] does, if the camera is at the point at which it looks. Fails if a scene cannot supply an operand, or if the
+/// engine fails. Fails if the scene has a height map and the device computes lines of points.
 pub fn render(
     core: &Core,
     engine: &mut dyn Engine,
@@ -224,7 +229,7 @@ pub fn render(
     Ok(result.finish(settings.compare))
 }
 
-/// A picture whose rows are added from top to bottom, and the engine that computes their highlights.
+/// A picture that grows row by row from the top, and the engine that computes its highlights.
 struct Portions<'a> {
     core: &'a Core,
     feed: &'a Feed,
@@ -233,7 +238,7 @@ struct Portions<'a> {
     width: usize,
     picture: Picture,
     exact: Picture,
-    /// For each pixel, whether the device computed a highlight for at least one of its samples. Filled only for a comparison.
+    /// Whether the device computed a highlight for at least one sample of each pixel. Filled only for a comparison.
     shown: Vec<bool>,
     points: u64,
     beyond: u64,
@@ -303,8 +308,8 @@ impl Portions<'_> {
         all
     }
 
-    /// The colour of a sample is its ambient and diffuse light plus the `specular` light of each of its lights, limited to
-    /// 255. The colour of a pixel is the mean of its samples.
+    /// Returns the colours of pixels. A sample's colour is its ambient and diffuse light plus the `specular` light of each of its
+    /// lights, limited to 255. The colour of a pixel is the mean of its samples.
     fn pixels(&self, rows: &[Shaded], specular: Vec<Vector>) -> Vec<[u8; 3]> {
         let mut sums = Vec::with_capacity(self.width * rows.len() / self.samples);
         let mut specular = specular.into_iter();
@@ -327,7 +332,7 @@ impl Portions<'_> {
         sums
     }
 
-    /// Compares with the device's own formula, in output units.
+    /// Returns the largest error against the device's own formula, in output units.
     fn error(&self, points: &Points, outputs: &[i64]) -> f64 {
         let contract = self.core.contract.as_ref();
         let width = contract.outputs().len();

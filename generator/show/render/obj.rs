@@ -1,18 +1,19 @@
-//! Reads the geometry of a mesh from a file in Wavefront's OBJ format.
+//! Reads a mesh's geometry from a file in Wavefront's OBJ format.
 //!
-//! The reader takes vertices, normals, texture coordinates and faces, and ignores everything else, such as groups, materials
-//! and curves. Corners with and without normals may be mixed in one file.
+//! The reader takes vertices, normals, texture coordinates and faces, and ignores everything else, such as groups, materials and
+//! curves.
 
 use anyhow::{Context, Result, anyhow, bail, ensure};
 
 use super::mesh::{Mesh, RawCorner};
 use super::vector::Vector;
 
-/// At corners without normals, edges of more than `crease` degrees are drawn as sharp.
+/// Parses a file. At corners without normals, edges of more than `crease` degrees are drawn as sharp.
 ///
 /// # Errors
-/// Fails with the line number if a coordinate is missing or not a finite number. Fails with it too if a face has less than
-/// three corners, or a corner that does not exist. Fails without a line number if [`Mesh::new`] fails.
+///
+/// Fails with the line number if a coordinate is missing or not a finite number. Fails with the line number if a face has less
+/// than three corners, or if a corner does not exist. Fails without a line number if [`Mesh::new`] fails.
 pub fn parse(text: &str, crease: f64) -> Result<Mesh> {
     let mut read = ObjReader::default();
     for (number, line) in text.lines().enumerate() {
@@ -53,7 +54,7 @@ impl ObjReader {
         Ok(())
     }
 
-    /// Adds a face of n corners as a fan of n − 2 triangles. For example, the face 1 2 3 4 is the triangles 1 2 3 and 1 3 4.
+    /// Adds a face of n corners as a fan of n − 2 triangles. For example, the face 1 2 3 4 becomes the triangles 1 2 3 and 1 3 4.
     fn face<'a>(&mut self, words: impl Iterator<Item = &'a str>) -> Result<()> {
         let corners: Vec<RawCorner> = words
             .map(|word| {
@@ -108,11 +109,11 @@ fn number(word: &str) -> Result<f64> {
     Ok(value)
 }
 
-/// Returns the index that the number `part` of the file denotes, if the file has had `count` entries so far. Positive numbers
-/// count from 1, and negative numbers count backward from the last entry. For example, with 4 entries `1` is index 0, and `-1`
-/// is index 3.
+/// Returns an entry's index from its number `part` in the file, which has had `count` entries so far. Positive numbers count from
+/// 1, and negative numbers count backward from the last entry. For example, with 4 entries `1` is index 0, and `-1` is index 3.
 ///
 /// # Errors
+///
 /// Fails if `part` is not an integer, is 0, or denotes no entry so far. The message calls the entry `what`, for example `vertex`.
 fn index(part: &str, what: &str, count: usize) -> Result<u32> {
     let given: i64 = part.parse().map_err(|_| anyhow!("`{part}` is not an integer"))?;

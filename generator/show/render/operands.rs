@@ -1,7 +1,7 @@
 //! Converts the geometry at a point or along a line of a picture to raw operands of a device.
 //!
 //! The name of an operand decides which quantity it gets: for example, `cos_gamma` gets the cosine between normal and half
-//! vector. No code here depends on the name of a device.
+//! vector.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -18,7 +18,7 @@ use glint_golden::{Contract, Operand};
 pub struct Point {
     /// The cosine N·H of the angle γ between the smooth normal N and the half vector H.
     pub cos_gamma: f64,
-    /// The cosine of dγ, the angle between H and the perturbed normal minus γ.
+    /// The cosine of dγ: the angle between H and the perturbed normal, minus γ.
     pub cos_dgamma: f64,
     /// Whether dγ is negative: the perturbed normal is nearer to the half vector H than the smooth normal is.
     pub dgamma_negative: bool,
@@ -28,7 +28,7 @@ pub struct Point {
     pub cos_shaded: f64,
     /// The colour of the light times the specular coefficient, from 0 to 1.
     pub colour: Vector,
-    /// A device that computes ambient and diffuse light too needs the surface.
+    /// The surface, for a device that also computes ambient and diffuse light.
     pub surface: Surface,
     /// The cosines that operands of a formula may get.
     pub cosines: SceneCosines,
@@ -61,7 +61,7 @@ impl SceneCosine {
         ("vh", Self::ViewerHalf),
     ];
 
-    /// Returns the cosine with this name, such as `nh`.
+    /// Returns the cosine with the name `name`, such as `nh`; `None` for an unknown name.
     pub fn named(name: &str) -> Option<Self> {
         Self::NAMES.iter().find(|(own, _)| *own == name).map(|(_, cosine)| *cosine)
     }
@@ -76,7 +76,7 @@ impl SceneCosine {
     }
 }
 
-/// What the user gives for an operand.
+/// The user's value for an operand.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum GivenOperand {
     /// The same value at every point.
@@ -105,7 +105,7 @@ enum OperandMeaning {
     CosDgamma,
     DgammaNegative,
     Exponent,
-    /// The logarithm of the exponent to base 2, rounded to an integer.
+    /// The exponent's logarithm to base 2, rounded to an integer.
     Shift,
     Difference(usize),
     Colour(usize),
@@ -174,22 +174,22 @@ const OF_LINES: [(&str, OperandMeaning); 5] = [
     ("amplitude", OperandMeaning::Amplitude),
 ];
 
-/// The operands of a device, each with the quantity of a scene that supplies its value.
+/// A device's operands, each with the quantity of a scene that supplies its value.
 #[derive(Clone, Debug)]
 pub struct Feed {
     operands: Vec<(OperandMeaning, Format, (i64, i64))>,
-    /// For red, green and blue, the index of its output.
+    /// The index of the output for red, green and blue.
     channels: [usize; 3],
-    /// For red, green and blue, the factor that makes an output 255 at full colour.
+    /// The factor for red, green and blue that makes an output 255 at full colour.
     scales: [f64; 3],
-    /// The largest number of intervals of a line, if the device computes lines.
+    /// The largest number of intervals of a line; `None` if the device computes single points.
     longest: Option<usize>,
     surfaces: bool,
-    /// The value of one unit of the first result, if the device has no colours: the result is then the share of the specular light.
+    /// The value of one unit of the first result, if the device has no colours. The result is then the specular light's share.
     term: Option<f64>,
 }
 
-/// Returns the domain of the operand `exponent`, if the device has it.
+/// Returns the domain of the operand `exponent`, or `None` if the device has no such operand.
 pub fn exponents(contract: &dyn Contract) -> Option<(i64, i64)> {
     let mut operands = contract.operands().iter();
     let exponent = operands.find(|operand| operand.name == "exponent")?;
@@ -201,20 +201,22 @@ pub fn walks_lines(contract: &dyn Contract) -> bool {
 }
 
 impl Feed {
-    /// Finds the quantity for each operand. Messages name the device by `device`.
+    /// Finds the quantity of a scene for each operand. Messages name the device by `device`.
     ///
     /// # Errors
-    /// Fails if a picture cannot supply an operand, or if the device lacks the colour operands or their outputs. Fails also if
-    /// a device that computes lines lacks an operand of a line, such as `delta_zeta`.
+    ///
+    /// Fails if a picture cannot supply an operand, or if the device lacks the colour operands or their outputs. Fails if a
+    /// device that computes lines lacks an operand of a line, such as `delta_zeta`.
     pub fn new(device: &str, contract: &dyn Contract) -> Result<Self> {
         Self::with(device, contract, &[])
     }
 
-    /// Does the same as [`Feed::new`], but every operand named in `given` has its value, or its cosine, from there. A device without
-    /// colours then computes the share of the specular light: its first result.
+    /// Finds the quantities like [`Feed::new`], but each operand named in `given` has its value, or its cosine, from there. A
+    /// device without colours then computes the specular light's share: its first result.
     ///
     /// # Errors
-    /// Fails as [`Feed::new`] does. Fails also if the device has no operand with a name in `given`, if that operand is a
+    ///
+    /// Fails for the reasons of [`Feed::new`]. Fails if the device has no operand with a name in `given`, if that operand is a
     /// colour, or if its value is beyond its domain.
     pub fn with(
         device: &str,
@@ -320,27 +322,27 @@ impl Feed {
         self.surfaces
     }
 
-    /// Returns whether the first result of the device is the share of the specular light.
+    /// Returns whether the first result of the device is the specular light's share.
     pub fn is_term(&self) -> bool {
         self.term.is_some()
     }
 
-    /// Returns whether the device has the operand `cos_dgamma`. In such a device, `cos_gamma` belongs to the angle γ between
-    /// the smooth normal and the half vector, and dγ is the amount by which the perturbed normal of a rough surface changes
-    /// this angle. In any other device, `cos_gamma` belongs to the perturbed normal.
+    /// Returns whether the device has the operand `cos_dgamma`. In such a device, `cos_gamma` belongs to the angle γ between the
+    /// smooth normal and the half vector. dγ is the amount by which the perturbed normal of a rough surface changes this angle.
+    /// In any other device, `cos_gamma` belongs to the perturbed normal.
     pub fn takes_deviation(&self) -> bool {
         self.takes(OperandMeaning::CosDgamma)
     }
 
-    /// Returns whether an operand gets the exponent n of the scene, or its logarithm to base 2. An operand with a fixed value
-    /// does not.
+    /// Returns whether an operand gets the exponent n of the scene, or its logarithm to base 2. A value that the user gives for
+    /// the operand does not count.
     pub fn takes_exponent(&self) -> bool {
         self.takes(OperandMeaning::Exponent) || self.takes(OperandMeaning::Shift)
     }
 
-    /// Returns the index of the first operand whose value is outside its domain by at least one unit of its last bit. `values`
-    /// are not quantised yet. A cosine `cos_gamma` is never outside, because a negative cosine becomes the smallest one of the
-    /// domain. The angles of lines are never outside either, because they are taken modulo a full turn.
+    /// Returns the index of the first operand with a value outside its domain by at least one unit of its last bit. `values` are
+    /// not quantised yet. A cosine is never outside, because a negative cosine becomes the smallest one of the domain. The angles
+    /// of lines are never outside, because they are taken modulo a full turn.
     pub fn outside(&self, values: &[f64]) -> Option<usize> {
         let mut operands = self.operands.iter().zip(values);
         operands.position(|(&(quantity, format, domain), &value)| match quantity {
@@ -355,7 +357,7 @@ impl Feed {
         })
     }
 
-    /// Returns the largest number of intervals of a line, if the device computes lines.
+    /// Returns the largest number of intervals of a line, or `None` if the device computes single points.
     pub fn longest(&self) -> Option<usize> {
         self.longest
     }
@@ -369,8 +371,7 @@ impl Feed {
         operands.find(|operand| operand.0 == wanted).copied()
     }
 
-    /// Returns the operand values for a point as real numbers, before they are quantised, in the order of the device's
-    /// operands. A colour of full strength gives the largest value of its operand.
+    /// Returns the operand values for a point as real numbers, before they are quantised, in the order of the device's operands.
     pub fn values<'a>(&'a self, point: &'a Point, exponent: u32) -> impl Iterator<Item = f64> + 'a {
         let split = self.takes_deviation();
         self.operands.iter().map(move |&(quantity, format, (_, high))| match quantity {
@@ -401,7 +402,7 @@ impl Feed {
         })
     }
 
-    /// Also returns whether dγ was beyond the device's domain. The device must compute single points.
+    /// Returns the raw operands of a point, and whether dγ was beyond the device's domain. The device must compute single points.
     pub fn raw<'a>(
         &'a self,
         point: &'a Point,
@@ -419,7 +420,7 @@ impl Feed {
         (raw, beyond)
     }
 
-    /// Returns the value of the amplitude operand for a white light of full strength, or 0 without such an operand.
+    /// Returns the amplitude operand's value for a white light of full strength, or 0 without such an operand.
     pub fn full(&self) -> f64 {
         let full = self.find(OperandMeaning::Amplitude);
         full.map_or(0.0, |(_, format, (_, most))| format.to_f64(i128::from(most)))
@@ -447,11 +448,12 @@ impl Feed {
         })
     }
 
-    /// Angles are taken modulo a full turn.
+    /// Returns the raw operands of a line. Angles are taken modulo a full turn.
     ///
     /// # Errors
-    /// Fails if the device has no exponent operand and the format of `zeta_start` cannot represent the angles of the line. For
-    /// such a device, the host multiplies the angles by √(n/2).
+    ///
+    /// Fails if the device has no exponent operand and the format of `zeta_start` cannot represent the line's angles. For such a
+    /// device, the host multiplies the angles by √(n/2).
     pub fn line(&self, line: &LineParameters) -> Result<Vec<i64>> {
         if let Some((_, format, _)) = self.find(OperandMeaning::ZetaStart)
             && !self.takes(OperandMeaning::Exponent)
@@ -475,8 +477,8 @@ impl Feed {
         Ok(self.operands.iter().zip(self.line_values(line)).map(raw).collect())
     }
 
-    /// Returns the light that a device without colours lets through of `light`, in which 255 is full light. `result` has the results of
-    /// the computation.
+    /// Returns the light that a device without colours lets through of `light`, in which 255 is full light. `result` has the
+    /// computation's results.
     pub fn share_of(&self, light: Vector, result: &[i64]) -> Vector {
         let unit = self.term.unwrap_or(0.0);
         light * (result[0] as f64 * unit * 255.0)
@@ -492,13 +494,13 @@ impl Feed {
     }
 }
 
-/// Returns the nearest raw value in the domain. For example, 300 in a domain from 1 to 255 is 255.
+/// Returns the raw value nearest to `value` in the domain. For example, 300 in a domain from 1 to 255 is 255.
 fn number(value: f64, format: Format, (low, high): (i64, i64)) -> i64 {
     format.quantise(value).clamp(i128::from(low), i128::from(high)) as i64
 }
 
-/// An angle outside the format's range wraps around, which changes it by full turns. For example, 2.5 right angles in a signed
-/// format from −2 to 2 are −1.5.
+/// Returns a raw angle. An angle outside the format's range wraps around, which changes it by full turns. For example, 2.5 right
+/// angles in a signed format from −2 to 2 are −1.5.
 fn raw_angle(right_angles: f64, format: Format) -> i64 {
     let scaled = nearest(right_angles * exp2(format.frac)) as i128;
     format.narrow(scaled, format.frac, Rounding::Truncate, Overflow::Wrap) as i64
@@ -524,8 +526,8 @@ fn of_user(operand: &Operand, given: GivenOperand) -> Result<OperandMeaning> {
     Ok(OperandMeaning::Given(value))
 }
 
-/// If a device takes several lights, the renderer supplies one light per computation, and the operands of the others are 0.
-/// For example, `lx2` is 0 at every point.
+/// Returns the quantity of a scene for an operand, or `None` if a scene has none. The renderer supplies one light per
+/// computation. If a device takes several lights, the operands of the remaining lights are 0, for example `lx2`.
 fn quantity(operand: &Operand, names: &[(&str, OperandMeaning)]) -> Option<OperandMeaning> {
     let of = |wanted: &str| {
         let mut names = names.iter();

@@ -6,7 +6,7 @@ use png::{BitDepth, ColorType, Compression, Encoder, Filter};
 
 use super::vector::Vector;
 
-/// The height of the letters of a caption.
+/// The height of a caption's letters.
 const LETTERS: RasterHeight = RasterHeight::Size16;
 
 /// The number of empty rows of pixels above a caption, and below it.
@@ -15,10 +15,10 @@ const AROUND: usize = 3;
 /// The background colour of a caption, as red, green and blue.
 const STRIP: [u8; 3] = [24, 26, 30];
 
-/// The colour of the letters of a caption.
+/// The colour of a caption's letters.
 const LETTER: [u8; 3] = [232, 233, 235];
 
-/// Rows of pixels, from the top.
+/// A picture: rows of pixels, from the top.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Picture {
     pub width: u32,
@@ -30,7 +30,7 @@ impl Picture {
         Self { width, pixels: Vec::new() }
     }
 
-    /// The width must not be 0.
+    /// Returns the number of rows. The width must not be 0.
     pub fn height(&self) -> u32 {
         (self.pixels.len() / self.width as usize) as u32
     }
@@ -68,9 +68,10 @@ impl Picture {
         all
     }
 
-    /// The same pixels give the same bytes.
+    /// Returns the picture as a PNG file. The same pixels give the same bytes.
     ///
     /// # Errors
+    ///
     /// Fails only through a bug, not through anything that a user gives.
     pub fn png(&self) -> Result<Vec<u8>> {
         let mut bytes = Vec::new();
@@ -86,7 +87,7 @@ impl Picture {
     }
 }
 
-/// Saturates 0 … 255 in each channel and rounds to the nearest integer. For example, 127.5 is 128, and 900 is 255.
+/// Rounds each channel to the nearest integer, limited to 0 … 255. For example, 127.5 is 128, and 900 is 255.
 #[inline]
 pub fn pixel(colour: Vector) -> [u8; 3] {
     colour.0.map(|value| (value + 0.5).clamp(0.0, 255.0) as u8)
@@ -96,8 +97,8 @@ pub fn pixel(colour: Vector) -> [u8; 3] {
 pub struct PictureDifference {
     /// The largest difference of a colour channel, from 0 to 255.
     pub largest: u8,
-    /// The peak signal-to-noise ratio in decibels over the pixels in `shown`, see [`PictureDifference::new`]. `None` if the
-    /// pictures are equal.
+    /// The peak signal-to-noise ratio in decibels over the pixels in `shown` ([`PictureDifference::new`]); `None` if the pictures
+    /// are equal.
     pub psnr: Option<f64>,
     /// The factor by which [`PictureDifference::picture`] multiplies the differences to make them visible. For example, a
     /// largest difference of 30 has the factor 8.
@@ -106,8 +107,8 @@ pub struct PictureDifference {
 }
 
 impl PictureDifference {
-    /// Compares two pictures of the same size. `shown` says for each pixel whether it counts for the mean in the
-    /// signal-to-noise ratio. A pixel that does not count should be equal in both pictures.
+    /// Compares two pictures of the same size. `shown` says for each pixel whether it counts for the mean in the signal-to-noise
+    /// ratio. All other pixels should be equal in both pictures.
     pub fn new(a: &Picture, b: &Picture, shown: &[bool]) -> Self {
         let pairs = a.pixels.iter().zip(&b.pixels);
         let differences: Vec<[u8; 3]> =
@@ -134,7 +135,7 @@ impl PictureDifference {
     }
 }
 
-/// Mixes two colours, in which `over` has the share `share`/255: 255 over 0 with a share of 51 is 51.
+/// Mixes two colours: `over` has the share `share`/255. For example, 255 over 0 with a share of 51 is 51.
 fn mix(ground: [u8; 3], over: [u8; 3], share: u8) -> [u8; 3] {
     let share = u32::from(share);
     let channel = |at: usize| {

@@ -1,4 +1,4 @@
-//! Defines the scene of a picture: objects with shapes and colours, lights, and a height map.
+//! Defines a picture's scene: objects with shapes and colours, lights, and a height map.
 
 use super::height::Relief;
 use super::mesh::Mesh;
@@ -10,7 +10,7 @@ use anyhow::Result;
 pub struct Scene {
     /// The objects, at least one.
     pub objects: Vec<Object>,
-    /// The lights, which are so far away that their directions are the same everywhere.
+    /// The lights. They are so far away that their directions are the same everywhere.
     pub lights: Vec<Light>,
     /// The height map that tilts the normals of all objects.
     pub relief: Option<Relief>,
@@ -52,13 +52,13 @@ pub enum BuiltIn {
     Group,
 }
 
-/// Red, green and blue from 0 to 1, as for [`BACKGROUND`].
+/// The default colour of an object: red, green and blue from 0 to 1, as for [`BACKGROUND`].
 pub const COLOUR: Vector = Vector::new(0.08, 0.35, 0.54);
 
 pub const BACKGROUND: Vector = Vector::new(0.05, 0.06, 0.08);
 
 impl Light {
-    /// A white light from the upper left, and a weaker one from behind on the right.
+    /// Returns the default lights: a white light from the upper left, and a weaker light from behind on the right.
     pub fn usual() -> Vec<Self> {
         let white = Self {
             direction: Vector::new(-0.6, 0.8, 0.9).unit().unwrap_or_default(),
@@ -73,10 +73,11 @@ impl Light {
 }
 
 impl Scene {
-    /// Returns the objects in `colour` or in colours of their own. With `coarse`, they consist of large triangles, for devices
-    /// that interpolate along lines in a triangle.
+    /// Returns the objects of a built-in scene, in `colour` or in colours of their own. With `coarse`, they consist of large
+    /// triangles, for devices that interpolate along lines in a triangle.
     ///
     /// # Errors
+    ///
     /// Fails only through a bug, not through anything that a user gives.
     pub fn built_in(which: BuiltIn, colour: Option<Vector>, coarse: bool) -> Result<Vec<Object>> {
         let origin = Vector::default();
@@ -102,8 +103,8 @@ impl Scene {
         Ok(objects)
     }
 
-    /// Returns the middle and half the diagonal of the box around everything. For example, a ball of radius 1 around the
-    /// origin has the origin and √3.
+    /// Returns the middle and half the diagonal of the box around all objects. For example, a ball of radius 1 around the origin
+    /// gives the origin and √3.
     pub fn extent(&self) -> (Vector, f64) {
         let mut low = Vector([f64::INFINITY; 3]);
         let mut high = Vector([f64::NEG_INFINITY; 3]);
@@ -157,7 +158,7 @@ fn place(mut mesh: Mesh, size: f64, tilt: f64, to: Vector) -> Shape {
     Shape::Mesh(mesh)
 }
 
-/// Turns a vector about the x axis by the angle with this sine and cosine.
+/// Turns a vector about the x axis by the angle with the sine `sin` and the cosine `cos`.
 fn tilted(vector: Vector, sin: f64, cos: f64) -> Vector {
     let [x, y, z] = vector.0;
     Vector::new(x, y * cos - z * sin, y * sin + z * cos)

@@ -1,5 +1,5 @@
-//! Computes the host's part of shading: the surface at a point, its ambient and diffuse light, and the operands of the device.
-//! All arithmetic is f64.
+//! Computes the host's part of shading: the surface at a point, its ambient and diffuse light, and the device's operands. All
+//! arithmetic is f64.
 
 use std::f64::consts::{PI, TAU};
 
@@ -20,8 +20,7 @@ pub struct Material {
     pub ambient: f64,
     /// The share of each light that is reflected diffusely, times the cosine of the light's angle.
     pub diffuse: f64,
-    /// The specular coefficient k_s: the share of each light that the highlight reflects, times the reflectance f of the
-    /// device.
+    /// The specular coefficient k_s: the share of each light that is multiplied by the reflectance f of the device.
     pub specular: f64,
     pub exponent: u32,
 }
@@ -39,25 +38,25 @@ pub struct Shader<'a> {
     /// The colour where no object is visible, from 0 to 255.
     pub background: Vector,
     pub feed: &'a Feed,
-    /// Whether to compute also Blinn's function cosⁿγ, for a comparison.
+    /// Whether to compute Blinn's function cosⁿγ as well, for a comparison.
     pub compare: bool,
 }
 
-/// All light of a row of samples except the light that the device computes.
+/// A row of samples: all light except the light that the device computes, and the points for the device.
 pub struct Shaded {
     /// The colour of each sample without the device's light, 0 … 255, and the number of lights for which the device computes a
     /// result.
     pub samples: Vec<(Vector, u32)>,
     pub points: Points,
-    /// For each sample and each of its lights, the indices of the results with its red, green and blue. `None` if every
-    /// computation has one result with all three colours, and the results are in this order.
+    /// The indices of the results with red, green and blue, for each sample and each of its lights. `None` if every computation
+    /// has one result with all three colours, and the results are in this order.
     pub places: Option<Vec<[usize; 3]>>,
-    /// For each point, the light that a device without colours reflects in part; empty for other devices.
+    /// The light that a device without colours reflects in part, for each point; empty for all other devices.
     pub lights: Vec<Vector>,
-    /// For each sample and each of its lights, the light that the device should compute, with Blinn's cosⁿγ in f64 as
-    /// reflectance, 0 … 255. Empty unless [`Shader::compare`] is set.
+    /// The light that the device should compute, with Blinn's cosⁿγ in f64 as reflectance, 0 … 255, for each sample and each of
+    /// its lights. Empty unless [`Shader::compare`] is set.
     pub exact: Vec<Vector>,
-    /// The number of points whose roughness angle dγ (the deviation of the normal) is outside the device's domain.
+    /// The number of points with a roughness angle dγ (the normal's deviation) outside the device's domain.
     pub beyond: usize,
 }
 
@@ -66,14 +65,14 @@ struct SurfacePoint {
     colour: Vector,
     smooth: Vector,
     perturbed: Vector,
-    /// The perturbed normal as it was interpolated, of any length.
+    /// The interpolated perturbed normal, of any length.
     interpolated: Vector,
     toward_eye: Vector,
 }
 
 impl SurfacePoint {
-    /// The renderer must check whether a light falls on the surface. The device would compute a highlight on the side away
-    /// from the light too.
+    /// Returns whether a light falls on the surface. The renderer must check this, because the device would also compute a
+    /// highlight on the side away from the light.
     fn is_lit(&self, light: &Light) -> bool {
         self.smooth.dot(light.direction) > 0.0
     }
@@ -86,11 +85,10 @@ impl SurfacePoint {
 }
 
 impl Shader<'_> {
-    /// Shades a row of samples. `hits` are the surfaces at the samples, and `ray` returns the ray through the sample of a
-    /// column.
+    /// Shades a row of samples. `hits` are the surfaces at the samples, and `ray` returns the ray through the sample in a column.
     ///
     /// # Errors
-    /// Fails if the operands of a line cannot be computed, or if the device cannot represent them.
+    /// Fails if a line's operands cannot be computed, or if the device cannot represent them.
     pub fn shade(&self, hits: &[Hit], ray: impl Fn(usize) -> Vector) -> Result<Shaded> {
         let mut shaded = Shaded {
             samples: Vec::with_capacity(hits.len()),
@@ -200,9 +198,9 @@ impl Shader<'_> {
         Ok(())
     }
 
-    /// Adds the lines along some neighbouring samples to `points`: for each light one line in red, green and blue. Returns for
-    /// each light the indices of the first results of these three lines. A light that falls on none of the samples has no
-    /// lines. [`Arc`] computes the operands from the normals and half vectors at both ends.
+    /// Adds the lines along neighbouring samples to `points`: for each light one line in red, green and blue. Returns the indices
+    /// of the first results of these three lines for each light. A light that falls on none of the samples has no lines. [`Arc`]
+    /// computes the operands from the normals and half vectors at the two ends.
     fn lines(&self, surfaces: &[SurfacePoint], points: &mut Points) -> Result<Vec<[usize; 3]>> {
         let (Some(first), Some(last)) = (surfaces.first(), surfaces.last()) else {
             return Ok(Vec::new());
@@ -236,8 +234,8 @@ impl Shader<'_> {
         SurfacePoint { colour: object.colour, smooth, perturbed, interpolated, toward_eye }
     }
 
-    /// Returns three normals on the side of the eye. These are the unit normals of the smooth and of the perturbed surface,
-    /// and the interpolated perturbed normal, which may have any length.
+    /// Returns three normals on the side of the eye: the unit normals of the smooth and of the perturbed surface, and the
+    /// interpolated perturbed normal, of any length.
     fn normals(
         &self,
         object: &Object,
@@ -245,8 +243,8 @@ impl Shader<'_> {
         place: Vector,
         toward_eye: Vector,
     ) -> [Vector; 3] {
-        // The flat side of the triangle decides which direction is toward the eye, because the interpolated normal may lean
-        // away from the eye although the triangle is visible.
+        // The flat side of the triangle decides which direction is toward the eye. The interpolated normal may lean away from the
+        // eye although the triangle is visible.
         let (normal, mixed, side) = match &object.shape {
             Shape::Ball { middle, .. } => {
                 let normal = (place - *middle).unit().unwrap_or(toward_eye);
@@ -278,7 +276,7 @@ impl Shader<'_> {
     }
 }
 
-/// Returns the quantities of a point from which operands are made, from the unit normals `smooth` and `perturbed` and the half
+/// Returns a point's quantities from which operands are made. `smooth` and `perturbed` are unit normals, and `half` is the half
 /// vector H.
 ///
 /// As in the patent that `rough` implements, roughness changes the angle γ between normal and half vector by dγ. N′ is the
@@ -331,7 +329,7 @@ fn texture(object: &Object, hit: &Hit, normal: Vector) -> ([f64; 2], [Vector; 2]
             let (first_edge, second_edge) = (q - p, r - p);
             let area = first_edge.cross(second_edge);
             let scale = 1.0 / area.dot(area);
-            // Vectors in the plane of the triangle: each is perpendicular to one of the two edges.
+            // Vectors in the triangle's plane: each is perpendicular to one of the two edges.
             let across = [second_edge.cross(area), area.cross(first_edge)];
             let along = |axis: usize| {
                 let (to_b, to_c) = (b[axis] - a[axis], c[axis] - a[axis]);

@@ -7,8 +7,8 @@ use anyhow::Result;
 use super::mesh::{Mesh, RawCorner, SMOOTH};
 use super::vector::Vector;
 
-/// Makes a torus around the y axis. `major` is the distance from its middle to the middle of its tube, and `minor` the radius
-/// of the tube. `steps` are the numbers of steps around the axis and around the tube.
+/// Makes a torus around the y axis. `major` is the distance from its middle to the tube's middle, and `minor` the tube's radius.
+/// `steps` are the numbers of steps around the axis and around the tube.
 ///
 /// # Errors
 /// Fails if [`Mesh::new`] fails.
@@ -24,9 +24,10 @@ pub fn torus(major: f64, minor: f64, steps: [u32; 2]) -> Result<Mesh> {
     })
 }
 
-/// `steps` are the numbers of steps around the y axis and from pole to pole.
+/// Makes a ball. `steps` are the numbers of steps around the y axis and from pole to pole.
 ///
 /// # Errors
+///
 /// Fails if [`Mesh::new`] fails.
 pub fn ball(middle: Vector, radius: f64, steps: [u32; 2]) -> Result<Mesh> {
     grid(steps, [true, false], |u, v| {
@@ -62,7 +63,7 @@ pub fn vase(steps: [u32; 2]) -> Result<Mesh> {
     })
 }
 
-/// Returns the outer radius at a height from 0 (the foot) to 1 (the lip).
+/// Returns the outer radius of the vase at `height`, from 0 (the foot) to 1 (the lip).
 fn vase_radius(height: f64) -> f64 {
     // The radius is 0 at the foot, so the vase has a closed bottom; the lip widens at the top.
     let foot = (height * 14.0).min(1.0);
@@ -72,15 +73,15 @@ fn vase_radius(height: f64) -> f64 {
     (foot * belly + lip).max(0.0)
 }
 
-/// Makes a mesh whose corners are the values of `at` at evenly spaced (u, v) from 0 to 1. `steps` are the numbers of steps
-/// along u and v. If `closed` is set for a direction, `at` must repeat in it, and the last corners are the first ones.
+/// Makes a mesh with the corners `at(u, v)` at evenly spaced u and v from 0 to 1. `steps` are the numbers of steps along u and v.
+/// If `closed` is set for a direction, `at` must repeat in it, and the last corners are the first ones.
 fn grid(steps: [u32; 2], closed: [bool; 2], at: impl Fn(f64, f64) -> Vector) -> Result<Mesh> {
     let [columns, rows] = steps;
     let mut positions = Vec::new();
     let mut textures = Vec::new();
     for row in 0..=rows {
         for column in 0..=columns {
-            // In a closed direction, the last corner is computed at 0 and not at 1, so that both ends have the same bits.
+            // In a closed direction, the last corner is computed at 0 and not at 1, so both ends have the same bits.
             let fraction = |at: u32, steps: u32, closed: bool| {
                 f64::from(if closed { at % steps } else { at }) / f64::from(steps)
             };

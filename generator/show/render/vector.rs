@@ -21,7 +21,7 @@ impl Vector {
         ax * bx + ay * by + az * bz
     }
 
-    /// Swapping the operands negates the cross product exactly, also when it rounds.
+    /// Returns the cross product. Swapping the operands negates it exactly, even after rounding.
     #[inline]
     pub fn cross(self, other: Self) -> Self {
         let ([ax, ay, az], [bx, by, bz]) = (self.0, other.0);
@@ -33,7 +33,7 @@ impl Vector {
         self.dot(self).sqrt()
     }
 
-    /// Returns the vector of length 1 with the same direction, unless the length is 0 or a component is not finite.
+    /// Returns the vector of length 1 with the same direction, or `None` if the length is 0 or a component is not finite.
     #[inline]
     pub fn unit(self) -> Option<Self> {
         let [x, y, z] = self.0.map(f64::abs);

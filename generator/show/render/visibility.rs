@@ -1,10 +1,9 @@
 //! Finds the visible surface at each sample of a picture with a z-buffer. Threads render horizontal bands of the picture in
 //! parallel.
 //!
-//! Three planes go through the eye, one through each edge of a triangle. The scalar products of a sample's ray with the
-//! normals of these planes give the barycentric coordinates of the sample, so triangles need no clipping. Two triangles that
-//! share an edge compute the same product for it with opposite signs, so no gap is visible between them. If two surfaces have
-//! the same depth, the earlier one wins.
+//! Three planes go through the eye, one through each edge of a triangle. The scalar products of a sample's ray with the normals
+//! of these planes give the barycentric coordinates of the sample, so triangles need no clipping. Two triangles that share an
+//! edge compute the same product for it with opposite signs, so no gap is visible between them.
 
 use rayon::prelude::*;
 
@@ -18,8 +17,8 @@ const BAND: usize = 16;
 /// The first surface that the ray through a sample meets.
 #[derive(Clone, Copy, Debug)]
 pub struct Hit {
-    /// The distance from the plane of the camera. It is also the factor by which the ray reaches the surface, because the ray
-    /// has the third component −1.
+    /// The distance from the camera's plane. It is also the factor by which the ray reaches the surface, because the ray's third
+    /// component is −1.
     pub depth: f64,
     pub object: u32,
     /// The index of the triangle in the object's mesh; 0 for a ball.
@@ -44,12 +43,12 @@ pub struct Raster {
 }
 
 impl Raster {
-    /// The samples cover the field of view of `camera`.
+    /// Makes a raster of samples that covers the field of view of `camera`.
     pub fn new(columns: usize, rows: usize, camera: &Camera) -> Self {
         Self { columns, rows, half: camera.half() }
     }
 
-    /// Returns the ray through the middle of a sample, in the camera's coordinates.
+    /// Returns the ray through a sample's middle, in the camera's coordinates.
     #[inline]
     pub fn ray(&self, column: usize, row: usize) -> Vector {
         let x = (2.0 * column as f64 + 1.0) / self.columns as f64 - 1.0;
@@ -57,9 +56,9 @@ impl Raster {
         Vector::new(x * self.half.0, y * self.half.1, -1.0)
     }
 
-    /// Returns the first and the end index of the samples whose middles may lie between two slopes, with one more sample on
-    /// each side. A slope is `x/−z` for columns and `−y/−z` for rows. `half` is half the width or height of the view at
-    /// distance 1.
+    /// Returns the first and the end index of the samples with middles that may lie between the slopes `low` and `high`, with one
+    /// more sample on each side. A slope is `x/−z` for columns and `−y/−z` for rows. `half` is half the width or height of the
+    /// view at distance 1, and `count` the number of samples.
     fn span(&self, low: f64, high: f64, half: f64, count: usize) -> (u32, u32) {
         let last = count as f64;
         let lowest = (low / half + 1.0) / 2.0 * last - 0.5;
@@ -91,8 +90,8 @@ struct CandidateSurface {
 }
 
 impl<'a> Visibility<'a> {
-    /// The scene must lie in a ball of radius `size`. A surface nearer to the camera than a millionth of `size` is not
-    /// visible.
+    /// Sorts a scene's triangles, which must lie in a ball of radius `size`. A surface nearer to the camera than a millionth of
+    /// `size` is not visible.
     pub fn new(scene: &'a Scene, camera: &Camera, raster: Raster, size: f64) -> Self {
         let mut visibility = Self {
             scene,
@@ -143,7 +142,7 @@ impl<'a> Visibility<'a> {
         }
     }
 
-    /// Returns the rows and columns in which a triangle may be visible. Returns `None` if it lies behind the eye or beside the
+    /// Returns the rows and columns in which a triangle may be visible, or `None` if it lies behind the eye or beside the
     /// picture.
     fn candidate(&self, object: u32, triangle: u32) -> Option<CandidateSurface> {
         let corners = self.corners(object, triangle);
@@ -176,7 +175,7 @@ impl<'a> Visibility<'a> {
         Some(CandidateSurface { object, triangle, columns, rows })
     }
 
-    /// Returns the nearest surface at each sample of the rows from `first` up to but excluding `end`, row by row.
+    /// Returns the nearest surface at each sample of the rows from `first` to before `end`, row by row.
     pub fn rows(&self, first: usize, end: usize) -> Vec<Hit> {
         let width = self.raster.columns;
         let mut hits = vec![NOTHING; width * (end - first)];
@@ -193,7 +192,7 @@ impl<'a> Visibility<'a> {
         hits
     }
 
-    /// `first` is the number of the first row of `hits`.
+    /// Finds the hits of a part of a band. `first` is the number of the first row of `hits`.
     fn band(&self, first: usize, hits: &mut [Hit]) {
         let width = self.raster.columns;
         let end = first + hits.len() / width;
@@ -239,12 +238,12 @@ impl<'a> Visibility<'a> {
 /// The three planes through the eye and an edge of a triangle.
 struct Planes {
     normals: [Vector; 3],
-    /// Six times the signed volume of the tetrahedron of eye and triangle.
+    /// The triple product of the corners: six times the signed volume of the tetrahedron of eye and triangle.
     volume: f64,
 }
 
 impl Planes {
-    /// The corners are in the camera's coordinates. Returns `None` if the eye lies in the plane of the triangle.
+    /// Makes the planes. The corners are in the camera's coordinates. Returns `None` if the eye lies in the triangle's plane.
     fn new([a, b, c]: [Vector; 3]) -> Option<Self> {
         let normals = [b.cross(c), c.cross(a), a.cross(b)];
         let volume = a.dot(normals[0]);
@@ -266,8 +265,9 @@ impl Planes {
     }
 }
 
-/// Returns the depth at which a ray enters a ball, as a multiple of the ray. For example, the ray (0, 0, −1) enters a ball of
-/// radius 2 around (0, 0, −5) at 3. The depth is negative if the ray enters the ball behind the eye.
+/// Returns the depth at which a ray enters a ball, as a multiple of the ray, or `None` if the ray passes beside the ball. For
+/// example, the ray (0, 0, −1) enters a ball of radius 2 around (0, 0, −5) at 3. The depth is negative if the ray enters the ball
+/// behind the eye.
 #[inline]
 fn meet_ball(ray: Vector, middle: Vector, radius: f64) -> Option<f64> {
     let square = ray.dot(ray);

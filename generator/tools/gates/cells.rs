@@ -9,10 +9,10 @@ use anyhow::{Context, Result};
 use super::super::sources::YosysSources;
 use crate::Tool;
 
-/// The path of Oklahoma State University's library for 0.18 µm in Debian's `qflow-tech-osu018`.
+/// The path of Oklahoma State University's cell library for 0.18 µm, from Debian's `qflow-tech-osu018`.
 pub const LIBERTY: &str = "/usr/share/qflow/tech/osu018/osu018_stdcells.lib";
 
-/// The Yosys commands that map a design to the cells of `cells.lib`, without the name of the top module.
+/// The Yosys commands that map a design to the cells of `cells.lib`, without the top module's name.
 pub const MAPPING: &str =
     "dfflibmap -liberty cells.lib; abc -liberty cells.lib -constr cells.constr; opt_clean -purge";
 
@@ -29,9 +29,9 @@ pub enum Start {
 }
 
 impl Start {
-    /// Returns the initial values with which the test bench must pass. A pipeline must pass with unknown values, since reset
-    /// and points determine its state. For a core with a microprogram, the values are 0 and 1. The reason is that simulation
-    /// of its gates can keep values unknown that are known in a real circuit.
+    /// Returns the initial values with which the test bench must pass. A pipeline must pass with unknown values, since reset and
+    /// points determine its state. A core with a microprogram must pass with 0 and with 1. Simulated gates can keep values
+    /// unknown that are known in a real circuit.
     pub fn of(pipelined: bool) -> &'static [Self] {
         if pipelined { &[Self::Unknown] } else { &[Self::Zeros, Self::Ones] }
     }
@@ -58,10 +58,11 @@ pub fn netlist(
     sources.text(NETLIST)
 }
 
-/// Returns the Verilog models of the cells, without delays. A model of the flip-flop that begins with the value `start`
-/// replaces the library's own. The library's model would become unknown at the first value on its constant inputs.
+/// Returns the Verilog models of the cells, without delays. The flip-flop gets a model that begins with the value `start`,
+/// because the library's model becomes unknown at the first value on its constant inputs.
 ///
 /// # Errors
+///
 /// Fails if the file with the models is not in the directory of [`LIBERTY`], or has no flip-flop `DFFPOSX1`.
 pub fn models(start: Start) -> Result<Vec<(String, String)>> {
     let text = read(&Path::new(LIBERTY).with_extension("v"))?;

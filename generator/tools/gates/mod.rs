@@ -1,5 +1,5 @@
-//! Prepares gate-level simulation: synthesises a core to a netlist of FPGA or standard cells, and combines the netlist with
-//! the test bench of the source.
+//! Prepares gate-level simulation: synthesises a core to a netlist of FPGA or standard cells, and replaces the core in its test
+//! bench by the netlist.
 
 pub mod cells;
 
@@ -16,13 +16,13 @@ use glint_base::target::Family;
 /// Models of the ECP5 cells for which Yosys has none.
 const ECP5: &str = include_str!("ecp5.v");
 
-/// Models of the Gowin cells for which Yosys has none, and of its carry cell, whose model of Yosys fails with constant inputs.
+/// Models of the Gowin cells for which Yosys has none, and of the carry cell, whose model in Yosys fails with constant inputs.
 const GOWIN: &str = include_str!("gowin.v");
 
 /// Models of the Nexus cells for which Yosys has none.
 const NEXUS: &str = include_str!("nexus.v");
 
-/// Tells whether Yosys or this crate has models of the cells to which a design of the family can be mapped.
+/// Returns whether Yosys or this crate has models of the cells to which a design of the family can be mapped.
 pub fn is_simulated(family: &Family) -> bool {
     family.name() != "xilinx7"
 }
@@ -44,10 +44,11 @@ pub fn netlist(
     sources.text(NETLIST)
 }
 
-/// Returns the files of a test bench around a netlist. These are the `sources` without the files named in `rtl`, the netlist,
-/// and the models of the family's cells.
+/// Returns the files of a test bench around a netlist. The files are `sources` without the files named in `rtl`, the netlist, and
+/// the models of the family's cells.
 ///
 /// # Errors
+///
 /// Fails if Yosys's directory does not contain the models, or if the family has no models.
 pub fn bench(
     yosys: &Tool,
@@ -59,8 +60,7 @@ pub fn bench(
     Ok(around(sources, rtl, netlist, models(yosys, family)?))
 }
 
-/// Replaces the Verilog files of a core, which are named in `rtl`, by a netlist and the models of its cells. References to the
-/// core's `word_address`, which only messages use, become the number 15.
+/// Replaces the Verilog files of a core, which `rtl` names, by a netlist and the models of its cells.
 pub fn around(
     sources: Vec<(String, String)>,
     rtl: &[String],
@@ -78,7 +78,8 @@ pub fn around(
     files
 }
 
-/// Fails if Yosys's directory does not contain the models, or if the family has no models.
+/// Returns the files with the models of the family's cells. Fails if Yosys's directory does not contain the models, or if the
+/// family has no models.
 pub fn models(yosys: &Tool, family: &Family) -> Result<Vec<(String, String)>> {
     let shipped = shipped(yosys, family)?;
     let mut files = Vec::new();
@@ -87,7 +88,7 @@ pub fn models(yosys: &Tool, family: &Family) -> Result<Vec<(String, String)>> {
         "ice40" | "ice40-hx" => format!("`define NO_ICE40_DEFAULT_ASSIGNMENTS\n{shipped}"),
         "ecp5" => {
             files.push(("ecp5.v".to_owned(), ECP5.to_owned()));
-            // The flip-flops and pads of other tools are in files that it includes.
+            // The flip-flops and pads of other tools are in files that the models include.
             format!("`define NO_INCLUDES\n{}", without(&shipped, &["DP16KD"])?)
         }
         "gowin" | "gowin-gw1n" => {
@@ -134,7 +135,7 @@ fn own_file(yosys: &Tool, name: &str) -> Result<String> {
     bail!("cannot read `{}`, the models of cells that belong to `{yosys}`", first.display())
 }
 
-/// Removes modules from the models of Yosys, so that another file can define them.
+/// Removes modules from the models of Yosys, because a file of this crate defines them.
 fn without(verilog: &str, modules: &[&str]) -> Result<String> {
     let mut remaining = verilog.to_owned();
     for module in modules {

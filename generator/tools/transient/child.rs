@@ -1,5 +1,4 @@
-//! Starts child processes, and kills them together with the processes that they started. On Windows, only the child itself is
-//! killed.
+//! Starts child processes, and kills them together with their descendants. On Windows, only the child is killed.
 
 use std::io;
 use std::process::{self, Command, ExitStatus};
@@ -7,7 +6,7 @@ use std::time::Instant;
 
 use super::list;
 
-/// A child process in a process group of its own. Dropping it kills the process and its descendants, so that an early return
+/// A child process in a process group of its own. Dropping the value kills the process and its descendants, so an early return
 /// cannot leave a simulator running.
 #[derive(Debug)]
 pub struct Child {
@@ -16,7 +15,7 @@ pub struct Child {
 }
 
 impl Child {
-    /// Fails if the command does not start.
+    /// Starts `command` and adds the process to the list of children. Fails if the command does not start.
     pub fn spawn(command: &mut Command) -> io::Result<Self> {
         // A terminal's Ctrl-C reaches this process alone, which then ends its children itself.
         #[cfg(unix)]
@@ -31,13 +30,14 @@ impl Child {
         self.child.id()
     }
 
-    /// Returns `None` if the process still runs.
+    /// Returns the exit status, or `None` if the process still runs.
     ///
     /// # Errors
-    /// Fails if the system cannot report the status of the child.
+    ///
+    /// Fails if the system cannot report the child's status.
     pub fn try_wait(&mut self) -> io::Result<Option<ExitStatus>> {
-        // As soon as the status is read, another process may get this process number. The child therefore leaves the list in the
-        // same step.
+        // As soon as the status is read, another process may get this process number. In the same step, the child therefore
+        // leaves the list.
         let mut list = list();
         let status = self.child.try_wait()?;
         if status.is_some() {
@@ -70,7 +70,7 @@ impl Drop for Child {
 }
 
 /// Kills a child, its process group, and its descendants in other groups, because yosys-smtbmc runs its solver in a session of
-/// its own. The child's exit status must not have been read, so that its process number is still its own.
+/// its own. The child's exit status must not have been read, because another process could then have the number.
 #[cfg(unix)]
 pub fn kill_tree(child: u32) {
     use rustix::process::{Pid, Signal, kill_process_group};
@@ -80,7 +80,7 @@ pub fn kill_tree(child: u32) {
     }
 }
 
-/// Does nothing. On a system without process groups, [`Child::kill`] kills the child alone.
+/// Does nothing, because the system has no process groups. [`Child::kill`] kills only the child.
 #[cfg(not(unix))]
 pub fn kill_tree(_child: u32) {}
 
@@ -98,12 +98,12 @@ pub fn kill_own_descendants(deadline: Instant) {
     }
 }
 
-/// Does nothing: on this system, Glint cannot find descendants.
+/// Does nothing, because Glint cannot find descendants on this system.
 #[cfg(not(unix))]
 pub fn kill_own_descendants(_deadline: Instant) {}
 
-/// Kills the processes that `list` returns. The function first stops all of them, so that they start no further processes
-/// meanwhile, and lists again until no new process appears.
+/// Kills the processes that `list` returns. The function first stops all of them, so they start no further processes, and calls
+/// `list` until no new process appears.
 #[cfg(unix)]
 fn kill_all(list: impl Fn() -> Vec<i32>) {
     use rustix::process::{Pid, Signal, kill_process};
@@ -123,8 +123,7 @@ fn kill_all(list: impl Fn() -> Vec<i32>) {
     stopped.into_iter().for_each(|pid| send(pid, Signal::KILL));
 }
 
-/// Makes this process the parent of descendants whose own parent has ended, so that `kill_own_descendants` finds them. If the
-/// system cannot do this, only descendants in the process group of a child are killed.
+/// Makes this process the parent of descendants whose own parent has ended, so `kill_own_descendants` finds them.
 pub fn adopt_orphans() {
     #[cfg(target_os = "linux")]
     let _ = rustix::process::set_child_subreaper(Some(rustix::process::getpid()));
@@ -140,7 +139,7 @@ mod tree {
         parent: i32,
     }
 
-    /// The list includes `root` itself if `with_root`. It is empty on a system without `/proc`.
+    /// Returns the descendants of `root`, and `root` itself if `with_root`. The list is empty on a system without `/proc`.
     pub fn descendants(root: i32, with_root: bool) -> Vec<i32> {
         let all = all();
         let mut found = vec![root];

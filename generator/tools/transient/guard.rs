@@ -8,14 +8,14 @@ use std::io::Write;
 use std::os::unix::process::CommandExt;
 use std::process::{ChildStdin, Command, Stdio};
 
-/// Reads lists of children, one list a line such as `4711 4712`, until the pipe closes, at the latest when Glint ends. Then it
-/// kills the children on the last line, with their process groups and with their descendants in other groups. After an orderly
-/// end, the last line is empty.
+/// A script that reads lists of children, one list a line such as `4711 4712`, until the pipe closes, at the latest when Glint
+/// ends. Then it kills the children on the last line, with their process groups and with their descendants in other groups. After
+/// an orderly end, the last line is empty.
 ///
-/// The pipe closes shortly before Glint's process is gone. When the process ends, the groups of its children become orphans. If
-/// such a group then contains a stopped process, the system sends SIGHUP and SIGCONT to the whole group. A child that the guard
-/// stopped too early would therefore end before its own children are listed. So the shell waits until it has another parent
-/// itself. The `sleep` after that forks, which the system does only after it has dealt with all children.
+/// The pipe closes shortly before Glint's process is gone. When the process ends, the groups of its children become orphans. The
+/// system sends SIGHUP and SIGCONT to an orphaned group with a stopped process. A child that the guard stopped too early would
+/// therefore end before its own children are listed. The shell therefore waits until its own parent has changed. The `sleep`
+/// after this wait forks, which the system does only after it has dealt with all children.
 pub(super) const SCRIPT: &str = r#"
 tree() {
     for task in /proc/"$1"/task/*/children; do
@@ -41,7 +41,7 @@ kill -KILL $all
 for child in $children; do kill -KILL "-$child"; done
 "#;
 
-/// The pipe to the shell. It is `None` before the first child, and on a system without a shell.
+/// The pipe to the shell, or `None` before the first child and on a system without a shell.
 pub struct Guard(Option<ChildStdin>);
 
 impl Guard {
@@ -57,10 +57,10 @@ impl Guard {
     }
 }
 
-/// The shell has a process group of its own and a pipe as its standard input.
+/// Returns the command of a shell that has its own process group and reads a pipe.
 pub(super) fn shell(script: &str) -> Command {
     let mut command = Command::new("/bin/sh");
-    // The shell has a group of its own: a signal to the group of this process does not reach it.
+    // A signal to the group of this process does not reach the shell.
     command.args(["-c", script]).current_dir("/").process_group(0);
     command.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::null());
     command

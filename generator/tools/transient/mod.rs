@@ -1,10 +1,10 @@
-//! Keeps a list of the child processes and temporary directories of this process, so that Glint can end the processes and
-//! delete the directories.
+//! Keeps a list of the child processes and temporary directories of this process, so Glint can end the processes and delete the
+//! directories.
 //!
-//! If the process is interrupted, [`clear`] kills all children and deletes all directories on the list. A lock on the list
-//! prevents that a new child or directory appears meanwhile. If the process is killed and cannot call [`clear`], a guard
-//! process kills its children (not on Windows). The next run of Glint that makes a temporary directory in the same place then
-//! deletes the old ones, which it recognises by lock files that no process has locked.
+//! If the process is interrupted, [`clear`] kills all children and deletes all directories on the list. A lock prevents that new
+//! ones appear meanwhile. If the process is killed and cannot call [`clear`], a guard process kills its children (not on
+//! Windows). The next run of Glint with a temporary directory in the same place deletes the old directories, and recognises them
+//! by their unlocked lock files.
 
 mod child;
 #[cfg(unix)]
@@ -25,7 +25,7 @@ use std::time::{Duration, Instant};
 pub use child::{Child, adopt_orphans};
 pub use scratch::{Directory, files_below, relative_name};
 
-/// The longest time that [`clear`] waits for killed processes, and the longest time for directories in which files still appear.
+/// The longest time that [`clear`] waits for killed processes, and again for directories in which files still appear.
 const CLEARING_LIMIT: Duration = Duration::from_secs(5);
 /// The time between two checks of a condition for which this module waits.
 const PAUSE: Duration = Duration::from_millis(10);
@@ -71,15 +71,16 @@ pub fn undivided<T>(work: impl FnOnce() -> T) -> T {
     work()
 }
 
-/// As long as this value exists, no child process can start, and no temporary directory can be made.
+/// A proof that [`clear`] has run. As long as this value exists, no child process can start, and no temporary directory can be
+/// made.
 pub struct Cleared {
     _undivided: MutexGuard<'static, ()>,
     _list: MutexGuard<'static, List>,
 }
 
-/// Kills all children with all processes that they have started, and deletes all temporary directories. It tries each of both
-/// for at most 5 seconds. Other threads stop at their next child or temporary directory until the result is dropped. The
-/// program calls this function at its end, for example after Ctrl-C during a bench.
+/// Kills all children with their descendants, and deletes all temporary directories. Each of these two steps takes at most 5
+/// seconds. Other threads stop at their next child or temporary directory until the result is dropped. The program calls this
+/// function at its end, for example after Ctrl-C during a bench.
 pub fn clear() -> Cleared {
     let undivided = UNDIVIDED.lock().unwrap_or_else(PoisonError::into_inner);
     let list = list();
@@ -97,7 +98,7 @@ pub fn clear() -> Cleared {
     Cleared { _undivided: undivided, _list: list }
 }
 
-/// Returns whether nothing exists at `path` afterwards.
+/// Deletes a file or a directory. Returns whether nothing exists at `path` afterwards.
 fn delete(path: &Path) -> bool {
     let done = match fs::symlink_metadata(path) {
         Ok(found) if found.is_dir() => fs::remove_dir_all(path),

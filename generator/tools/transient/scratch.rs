@@ -11,7 +11,7 @@ use tempfile::TempDir;
 
 use super::list;
 
-/// The prefixes of the names of temporary directories: for tools, and for files that are later moved into the directory around.
+/// The prefixes of the names of temporary directories: for tools, and for files that are later moved into the parent directory.
 const FOR_TOOLS: &str = "glint-";
 const BESIDE: &str = ".glint-";
 
@@ -20,7 +20,7 @@ const LOCK: &str = "glint.lock";
 
 static SWEEP: Once = Once::new();
 
-/// Dropping the value deletes the directory with its contents. An interruption of the process deletes it too.
+/// A temporary directory. Dropping the value deletes the directory with its contents, and so does an interruption of the process.
 #[derive(Debug)]
 pub struct Directory {
     made: Option<TempDir>,
@@ -48,10 +48,11 @@ impl Directory {
         Self::made(&place, FOR_TOOLS)
     }
 
-    /// Makes a directory in `parent`, for files that are moved from it into `parent` later. Before that, deletes the
-    /// directories that killed processes have left there.
+    /// Makes a directory in `parent`, for files that are later moved into `parent`. First deletes the directories that killed
+    /// processes have left in `parent`.
     ///
     /// # Errors
+    ///
     /// Fails if the directory cannot be made.
     pub fn beside(parent: &Path) -> io::Result<Self> {
         // The absolute path stays valid if the process changes its current directory.
@@ -70,8 +71,8 @@ impl Directory {
         };
         let mut directory = Self { made: Some(made), lock: None };
         let mut lock = fs::File::create(directory.path().join(LOCK))?;
-        // The file is locked while it is empty, because [`sweep`] ignores an empty lock file. On a system without locks, it stays
-        // unlocked.
+        // The file is locked while it is empty, because [`sweep`] ignores an empty lock file. On a system without locks, the file
+        // stays unlocked.
         let _ = lock.try_lock();
         lock.write_all(title(directory.path()).as_bytes())?;
         directory.lock = Some(lock);
@@ -101,7 +102,7 @@ impl Drop for Directory {
 }
 
 /// Deletes the directories that killed processes have left in `parent`. The name of such a directory begins with `prefix`. Its
-/// lock file contains the directory's own name, and no process has locked it. Errors are ignored.
+/// lock file contains the directory's own name and is not locked.
 fn sweep(parent: &Path, prefix: &str) {
     for entry in fs::read_dir(parent).into_iter().flatten().flatten() {
         let (path, lock) = (entry.path(), entry.path().join(LOCK));
@@ -147,8 +148,8 @@ pub fn relative_name(root: &Path, path: &Path) -> String {
     parts.join("/")
 }
 
-/// Removes a temporary path, whose random name tells a user nothing: `Permission denied (os error 13) at path
-/// "/t/glint-a1B2c3"` becomes `Permission denied (os error 13)`.
+/// Removes a temporary path, whose random name tells a user nothing, from a message. For example, `Permission denied (os error
+/// 13) at path "/t/glint-a1B2c3"` becomes `Permission denied (os error 13)`.
 fn without_path(error: io::Error) -> io::Error {
     let text = error.to_string();
     io::Error::new(error.kind(), text.split(" at path ").next().unwrap_or_default())

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use super::*;
 
-/// The script writes a number and a newline to the file `path`.
+/// Waits until a script has written a number and a newline to the file `path`, and returns the number.
 fn number_in(path: &Path) -> u32 {
     let deadline = Instant::now() + Duration::from_secs(60);
     loop {
@@ -20,13 +20,13 @@ fn number_in(path: &Path) -> u32 {
     }
 }
 
-/// A zombie does not count as alive.
+/// Returns whether the process is alive. A zombie is not alive.
 fn is_alive(number: u32) -> bool {
     let stat = fs::read_to_string(format!("/proc/{number}/stat")).unwrap_or_default();
     stat.rsplit_once(')').is_some_and(|(_, rest)| !rest.trim_start().starts_with('Z'))
 }
 
-/// The process must end within ten seconds.
+/// Checks that the process ends within ten seconds.
 #[track_caller]
 fn assert_ends(number: u32, message: &str) {
     let deadline = Instant::now() + Duration::from_secs(10);
@@ -49,9 +49,9 @@ fn a_killed_child_takes_a_session_of_its_child_along() {
     assert_ends(inner, "the solver of a killed tool runs on");
 }
 
-/// A guard that is slow must still kill a tool's descendants in another session. The process that it guards ends while the
-/// guard works, and this end must not send SIGHUP to the tool before the tool's children are listed. The guarded process is
-/// this test, started a second time.
+/// Checks that a slow guard still kills a tool's descendants in another session. The guarded process ends while the guard works.
+/// This end must not send SIGHUP to the tool before the tool's children are listed. The guarded process is this test, started a
+/// second time.
 #[test]
 #[cfg(target_os = "linux")]
 fn a_slow_guard_ends_a_session_of_a_child_too() {
@@ -90,8 +90,6 @@ fn what_is_dropped_is_gone_and_off_the_list() {
     assert!(!path.exists() && !list().paths.contains(&path));
 }
 
-/// The clean-up deletes directories of killed processes alone. It keeps directories in use, and directories that other programs
-/// have made.
 #[test]
 fn what_killed_processes_have_left_goes() {
     let place = tempfile::tempdir().unwrap();

@@ -49,8 +49,8 @@ impl CommandReport for ComparisonReport<'_> {
     }
 }
 
-/// Returns a sentence about the operands at which the errors are computed, if the device has other control operands than the
-/// cosine and n.
+/// Returns a sentence about the operands at which the errors are measured, or `None` if the cosine and n are the only control
+/// operands.
 fn at_rest(entry: &ComparisonEntry) -> Option<String> {
     let contract = entry.core.contract.as_ref();
     if !contract.operands().iter().any(|operand| operand.name == contract::COSINE) {
@@ -78,8 +78,7 @@ fn at_rest(entry: &ComparisonEntry) -> Option<String> {
     ))
 }
 
-/// Returns the largest and the mean error, in this order, for each of the whole, the formula, the operands and the fixed
-/// point.
+/// Returns the largest and the mean error, in this order, of the whole, the formula, the operands and the fixed point.
 fn errors(accuracy: &Accuracy) -> Vec<f64> {
     let Accuracy { whole, formula, operands, fixed_point } = *accuracy;
     let mut errors = Vec::new();
@@ -158,7 +157,7 @@ fn print_hardware(entries: &[ComparisonEntry]) {
     }
 }
 
-/// Returns the resources of all families. `unknown` replaces a number that is not known.
+/// Returns the resources of all families as cells. `unknown` replaces an unknown number.
 fn taken(entry: &ComparisonEntry, unknown: &str) -> Vec<String> {
     let mut cells = Vec::new();
     for at in 0..COMPARED.len() {
@@ -174,7 +173,7 @@ fn taken(entry: &ComparisonEntry, unknown: &str) -> Vec<String> {
     cells
 }
 
-/// Returns the targets for which the record has a frequency, with the core's frequency and rate.
+/// Returns the targets with a frequency in the record, with the core's frequency and rate.
 fn speeds(entry: &ComparisonEntry) -> Vec<(Target, Frequency, Rate)> {
     let mut speeds = Vec::new();
     let Some(record) = &entry.record else { return speeds };
@@ -188,7 +187,7 @@ fn speeds(entry: &ComparisonEntry) -> Vec<(Target, Frequency, Rate)> {
     speeds
 }
 
-/// Has one digit after the decimal point, or `-` for `None`.
+/// Writes `number` times `scale` with one digit after the point, or `-` for `None`.
 fn scaled(number: Option<f64>, scale: f64) -> String {
     match number {
         Some(number) => format!("{:.1}", number * scale),
@@ -228,12 +227,12 @@ fn print_speed(entries: &[ComparisonEntry]) {
     );
 }
 
-/// Has no decimals if the number is whole, and otherwise three. For example, 5 gives `5`, and 5.5 gives `5.500`.
+/// Writes a whole number without decimals, and any other number with three. For example, 5 gives `5`, and 5.5 gives `5.500`.
 fn clocks(clocks: f64) -> String {
     if clocks.fract() == 0.0 { format!("{clocks}") } else { format!("{clocks:.3}") }
 }
 
-/// Counts equal neighbours: one multiplier of 21 by 10 bits and three of 10 by 8 bits give `21x10, 3 of 10x8`.
+/// Writes the sizes of multipliers, with a count for equal neighbours.
 fn sizes(multipliers: &[MultiplierSize]) -> String {
     let mut texts = Vec::new();
     for alike in multipliers.chunk_by(|a, b| a == b) {
@@ -249,7 +248,7 @@ fn numbers(usage: &Usage) -> [(&'static str, u64); 3] {
     [("luts", usage.luts), ("dsps", usage.dsps), ("block_rams", usage.block_rams)]
 }
 
-/// Returns the headings, and then a row for each entry. A value that is not known is empty.
+/// Returns the headings, and then a row for each entry. The cell of an unknown value is empty.
 fn as_csv(arguments: &Arguments, entries: &[ComparisonEntry]) -> Vec<Vec<String>> {
     let synthesised = entries.iter().any(|entry| !entry.usage.is_empty());
     let measured = entries.iter().any(|entry| entry.record.is_some());
@@ -260,8 +259,8 @@ fn as_csv(arguments: &Arguments, entries: &[ComparisonEntry]) -> Vec<Vec<String>
     rows
 }
 
-/// The columns of iCE40 are `ice40_luts`, `ice40_dsps` and `ice40_block_rams`. `synthesised` and `measured` say whether the
-/// columns of resources and of frequencies are included.
+/// Returns the headings. For example, the columns of iCE40 are `ice40_luts`, `ice40_dsps` and `ice40_block_rams`. `synthesised`
+/// and `measured` say whether the columns of resources and of frequencies are included.
 fn csv_heading(synthesised: bool, measured: bool) -> Vec<String> {
     let mut heading: Vec<String> = ["name", "device", "exponent"].map(str::to_owned).to_vec();
     for name in ["error", "formula", "operands", "fixed_point"] {

@@ -14,10 +14,10 @@ use glint_base::program::Program;
 use glint_core::package::FileKind;
 use glint_tools::{BenchDifference, BenchOutcome, VerilogSimulator, bench_waveform, run_bench};
 
-/// The number of results if the user states none.
+/// The default number of results.
 const POINTS: u64 = 200;
 
-/// The vectors are made in memory, which limits the number of results.
+/// The largest number of results, because the vectors are made in memory.
 const MOST_POINTS: u64 = 1_000_000;
 
 struct BenchRun {
@@ -34,6 +34,10 @@ struct BenchMismatch {
     command: String,
 }
 
+/// Runs the benches. Returns whether all pass.
+///
+/// # Errors
+///
 /// Fails for wrong usage, or if the simulator is missing, refuses a bench, or does not end within the time limit.
 pub fn benches(
     output: OutputOptions,
@@ -85,8 +89,7 @@ impl CommandReport for BenchReport<'_> {
     }
 }
 
-/// Emits a bench with `points` results, and runs it in an external simulator. The expected outputs are values on which golden
-/// model and built-in simulator agree. If the bench fails, the function also writes a waveform.
+/// Emits a bench with `points` results, and runs it in an external simulator. If the bench fails, also writes a waveform.
 fn bench(
     one: &Loaded,
     which: VerilogSimulator,

@@ -1,5 +1,5 @@
-//! `glint cosim --exhaustive`: checks the error bound of a contract for every operand combination that the contract or the user
-//! lists, as one run or as one shard of several.
+//! `glint cosim --exhaustive`: checks a contract's error bound for all listed operand combinations, as one run or as one of
+//! several shards.
 
 pub mod show;
 
@@ -24,19 +24,18 @@ use show::{announce, report};
 /// The time between two writes of the state.
 const SAVE: Duration = Duration::from_secs(5);
 
-/// A division among more cores is suggested from this estimated duration on.
+/// The estimated duration from which the command suggests to divide the check among more cores.
 const WORTH_SHARING: Duration = Duration::from_secs(60);
 
-/// The duration is printed for these numbers of cores. For example, `about 1 hour on 1 core`.
+/// The numbers of cores for which the duration is printed. For example, `about 1 hour on 1 core`.
 const CORES: [u32; 3] = [1, 16, 1000];
 
-/// Measures the errors at all operands, and compares them with the bound of the accuracy contract. Also compares model and
-/// hardware clock by clock for every combination of operands, if there are not too many.
+/// Measures the errors at all operands, and compares them with the accuracy contract's bound. Also compares model and hardware
+/// clock by clock for every combination of operands, if there are not too many combinations.
 ///
 /// # Errors
-/// Fails if a configuration has problems, if the values of `--values` are not valid, if the file of `--resume` belongs to
-/// another check or is damaged, or if a signal has interrupted the check. `--resume` with several configurations is wrong
-/// usage.
+/// Fails if a configuration has problems, if the values of `--values` are not valid. Fails if the file of `--resume` belongs to
+/// another check or is damaged, or if a signal has interrupted the check. `--resume` with several configurations is wrong usage.
 pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
     if arguments.resume.is_some() && loaded.len() != 1 {
@@ -87,7 +86,8 @@ pub fn run(registry: &Registry, output: OutputOptions, arguments: &Arguments) ->
 /// Returns the saved progress of a check, or `None` if the file does not exist.
 ///
 /// # Errors
-/// Fails if the file cannot be read, or if it has other contents.
+///
+/// Fails if the file cannot be read, or if it contains no saved progress.
 pub fn read(path: &Path) -> Result<Option<ShardState>> {
     let Some(text) = input::text(path)? else { return Ok(None) };
     let state = kept::from_text(&text).with_context(|| {
@@ -158,8 +158,8 @@ fn is_countable(sweep: &Sweep) -> bool {
     counts.try_fold(1, u64::checked_mul).is_some()
 }
 
-/// Prints an estimate from a short sample. If the check is long, also says how the user can stop it and continue it later.
-/// `resume` is the file with the saved state.
+/// Prints an estimate of the duration from a short sample. For a long check, also says how the user can stop it and continue it
+/// later. `resume` is the file with the saved state.
 fn announce_duration(job: &Job<'_>, state: &ShardState, resume: Option<&Path>) -> Result<()> {
     if job.remaining(state) == 0 {
         return Ok(());

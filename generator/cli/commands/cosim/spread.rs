@@ -16,7 +16,7 @@ pub fn print(histogram: &Histogram) {
     say!("  points{}", shares.concat());
 }
 
-/// Also has the share of results with `f` strictly between 0 and 1.
+/// Returns the number of results in each class, and the share of results with `f` strictly between 0 and 1.
 pub fn as_json(histogram: &Histogram) -> Value {
     let classes = CLASSES.iter().zip(histogram.counts());
     let classes: Vec<Value> =

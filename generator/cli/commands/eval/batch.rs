@@ -13,25 +13,25 @@ use crate::report::CommandReport;
 use crate::{OutputOptions, failure, tables};
 use glint_golden::{ANY_VALUE, Contract};
 
-/// The result of a point, which is overwritten for each point to avoid new allocations.
+/// The result of a point. One value serves all points, to avoid new allocations.
 #[derive(Default)]
 struct PointResult {
     operands: Vec<i64>,
-    /// The number of the point in its line, from 0, if the device computes lines.
+    /// The number of the point in its line, from 0; `None` if the device computes single points.
     point: Option<u64>,
     f: Option<i64>,
     outputs: Vec<i64>,
     exact_f: Option<f64>,
-    /// NaN for a formula without a value.
+    /// The values of the formulas; NaN for a formula without a value.
     exact: Vec<f64>,
-    /// States for each output whether the contract promises an error.
+    /// Whether the contract promises an error, for each output.
     promised: Vec<bool>,
-    /// The numbers of the outputs whose errors are promised under a condition.
+    /// The numbers of the outputs with an error that is promised only under a condition.
     conditional: Vec<usize>,
     inside: bool,
 }
 
-/// What the rows of a CSV file are computed with: a core, or a function of a unit.
+/// The subject of a computation of many points: a core, or a function of a unit.
 pub struct BatchSubject<'a> {
     pub contract: &'a dyn Contract,
     /// The raw operands on the command line, which apply to all rows.
@@ -82,9 +82,9 @@ struct EvaluatedPoints<'a> {
     path: &'a Path,
     /// The operands without a column, with the values that the command chose.
     missing: Vec<String>,
-    /// Filled if people read the answer.
+    /// The results for people; empty for a script.
     text: String,
-    /// Filled if a script reads the answer.
+    /// The results for a script; empty for people.
     points: Vec<Value>,
 }
 
@@ -128,7 +128,7 @@ fn columns<'a>(
     Ok(columns)
 }
 
-/// Returns the operands that have neither a column nor a value on the command line, with the values that the command chooses.
+/// Returns the operands without a column and without a value on the command line, with the values that the command chooses.
 fn missing_columns(
     contract: &dyn Contract,
     given: &[Option<i64>],
@@ -141,8 +141,7 @@ fn missing_columns(
     operands::missing(contract, &with_columns)
 }
 
-/// Computes the points of a row, which are all points of a line or one point, and calls `show` with each. `row` is
-/// overwritten.
+/// Computes a row's points, which are one point or all points of a line, and calls `show` with each. `row` is overwritten.
 fn points(
     contract: &dyn Contract,
     given: &[Option<i64>],
@@ -232,7 +231,7 @@ fn conditional_outputs(contract: &dyn Contract) -> Vec<usize> {
     (0..conditions.len()).filter(|number| conditions[*number].is_some()).collect()
 }
 
-/// Numbers need no quotes.
+/// Appends a row. Numbers need no quotes.
 fn append(contract: &dyn Contract, row: &PointResult, text: &mut String) {
     for (operand, &raw) in contract.operands().iter().zip(&row.operands) {
         decimal(operand.format.to_f64(raw.into()), text);
@@ -267,7 +266,7 @@ fn integer(value: i64, text: &mut String) {
     text.push(',');
 }
 
-/// Appends a number and a comma, in the form of the format `{}`. Whole numbers are written by a faster function.
+/// Appends a number and a comma, as the format `{}` prints the number. A faster function writes whole numbers.
 fn decimal(value: f64, text: &mut String) {
     let whole = value as i64;
     let is_whole = whole as f64 == value && whole.unsigned_abs() < 1 << 53;

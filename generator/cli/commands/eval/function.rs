@@ -16,8 +16,8 @@ pub(super) struct NamedFunction<'d> {
     given: Vec<Option<i64>>,
 }
 
-/// Returns the function that the setting `opcode=<name>` names. The other settings are those of its operands. For an opcode
-/// that is a number or is not given, and for a core without functions, the function returns `None`.
+/// Returns the function that the setting `opcode=<name>` names. The remaining settings belong to its operands. Returns `None` if
+/// the opcode is a number or not given, or if the core has no functions.
 ///
 /// # Errors
 /// Fails if no function has the name, if it has no such operand, or if a value does not fit its format.
@@ -51,7 +51,7 @@ fn is_number(text: &str) -> bool {
 }
 
 impl NamedFunction<'_> {
-    /// Returns the settings of the ports of the core, such as `opcode=4` and `a=#512`.
+    /// Returns the settings for the core's ports, such as `opcode=4` and `a=#512`.
     pub(super) fn settings(&self) -> Vec<String> {
         let mut settings = vec![format!("{OPCODE}={}", self.opcode)];
         for (operand, raw) in self.function.operands.iter().zip(self.raw()) {
@@ -72,7 +72,7 @@ impl NamedFunction<'_> {
         operands
     }
 
-    /// Returns the function with the operands on the command line, for many points.
+    /// Returns the function with the operands on the command line, for the computation of many points.
     pub(super) fn batch_subject(&self) -> BatchSubject<'_> {
         let results = self.function.results.iter().map(|result| result.name.clone()).collect();
         BatchSubject { contract: self.contract.as_ref(), given: &self.given, results }

@@ -1,5 +1,4 @@
-//! Parses the operands that a user gives on the command line. For example, `0.99` is a real value, and `#1038090` a raw
-//! integer.
+//! Parses the operands on the command line. For example, `0.99` is a real value, and `#1038090` a raw integer.
 
 use crate::commands::none_of;
 use glint_core::cosim::trial;
@@ -9,8 +8,8 @@ use glint_golden::{Contract, Operand};
 /// of `operands`, with `None` for an operand without a setting.
 ///
 /// # Errors
-/// Fails if a setting has no `=`, if an operand is unknown or set twice, if a value is not valid for the operand's format, or if a
-/// list has another number of values.
+/// Fails if a setting has no `=`, if an operand is unknown or set twice. Fails if a value is not valid for the operand's format,
+/// or if a list has another number of values.
 pub fn given(operands: &[Operand], settings: &[String]) -> Result<Vec<Option<i64>>, String> {
     let mut raw: Vec<Option<i64>> = vec![None; operands.len()];
     for setting in settings {
@@ -39,8 +38,8 @@ pub fn given(operands: &[Operand], settings: &[String]) -> Result<Vec<Option<i64
     Ok(raw)
 }
 
-/// Returns the indices of the numbers of the list `name`: the operands `n_0`, `n_1` and so on, or `nx`, `ny` and so on. Returns none if
-/// an operand is called `name`, or if there is only one such operand.
+/// Returns the indices of the operands for the list `name`: `n_0`, `n_1` and so on, or `nx`, `ny` and so on. Returns none if an
+/// operand is called `name`, or if there is only one such operand.
 fn numbers_of_list(operands: &[Operand], name: &str) -> Vec<usize> {
     let is_number = |operand: &Operand| match operand.name.strip_prefix(name) {
         Some(end) => match end.strip_prefix('_') {
@@ -56,12 +55,13 @@ fn numbers_of_list(operands: &[Operand], name: &str) -> Vec<usize> {
     if numbers.len() < 2 { Vec::new() } else { numbers }
 }
 
-/// Returns the name of an operand's port. `n.x` and `v[0]`, as formulas write the numbers of lists, are the ports `nx` and `v_0`.
+/// Returns the name of an operand's port. For example, `n.x` and `v[0]`, as formulas write the numbers of lists, have the ports
+/// `nx` and `v_0`.
 fn port_name(name: &str) -> String {
     name.replace('.', "").replace('[', "_").replace(']', "")
 }
 
-/// Returns the index of an operand. The message about an unknown name has the most similar name.
+/// Returns the index of the operand `name`. The error for an unknown name suggests the most similar name.
 pub fn position(operands: &[Operand], name: &str) -> Result<usize, String> {
     let port = port_name(name);
     operands.iter().position(|operand| operand.name == port).ok_or_else(|| {
@@ -70,8 +70,8 @@ pub fn position(operands: &[Operand], name: &str) -> Result<usize, String> {
     })
 }
 
-/// Gives 0, or the value nearest to 0 in its domain, to each operand that is `None` in `given`. For example, an exponent with
-/// the domain 1 to 255 gets 1.
+/// Returns the raw operands. An operand that is `None` in `given` is 0, or the value nearest to 0 in its domain. For example, an
+/// exponent with the domain 1 to 255 is 1.
 pub fn completed(contract: &dyn Contract, given: &[Option<i64>]) -> Vec<i64> {
     let operands = contract.operands().iter().zip(given);
     let value =
@@ -84,8 +84,8 @@ fn nearest_to_zero(operand: &Operand) -> i64 {
     0.clamp(low, high)
 }
 
-/// Gives a value at which the results are well inside their ranges to each operand that is `None` in `given`. A colour gets
-/// its largest value.
+/// Returns the raw operands. An operand that is `None` in `given` gets a value at which the results are well inside their ranges;
+/// a colour gets its largest value.
 pub fn typical(contract: &dyn Contract, given: &[Option<i64>]) -> Vec<i64> {
     let typical = trial::typical(contract, given);
     let each = contract.operands().iter().zip(given).zip(typical);
@@ -105,12 +105,12 @@ pub fn missing(contract: &dyn Contract, given: &[Option<i64>]) -> Vec<String> {
     missing.collect()
 }
 
-/// Parses the value of an operand to a raw value. For example, `0.5` and `#128` both give 128 for an operand with 8 fraction
-/// bits.
+/// Parses an operand's value to a raw value. For example, `0.5` and `#128` both give 128 for an operand with 8 fraction bits.
 ///
 /// # Errors
-/// Fails if the text is not a number, if the number exceeds the format or has more than 63 bits, or if it is a fraction and the
-/// format has only integers. The message names the operand.
+///
+/// Fails if the text is not a number. Fails if the number exceeds the format or has more than 63 bits, or if it is a fraction and
+/// the format has only integers. The message names the operand.
 pub fn named_value(operand: &Operand, text: &str) -> Result<i64, String> {
     value(operand, text).map_err(|why| format!("operand `{}`: {why}", operand.name))
 }

@@ -1,5 +1,4 @@
-//! `glint synth --front`: measures a configuration in each of its architectures, from the sequential core to a point every
-//! clock. It leaves out a pipeline if a faster one has no more multipliers.
+//! `glint synth --front`: measures a configuration in each of its architectures, from the sequential core to a point every clock.
 
 use anyhow::{Context, Result, bail};
 use rayon::prelude::*;
@@ -20,11 +19,11 @@ struct MeasuredArchitecture {
     figures: Figures,
     /// The rate in million points per second, at the median frequency. The rate is 0 if the core does not fit the chip.
     rate: f64,
-    /// The area in look-up tables, in which DSP blocks and block RAMs count as look-up tables too.
+    /// The area in look-up tables, in which DSP blocks and block RAMs also count as look-up tables.
     area: f64,
 }
 
-/// The architectures are in order from the slowest to the fastest.
+/// The measured architectures, in order from the slowest to the fastest.
 struct ArchitectureFront<'a> {
     path: &'a str,
     target: Target,
@@ -33,11 +32,12 @@ struct ArchitectureFront<'a> {
     chosen: usize,
 }
 
-/// The chosen architecture is the smallest that reaches `--rate`, or without `--rate` the architecture of the configuration
-/// itself.
+/// Measures the architectures and marks one as chosen: the smallest that reaches `--rate`, or without `--rate` the
+/// configuration's architecture.
 ///
 /// # Errors
-/// Fails if a tool fails, if the target is not timed, if the device cannot be a pipeline, or if no architecture has the rate.
+///
+/// Fails if a tool fails, if the target has no frequency, if the device cannot be a pipeline, or if no architecture has the rate.
 pub fn run(output: OutputOptions, arguments: &Arguments, loaded: &[Loaded]) -> Result<bool> {
     let [one] = loaded else {
         wrong_usage!("--front needs exactly one configuration; name one configuration");
@@ -84,8 +84,8 @@ pub fn run(output: OutputOptions, arguments: &Arguments, loaded: &[Loaded]) -> R
     Ok(true)
 }
 
-/// Returns the target that the user names, or else the target of the pipeline, or else ECP5. Fails with wrong usage if the
-/// user names several, or one without a frequency.
+/// Returns the target that the user names, or else the pipeline's target, or else ECP5. Fails with wrong usage if the user names
+/// several targets, or a target without a frequency.
 fn target(arguments: &Arguments, one: &Loaded) -> Result<Target> {
     let target = match arguments.targets[..] {
         [] => super::targets_of_pipelines(std::slice::from_ref(one)).first().copied(),
@@ -128,7 +128,8 @@ fn measure(
     })
 }
 
-/// Returns the index of the smallest architecture that has the rate, or without a rate of the one with the interval `own`.
+/// Returns the index of the smallest architecture that has the rate. Without a rate, returns the index of the architecture with
+/// the interval `own`.
 fn chosen(measured: &[MeasuredArchitecture], rate: Option<f64>, own: Option<u32>) -> Result<usize> {
     let Some(wanted) = rate else {
         let is_own = |it: &MeasuredArchitecture| it.architecture.interval == own;

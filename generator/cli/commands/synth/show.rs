@@ -65,7 +65,7 @@ fn print(measured: &[Measurement], notes: &[String]) {
     }
 }
 
-/// Gives the figures in the form `ECP5: 367 LUT, 1 DSP, 0 RAM, 112.30 MHz`.
+/// Returns the figures as a line, for example `ECP5: 367 LUT, 1 DSP, 0 RAM, 112.30 MHz`.
 pub fn in_a_line(figures: &Figures) -> String {
     let area = &figures.area;
     let mut parts: Vec<String> = Vec::new();

@@ -7,11 +7,11 @@ use crate::commands::plot_file::svg_file;
 use glint_prove::tune::{Answer, Candidate, ErrorUnit};
 use glint_show::evidence::chart::{Chart, ChartAxis, Series};
 
-/// The SVG needs no other file.
+/// Returns the plot as SVG that needs no other file.
 ///
 /// # Errors
-/// Fails if the Pareto front has fewer than two configurations or an error of 0, since these give no line. Fails also if the
-/// plotting library fails.
+///
+/// Fails if the Pareto front has fewer than two configurations or an error of 0, because these give no line.
 pub fn plot(answer: &Answer, arguments: &Arguments) -> Result<String> {
     let is_best = |candidate: &&Candidate| candidate.config == answer.best.config;
     let (Some(first), Some(last)) = (answer.front.first(), answer.front.last()) else {

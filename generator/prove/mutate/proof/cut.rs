@@ -1,17 +1,17 @@
 //! Finds a minimum cut in a netlist: a set of nets with the fewest bits that together determine some wanted nets.
 //!
-//! For example, a sum of 5 bits is a smaller cut than its two operands of 4 bits each. The method is a maximum flow whose
+//! For example, a sum of 5 bits is a smaller cut than its two operands of 4 bits each. The method is a maximum flow; the
 //! capacities are the bits of the nets.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use glint_rtl::netlist::{Design, Driver, NetId};
 
-/// A net and one of its two ends. The edge from (net, `false`) to (net, `true`) has the bits of the net as its capacity.
+/// A net and one of its two ends. The edge from (net, `false`) to (net, `true`) has the net's bits as its capacity.
 type Vertex = (NetId, bool);
 
-/// Returns the nets with the fewest bits, as `bits` counts them, that together determine the nets `wanted`. No net of
-/// `affected`, which the fault changes, may be in the cut. Returns `None` if the cut has more than `most` bits, or if a net of
+/// Returns the nets with the fewest bits, as `bits` counts them, that together determine the nets `wanted`. The cut contains no
+/// net of `affected`, because the fault changes these nets. Returns `None` if the cut has more than `most` bits, or if a net of
 /// `affected` is driven by neither a cell nor a constant.
 pub(super) fn smallest_cut(
     design: &Design,
@@ -24,7 +24,7 @@ pub(super) fn smallest_cut(
         return None;
     }
     // The flow goes from the wanted nets back to the sources: freely through affected nets, and through other nets limited by
-    // their bits. An entry has the amount from the second vertex to the first.
+    // their bits.
     let mut flow: BTreeMap<(Vertex, Vertex), u32> = BTreeMap::new();
     for _ in 0..=most {
         // The vertex from which each vertex was reached; a wanted net has itself.
@@ -100,7 +100,7 @@ fn is_source(design: &Design, net: NetId) -> bool {
     !matches!(design.net(net).driver, Driver::Op(_) | Driver::Constant(_))
 }
 
-/// A net has two vertices, `false` at the even index and `true` at the odd one.
+/// Returns a vertex's index: a net has `false` at an even index and `true` at the odd index after it.
 fn place((net, through): Vertex) -> usize {
     2 * net.index() + usize::from(through)
 }

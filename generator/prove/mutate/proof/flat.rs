@@ -1,4 +1,4 @@
-//! Makes a copy of a pipeline in which every register passes on its input at once, except the registers of the handshake.
+//! Makes a copy of a pipeline without delay: every register passes on its input at once, except the handshake's registers.
 //!
 //! A multiplier that several products share becomes one multiplier for each product. The copy computes the same results for a
 //! single point, and a proof about a fault can reach across the stages.
@@ -7,18 +7,16 @@ use std::collections::BTreeMap;
 
 use glint_rtl::netlist::{Design, Driver, Net, NetId, Op, Pipeline};
 
-/// A copy of a pipeline whose data registers pass on their inputs at once.
+/// A copy of a pipeline with data registers that pass on their inputs at once.
 pub(super) struct Flat {
     pub(super) design: Design,
-    /// For each net of a shared multiplier, its copies: one net for each product.
+    /// The copies of each net of a shared multiplier: one net for each product.
     pub(super) copies: BTreeMap<NetId, Vec<NetId>>,
-    /// For each copy, in the order of the nets, the slot (a clock of the interval from one point to the next) in which its
-    /// factors are chosen.
+    /// The slot in which each copy's factors are chosen, in the order of the added nets.
     chosen: Vec<usize>,
 }
 
 impl Flat {
-    /// `design` must be the pipeline that `pipeline` describes.
     pub(super) fn of(design: &Design, pipeline: &Pipeline) -> Self {
         let mut flat = Self { design: design.clone(), copies: BTreeMap::new(), chosen: Vec::new() };
         let mut taken = vec![false; design.nets.len()];
@@ -57,9 +55,9 @@ impl Flat {
         flat
     }
 
-    /// Gives each product a multiplier of its own in place of the shared one, whose nets lose their drivers. Returns the
-    /// copies by the original net and the slot of the product. For example, at an interval of 4, the copy for slot 0 has the
-    /// factors that the multiplier chooses in slot 3.
+    /// Gives each product a multiplier of its own in place of the shared multiplier, whose nets lose their drivers. Returns the
+    /// copies by the original net and the product's slot. For example, at an interval of 4, the copy for slot 0 has the factors
+    /// that the multiplier chooses in slot 3.
     fn unshared(&mut self, pipeline: &Pipeline) -> BTreeMap<(NetId, usize), NetId> {
         let mut made = BTreeMap::new();
         for unit in &pipeline.units {

@@ -1,10 +1,10 @@
-//! Computes the interval of values that each net can have, from the cell that drives the net and the intervals of the cell's
-//! operands. The proofs about faults try only values within these intervals.
+//! Computes the interval of values of each net, from the cell that drives the net and the intervals of the cell's operands. The
+//! proofs about faults try only values within these intervals.
 //!
-//! The device's description states intervals too, but a stated interval may be too narrow for a proof. For example, the stated
-//! interval of a shared multiplier's operand may hold for only some of the products. The module trusts a stated interval only
-//! for a register that is not of the kind `Internal`, such as an operand register. The interval must also contain 0, because
-//! every register is 0 at power-up.
+//! The device's description also states intervals, but a stated interval may be too narrow for a proof. For example, the stated
+//! interval of a shared multiplier's operand may hold for only some of the products. The module trusts a stated interval only for
+//! a register that is not of the kind `Internal`, such as an operand register. The interval must also contain 0, because every
+//! register is 0 at power-up.
 
 use super::pairs::{self, Pairs};
 use glint_base::interval::{Interval, fits, hull, of_values};
@@ -17,8 +17,8 @@ pub(super) fn trusted(design: &Design, register: &NetlistRegister) -> bool {
     register.kind != RegisterKind::Internal && low <= 0 && high >= 0
 }
 
-/// Returns the interval of raw values of each net, whatever the inputs are. An operand that comes after a net in the order may
-/// have any value of its format.
+/// Returns the interval of raw values of each net, for any inputs. An operand that comes after a net in `order` may have any
+/// value of its format.
 pub(super) fn of_all(design: &Design, order: &[NetId]) -> Vec<Interval> {
     let mut intervals: Vec<Option<Interval>> = vec![None; design.nets.len()];
     for &id in order {
@@ -82,7 +82,7 @@ pub(super) fn of(
     }
 }
 
-/// Returns the net whose sign is `bit`, and whether the bit is 1 for a negative value.
+/// Returns the net with the sign `bit`, and whether the bit is 1 for a negative value. Returns `None` if `bit` is no sign.
 fn sign(design: &Design, bit: NetId) -> Option<(NetId, bool)> {
     match &design.net(pairs::named(design, bit)).driver {
         Driver::Op(Op::Not(a)) => {

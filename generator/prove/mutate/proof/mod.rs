@@ -1,12 +1,12 @@
 //! Proves that a fault never changes an output or a register that the golden model predicts.
 //!
-//! There are two proofs. The first is an induction over clocks: in every microinstruction, it evaluates the fault-free design
-//! and the mutant together, and tracks which pairs of values each bit can have in the two ([`pairs`]). An internal register,
-//! for example one behind a multiplier, may differ: the induction passes its possible pairs on to the next microinstructions.
-//! If no output and no predicted register differs in any microinstruction, the mutant is equivalent. A pipeline has slots in
-//! place of microinstructions, and its checkpoints are compared too. The induction proves no fault that changes a reset. The
-//! second proof tries every combination of values on the nets around the fault ([`window`]). A register that loads once more
-//! without a change of its data keeps its value ([`reload`]).
+//! The first proof is an induction over clocks. In every microinstruction, it evaluates the fault-free design and the mutant
+//! together, and tracks which pairs of values each bit can have ([`pairs`]). An internal register, for example one behind a
+//! multiplier, may differ: the induction passes its possible pairs on to the next microinstructions. If no output and no
+//! predicted register differs in any microinstruction, the mutant is equivalent. A pipeline has slots in place of
+//! microinstructions, and its checkpoints are also compared. The induction proves no fault that changes a reset. The second proof
+//! tries every combination of values on the nets around the fault ([`window`]). A register that loads once more without a change
+//! of its data keeps its value ([`reload`]).
 
 mod cut;
 mod flat;
@@ -25,21 +25,21 @@ use super::verdict::How;
 use glint_base::fixed::mask;
 use glint_rtl::netlist::{Design, Driver, NetId, RegisterKind};
 
-/// Proves for a planted fault that no compared output or register ever changes.
+/// Proves that a planted fault never changes a compared output or register.
 pub(super) struct Prover<'a> {
     order: Order<'a>,
-    /// For each microinstruction, the values that each net of the fault-free design can have.
+    /// The values that each net of the fault-free design can have, for each microinstruction.
     nets: Vec<Vec<Pairs>>,
     following: Vec<Vec<usize>>,
-    /// For each microinstruction, the bits of each net that are compared in it, as a mask.
+    /// A mask of the bits of each net that are compared, for each microinstruction.
     compared: Vec<Vec<u64>>,
-    /// For each microinstruction and each register, whether the register would load the value that it has already.
+    /// Whether each register would load the value that it already has, for each microinstruction.
     reloads: Vec<Vec<bool>>,
     windows: Windows<'a>,
 }
 
 impl<'a> Prover<'a> {
-    /// Returns `None` for a design with a combinational loop.
+    /// Prepares the proofs for `design`. Returns `None` for a design with a combinational loop.
     pub(super) fn new(design: &'a Design) -> Option<Self> {
         let length = count(design);
         let compared = compared_bits(design, length);
@@ -54,7 +54,7 @@ impl<'a> Prover<'a> {
         Some(Self { nets, order, following, compared, reloads, windows: Windows::of(design)? })
     }
 
-    /// Returns the method that proves the fault at `site` equivalent, if one does.
+    /// Returns the method that proves the fault at `site` equivalent, or `None` if neither method does.
     pub(super) fn proves(&self, site: &Site) -> Option<How> {
         if self.by_induction(site) {
             Some(How::Induction)
@@ -65,7 +65,7 @@ impl<'a> Prover<'a> {
         }
     }
 
-    /// A fault that changes a reset is never proved by induction.
+    /// Returns whether the induction proves the fault equivalent; never for a fault that changes a reset.
     fn by_induction(&self, site: &Site) -> bool {
         if self.changes_reset(site) {
             return false;
@@ -103,7 +103,7 @@ impl<'a> Prover<'a> {
         true
     }
 
-    /// The effect of a reset is no part of the proof.
+    /// Returns whether the fault changes a reset's effect, which the induction does not model.
     fn changes_reset(&self, site: &Site) -> bool {
         let design = self.order.design;
         match site {
@@ -124,8 +124,8 @@ impl<'a> Prover<'a> {
     }
 }
 
-/// Returns, for each microinstruction (in a pipeline, for each slot), a mask for each net of the bits that are compared.
-/// Outputs and predicted registers are always compared, and a checkpoint in the slot in which its stage can hold a point.
+/// Returns, for each microinstruction or slot, a mask of the compared bits of each net. Outputs and predicted registers are
+/// always compared. A checkpoint is compared in the slot in which its stage can hold a point.
 fn compared_bits(design: &Design, length: usize) -> Vec<Vec<u64>> {
     let mut always: Vec<NetId> = design.outputs().map(|port| port.net).collect();
     for register in &design.registers {
@@ -149,8 +149,8 @@ fn compared_bits(design: &Design, length: usize) -> Vec<Vec<u64>> {
     compared
 }
 
-/// Returns, for each microinstruction, the state before it, with all values that are possible from power-up on. A
-/// microinstruction that the design never reaches has none.
+/// Returns the state before each microinstruction, with all values that are possible from power-up on; `None` for a
+/// microinstruction that the design never reaches.
 fn reached_states(order: &Order, following: &[Vec<usize>]) -> Vec<Option<PairState>> {
     let design = order.design;
     let mut reached: Vec<Option<PairState>> = vec![None; following.len()];
@@ -179,7 +179,7 @@ fn reached_states(order: &Order, following: &[Vec<usize>]) -> Vec<Option<PairSta
     reached
 }
 
-/// Returns the union of two states: each bit may have a value of either.
+/// Returns the union of two states: each bit may have its values from `one` and from `other`.
 fn join(one: &PairState, other: &PairState) -> PairState {
     one.iter().zip(other).map(|(one, other)| one.or(*other)).collect()
 }

@@ -1,6 +1,6 @@
-//! Tracks the pairs of values that each bit of a net can have, through each kind of cell. A pair has the values in the
-//! fault-free design and in the mutant. If an output bit can only have equal pairs, the fault does not reach it. For example,
-//! an AND with a bit that is 0 in both designs gives 0 in both.
+//! Tracks which pairs of values each bit of a net can have, through each kind of cell. A pair has the values in the fault-free
+//! design and in the mutant. If an output bit can only have equal pairs, the fault does not reach it. For example, an AND with a
+//! bit that is 0 in both designs gives 0 in both.
 
 use std::array::from_fn;
 
@@ -9,9 +9,9 @@ use glint_base::fixed::{Format, mask};
 use glint_base::interval::Interval;
 use glint_rtl::netlist::{Design, Driver, NetId, Op};
 
-/// For each bit of a net, the possible pairs (fault-free bit, mutant's bit). The four masks are the bits that can be 0 in
-/// both, 1 in the fault-free design alone, 1 in the mutant alone, and 1 in both. The number of a pair is the fault-free bit
-/// plus twice the mutant's bit, so that an operation on bits is the same operation on numbers of pairs.
+/// The possible pairs (fault-free bit, mutant's bit) for each bit of a net. The four masks are the bits that can be 0 in both
+/// designs, 1 in the fault-free design alone, 1 in the mutant alone, and 1 in both. The number of a pair is the fault-free bit
+/// plus twice the mutant's bit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Pairs([u64; 4]);
 
@@ -20,13 +20,13 @@ impl Pairs {
         Self([!bits & mask(width), 0, 0, bits & mask(width)])
     }
 
-    /// The net may carry any value, the same in both designs.
+    /// Returns the pairs of a net with any value, the same in both designs.
     pub(super) fn same(width: u32) -> Self {
         Self([mask(width), 0, 0, mask(width)])
     }
 
-    /// The net has the same value from `low` to `high` in both designs. For example, the interval from 4 to 6 in 4 bits has
-    /// bit 2 at 1 and bit 3 at 0. Bits 0 and 1 may have any value.
+    /// Returns the pairs of a net with a value from `low` to `high`, the same in both designs. For example, the interval from 4
+    /// to 6 in 4 bits has bit 2 at 1 and bit 3 at 0. Bits 0 and 1 may have any value.
     pub(super) fn of_interval((low, high): Interval, width: u32) -> Self {
         let (low, high) = (low as u64 & mask(width), high as u64 & mask(width));
         let differ = low ^ high;
@@ -35,12 +35,12 @@ impl Pairs {
         Self::constant(low, width).or(Self::same(width).cut(0, open))
     }
 
-    /// Returns the union: for each bit, the pairs that are possible in either.
+    /// Returns the union: for each bit, the pairs that are possible in `self` or `other`.
     pub(super) fn or(self, other: Self) -> Self {
         Self(from_fn(|pair| self.0[pair] | other.0[pair]))
     }
 
-    /// Returns the intersection: for each bit, the pairs that are possible in both.
+    /// Returns the intersection: for each bit, the pairs that are possible in `self` and `other`.
     pub(super) fn and(self, other: Self) -> Self {
         Self(from_fn(|pair| self.0[pair] & other.0[pair]))
     }
@@ -75,12 +75,12 @@ impl Pairs {
         self.0[1] | self.0[2]
     }
 
-    /// Returns a mask of the bits that can be 0, and of the bits that can be 1.
+    /// Returns masks of the bits that can be 0, and that can be 1, in the fault-free design.
     fn fault_free(self) -> [u64; 2] {
         [self.0[0] | self.0[2], self.0[1] | self.0[3]]
     }
 
-    /// Does the same as [`Pairs::fault_free`] for the mutant.
+    /// Returns masks of the bits that can be 0, and that can be 1, in the mutant.
     fn mutant(self) -> [u64; 2] {
         [self.0[0] | self.0[1], self.0[2] | self.0[3]]
     }
@@ -109,7 +109,8 @@ impl Pairs {
         (0..4).filter(move |&pair| self.0[pair] >> bit & 1 == 1)
     }
 
-    /// `result` computes the number of a pair from the numbers of the operands' pairs.
+    /// Combines the pairs of two operands bit by bit. `result` computes the number of a pair from the numbers of the operands'
+    /// pairs.
     fn bitwise(self, other: Self, result: impl Fn(usize, usize) -> usize) -> Self {
         let mut all = [0; 4];
         for (a, left) in self.0.into_iter().enumerate() {
@@ -121,8 +122,8 @@ impl Pairs {
     }
 
     /// Computes bit by bit, from the lowest of `width` bits up. In each bit, `step` takes a bit of each operand and the carry
-    /// from below (`from` at the lowest bit), and gives a bit of the result and the next carry. Returns the pairs of the
-    /// result and of the last carry.
+    /// from below (`from` at the lowest bit). It gives a bit of the result and the next carry. Returns the pairs of the result
+    /// and of the last carry.
     fn rippled(
         self,
         other: Self,
@@ -151,7 +152,7 @@ impl Pairs {
         self.rippled(other, width, carry, |a, b, c| (a ^ b ^ c, a & b | a & c | b & c)).0
     }
 
-    /// Returns the last carry of a fold from the lowest bit up. `from` is the first carry.
+    /// Returns the last carry of a chain from the lowest bit up. `from` is the first carry.
     fn folded(
         self,
         other: Self,
@@ -163,8 +164,8 @@ impl Pairs {
     }
 }
 
-/// Returns the pairs of the result of the cell `op`. `value` gives the pairs of an operand. `same` has, for each net, the
-/// first net with the same value in the fault-free design; the inputs of a mux need it.
+/// Returns the pairs of the result of the cell `op`. `value` gives an operand's pairs. `same` has, for each net, the first net
+/// with the same value in the fault-free design, which matters for a mux's inputs.
 pub(super) fn cell(
     design: &Design,
     op: &Op,
@@ -225,7 +226,7 @@ pub(super) fn cell(
 }
 
 /// Returns the pairs of a mux with a select of `lines` bits. Inputs with the same net have the same value in the fault-free
-/// design, so the mutant may select another of them without a difference.
+/// design, so the mutant may select any of them without a difference.
 pub(super) fn chosen(select: Pairs, lines: u32, inputs: &[(Pairs, NetId)]) -> Pairs {
     let input = |number: u64| inputs[(number as usize).min(inputs.len() - 1)];
     let mut all = Pairs([0; 4]);
@@ -257,8 +258,8 @@ pub(super) fn choices(select: Pairs, lines: u32, inputs: &[NetId]) -> impl Itera
     possible.map(|number: u64| inputs[(number as usize).min(inputs.len() - 1)])
 }
 
-/// Returns the known pairs of a product: leading zeros if it is unsigned, and trailing zeros. From the lowest bit that may
-/// differ in a factor on, any bit of the product may differ.
+/// Returns the known pairs of a product. Trailing zeros are known, and leading zeros if it is unsigned. From the lowest bit that
+/// may differ in a factor on, any bit of the product may differ.
 fn product(
     design: &Design,
     a: NetId,
@@ -291,7 +292,7 @@ fn product(
     Pairs([mask(width), differ, differ & ones, ones])
 }
 
-/// Returns a number that no value of the mutant exceeds, unless a value may be negative.
+/// Returns an upper limit of the mutant's value, or `None` if a value may be negative.
 fn largest_unsigned(format: Format, pairs: Pairs) -> Option<u128> {
     let [_, most] = pairs.mutant();
     let may_be_negative = format.signed && most >> (format.width() - 1) & 1 == 1;
@@ -303,12 +304,12 @@ fn trailing_zeros(pairs: Pairs, width: u32) -> u32 {
     ones.trailing_zeros().min(width)
 }
 
-/// If `a` and `b` are one net under different names, their product is a square.
+/// Returns whether `a` and `b` are one net under different names, so their product is a square.
 pub(super) fn square(design: &Design, a: NetId, b: NetId) -> bool {
     named(design, a) == named(design, b)
 }
 
-/// Follows cells that only rename a net.
+/// Returns the net that `net` renames, through any number of renamings.
 pub(super) fn named(design: &Design, mut net: NetId) -> NetId {
     while let Driver::Op(Op::Relabel(of)) = design.net(net).driver {
         net = of;

@@ -1,8 +1,8 @@
-//! Finds the microinstructions in which a register would load the value that it has already.
+//! Finds the microinstructions in which a register would load the value that it already has.
 //!
-//! For example, a register loads a product in one microinstruction, and nothing that the product depends on changes in the next
-//! two. In these two, it makes no difference whether the register loads again. A fault that makes it load is therefore equivalent.
-//! The analysis covers sequential designs; a pipeline has no such microinstructions.
+//! For example, a register loads a product in one microinstruction, and the factors do not change in the next two. In these two,
+//! a second load makes no difference. A fault that causes the load is therefore equivalent. The analysis covers sequential
+//! designs; a pipeline has no such microinstructions.
 
 use std::collections::BTreeSet;
 
@@ -17,9 +17,9 @@ enum Load {
     Possible,
 }
 
-/// A register or a synchronous ROM, with everything from which its next value is computed.
+/// A register or a synchronous ROM, with the sources of its next value.
 struct Holder {
-    /// `None` for a holder that takes a value in every clock.
+    /// The enable; `None` for a holder that takes a value in every clock.
     enable: Option<NetId>,
     /// The registers and synchronous ROMs from which the next value is computed.
     holders: BTreeSet<usize>,
@@ -29,7 +29,7 @@ struct Holder {
     reads_input: bool,
 }
 
-/// Returns for each microinstruction and each register whether the next value certainly equals the present one. `nets` has the
+/// Returns for each microinstruction and each register whether the next value certainly equals the present value. `nets` has the
 /// possible values of all nets in each microinstruction, and `following` the microinstructions that may follow.
 ///
 /// If the microprogram dispatches, each computation keeps to the microinstructions for one value of the selector. A register must
@@ -68,7 +68,7 @@ fn selector_values(design: &Design) -> usize {
     targets.unwrap_or(1)
 }
 
-/// Returns `following` without the microinstructions that are not executed if the selector has the value `selected`.
+/// Returns `following` without the microinstructions that no computation with the selector value `selected` executes.
 fn executed_following(
     design: &Design,
     following: &[Vec<usize>],
@@ -91,7 +91,7 @@ fn executed_following(
     of_value
 }
 
-/// Returns for each microinstruction and each holder whether the next value certainly equals the present one.
+/// Returns for each microinstruction and each holder whether the next value certainly equals the present value.
 fn facts(
     design: &Design,
     holders: &[Holder],
@@ -121,8 +121,8 @@ fn facts(
     facts
 }
 
-/// Returns whether everything from which the next value of `holder` is computed is the same in microinstruction `to` as in
-/// `at`, directly before it. `facts` says which holders would load the values that they have in `at`.
+/// Returns whether all sources of the next value of `holder` are the same in microinstruction `to` as in `at`, directly before
+/// it. `facts` says which holders would load the values that they have in `at`.
 fn follows(
     design: &Design,
     holders: &[Holder],
@@ -149,8 +149,7 @@ fn load(holder: &Holder, nets: &[Pairs]) -> Load {
     }
 }
 
-/// Returns the registers and then the ROMs. A ROM that is read in the same clock is among them too, and never changes by
-/// itself.
+/// Returns the registers and then the ROMs, including ROMs that are read in the same clock, which never change.
 fn holders(design: &Design) -> Vec<Holder> {
     let mut holders = Vec::new();
     for register in &design.registers {

@@ -1,7 +1,7 @@
-//! Evaluates one microinstruction on pairs of bits that may be unknown, for the proof by induction. It does so for the
-//! fault-free design alone, or for a mutant and the fault-free design together.
+//! Evaluates one microinstruction on pairs of bits that may be unknown, for the proof by induction. The evaluation covers the
+//! fault-free design alone, or together with a mutant.
 //!
-//! A pipeline has no microinstructions; each slot, a clock of the interval from one point to the next, counts as one.
+//! A pipeline has no microinstructions; each slot counts as one.
 
 use super::interval;
 use super::pairs::{self, Pairs};
@@ -15,15 +15,15 @@ pub(super) type PairState = Vec<Pairs>;
 /// A design, with the order in which its nets are evaluated for a proof about a fault.
 pub(super) struct Order<'a> {
     pub(super) design: &'a Design,
-    /// The nets in an order in which each comes after the nets that it reads.
+    /// The nets, each after the nets that it reads.
     order: Vec<NetId>,
-    /// For each net, the first net with the same driver, and so with the same value.
+    /// The first net with the same driver, and so with the same value, for each net.
     same: Vec<NetId>,
-    /// The register with the number of the microinstruction. A pipeline that takes a point every clock has none.
+    /// The register with the number of the microinstruction or slot; `None` for a pipeline that takes a point every clock.
     counter: Option<RegId>,
-    /// For a pipeline whose interval is longer than 1: the interval of raw values of each net over all slots.
+    /// The interval of raw values of each net over all slots, for a pipeline with an interval longer than 1.
     in_all_slots: Vec<Interval>,
-    /// For each ROM, for each bit, whether it can be 0 and 1 in some word.
+    /// For each ROM and each bit, whether the bit can be 0 and 1 in some word.
     words: Vec<Pairs>,
 }
 
@@ -31,7 +31,7 @@ pub(super) struct Order<'a> {
 pub(super) type Injected<'s> = (&'s Site, &'s [Pairs]);
 
 impl<'a> Order<'a> {
-    /// Returns `None` for a design with a combinational loop.
+    /// Prepares the evaluation. Returns `None` for a design with a combinational loop.
     pub(super) fn of(design: &'a Design) -> Option<Self> {
         let mut order = design.levelise().ok()?;
         let mut in_all_slots = Vec::new();
@@ -142,7 +142,7 @@ impl<'a> Order<'a> {
         nets
     }
 
-    /// Returns the pairs of net `id` if the mutant has another driver for it. `nets` are evaluated already.
+    /// Returns the pairs of net `id` if the mutant drives it by `driver`. `nets` has the pairs of earlier nets.
     fn replaced(&self, id: NetId, driver: &Driver, nets: &[Pairs], sound: &[Pairs]) -> Pairs {
         let design = self.design;
         let width = design.width(id);
@@ -160,7 +160,7 @@ impl<'a> Order<'a> {
         }
     }
 
-    /// A fault may change the address or the words.
+    /// Returns the pairs of a ROM's word. A fault may change the address or the words.
     fn read(&self, id: RomId, nets: &[Pairs], fault: Option<Injected>) -> Pairs {
         let rom = self.design.rom(id);
         let width = self.design.width(rom.data);
@@ -257,7 +257,8 @@ impl<'a> Order<'a> {
     }
 }
 
-/// Returns the net whose value a driver passes on: the input of a renaming, or the one input that a mux can select.
+/// Returns the net that `driver` passes on: the input of a renaming, or the only input that a mux can select. Returns `None` for
+/// other drivers.
 fn taken(design: &Design, driver: &Driver, value: &impl Fn(NetId) -> Pairs) -> Option<NetId> {
     match driver {
         Driver::Op(Op::Relabel(a)) => Some(*a),
@@ -270,7 +271,7 @@ fn taken(design: &Design, driver: &Driver, value: &impl Fn(NetId) -> Pairs) -> O
     }
 }
 
-/// Counts microinstructions, or the slots of a pipeline.
+/// Returns the number of microinstructions, or of slots of a pipeline.
 pub(super) fn count(design: &Design) -> usize {
     match &design.pipeline {
         Some(pipeline) => pipeline.interval,
@@ -278,8 +279,8 @@ pub(super) fn count(design: &Design) -> usize {
     }
 }
 
-/// Returns the microinstructions that may follow microinstruction `at`, in ascending order. A reset leads to microinstruction
-/// 0 from any. A pipeline stays in a slot while it waits.
+/// Returns the microinstructions or slots that may follow number `at`, in ascending order. A reset leads to number 0. A pipeline
+/// stays in a slot while it waits.
 pub(super) fn following(design: &Design, at: usize) -> Vec<usize> {
     let mut following = vec![0];
     match &design.pipeline {

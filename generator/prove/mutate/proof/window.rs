@@ -21,7 +21,6 @@ use glint_rtl::netlist::{Design, Driver, NetId, Op, RomId, eval};
 /// The number of combinations that are evaluated together, each in a lane.
 const LANES: usize = 128;
 
-/// The bit patterns of a net in all lanes.
 type NetLanes = [u64; LANES];
 
 /// The lanes of nets. For a mutant, only nets that the fault may change have lanes.
@@ -30,8 +29,8 @@ type LanesByNet = Vec<Option<Box<NetLanes>>>;
 /// The largest number of combinations that are tried, as a power of two.
 const BITS: u32 = 22;
 
-/// The distance between the chunks of combinations that are tried one after the other. It is prime, so that all chunks are
-/// tried, and large, because neighbouring combinations tend to give the same answer.
+/// The distance between chunks of combinations that are tried one after the other. It is prime, so all chunks are tried, and
+/// large, because neighbouring combinations tend to give the same answer.
 const STRIDE: u64 = 40_009;
 
 /// A prover for one design that tries every combination of values in a window, a small part of the netlist around a fault.
@@ -40,18 +39,17 @@ pub(super) struct Windows<'a> {
     order: Vec<NetId>,
     intervals: Vec<Interval>,
     readers: Vec<Vec<NetId>>,
-    /// For each net, whether anything but a cell reads it: a register, a ROM, a port, or the comparison with the golden model.
+    /// Whether a net has a reader besides cells: a register, a ROM, a port, or the comparison with the golden model.
     sinks: Vec<bool>,
     multiplied: Vec<bool>,
-    /// For each net of a multiplier that several products share, its copies: one net for each product.
+    /// The copies of each net of a multiplier that several products share: one net for each product.
     copies: BTreeMap<NetId, Vec<NetId>>,
-    /// For each ROM, the addresses of the words that may be read, once they are computed; `None` inside for too many
-    /// combinations.
+    /// The addresses of each ROM's words that may be read, once they are computed; `None` inside for too many combinations.
     read: Vec<OnceLock<Option<BTreeSet<u64>>>>,
 }
 
 impl<'a> Windows<'a> {
-    /// Returns `None` for a design with a combinational loop.
+    /// Prepares the proofs for `design`. Returns `None` for a design with a combinational loop.
     pub(super) fn of(design: &'a Design) -> Option<Self> {
         let (design, copies) = match &design.pipeline {
             Some(pipeline) => {
@@ -102,9 +100,9 @@ impl<'a> Windows<'a> {
         })
     }
 
-    /// Returns whether no combination of values in a window lets the fault change a value outside. A fault in a register, an
-    /// input, an enable, a reset or the control ROM is never proved here; a fault in words of another ROM that are never read
-    /// always is.
+    /// Returns whether, for every combination of values in a window, the fault changes no value outside. A fault in a register,
+    /// an input, an enable, a reset or the control ROM is never proved here. A fault in words of another ROM is always proved if
+    /// the words are never read.
     pub(super) fn proves(&self, site: &Site) -> bool {
         match site {
             Site::Words(rom, words) if *rom != self.design.control.rom => {
@@ -125,7 +123,7 @@ impl<'a> Windows<'a> {
         }
     }
 
-    /// Returns whether one of these words of a ROM, given with their addresses, may be read, as far as this can be decided.
+    /// Returns whether one of `words`, given with their addresses, may be read. Returns true if this cannot be decided.
     fn reads_any(&self, rom: RomId, words: &[(usize, u64)]) -> bool {
         let known = &self.read[rom.index()];
         // The addresses are computed outside `get_or_init`, which would make other threads wait. Two threads may compute them
@@ -143,7 +141,7 @@ impl<'a> Windows<'a> {
         }
     }
 
-    /// Returns `None` if there are too many combinations to try.
+    /// Returns the addresses at which `rom` may be read, or `None` if there are too many combinations to try.
     fn words_read(&self, rom: RomId) -> Option<BTreeSet<u64>> {
         let address = self.design.rom(rom).address;
         let read = Mutex::new(BTreeSet::new());
@@ -162,7 +160,7 @@ impl<'a> Windows<'a> {
         [false, true].into_iter().any(|through| self.stays_within(net, site, through, &mut tried))
     }
 
-    /// Tries windows of growing size: the nets that `net` reaches within 0, 1, 2, … cells, except windows in `tried`. With
+    /// Tries windows of growing size, except windows in `tried`: the nets that `net` reaches within 0, 1, 2, … cells. With
     /// `through`, a window reaches through multipliers.
     fn stays_within(
         &self,
@@ -220,8 +218,8 @@ impl<'a> Windows<'a> {
         matches!(self.design.net(net).driver, Driver::Op(Op::Mul(..)))
     }
 
-    /// Evaluates the nets `wanted`, without and with the fault, for every combination of the values that determine them, on
-    /// nets outside `affected`. `holds` gets the lanes without and with the fault, and the number of lanes that count. Returns
+    /// Evaluates the nets `wanted`, without and with the fault, for every combination of values on a cut outside `affected` that
+    /// determines these nets. `holds` gets the lanes without and with the fault, and the number of lanes that count. Returns
     /// whether `holds` always returned true, or `None` if there are too many combinations.
     fn try_all(
         &self,
@@ -279,7 +277,7 @@ impl<'a> Windows<'a> {
         Some(all.all(|holds| holds))
     }
 
-    /// For the output of a ROM with faulty `words`, only these words count.
+    /// Returns the number of values of `net` to try. For the output of a ROM with faulty `words`, only these words count.
     fn count_values(&self, net: NetId, words: Option<FaultyWords>) -> i128 {
         match words {
             Some(words) if words.net == net => words.faulty.len() as i128,
@@ -290,7 +288,7 @@ impl<'a> Windows<'a> {
         }
     }
 
-    /// Returns the nets in the order of evaluation, including `wanted`.
+    /// Returns the nets between `cut` and `wanted`, with `wanted`, in the order of evaluation.
     fn cells_behind(&self, cut: &BTreeSet<NetId>, wanted: &BTreeSet<NetId>) -> Vec<NetId> {
         let mut behind = BTreeSet::new();
         let mut todo: Vec<NetId> = wanted.iter().copied().collect();
@@ -302,8 +300,8 @@ impl<'a> Windows<'a> {
         self.order.iter().copied().filter(|net| behind.contains(net)).collect()
     }
 
-    /// Writes the combinations from number `from` on into the lanes of the nets of the cut. The first net of the cut changes
-    /// from lane to lane, like the last digit of a number.
+    /// Writes the combinations from number `from` on into the lanes of the cut's nets. The first net of the cut changes from lane
+    /// to lane, like the last digit of a number.
     fn put_combinations(
         &self,
         from: u64,
@@ -358,8 +356,7 @@ impl<'a> Windows<'a> {
         }
     }
 
-    /// Returns the lanes of a net with the driver `driver`. An operand has the mutant's lanes if it has any, and otherwise the
-    /// lanes of the fault-free design.
+    /// Returns the lanes of a net with the driver `driver`. An operand has the mutant's lanes, or else of the fault-free design.
     fn evaluate(
         &self,
         net: NetId,
@@ -389,8 +386,7 @@ struct FaultyWords<'s> {
     faulty: &'s [(usize, u64)],
 }
 
-/// Returns whether the faulty driver of a net reads only nets of the cut and nets that are evaluated earlier. A fault may
-/// replace an operand by a net that the window does not contain.
+/// Returns whether the faulty driver of a net reads only nets of the cut and nets that are evaluated earlier.
 fn reads_known_nets(net: NetId, site: &Site, cut: &BTreeSet<NetId>, steps: &[NetId]) -> bool {
     let Site::Driver(_, Driver::Op(op)) = site else { return true };
     let end = steps.iter().position(|step| *step == net).unwrap_or(steps.len());
@@ -405,7 +401,7 @@ fn put(values: &mut LanesByNet, net: NetId, lanes: NetLanes) {
     }
 }
 
-/// Returns the mutant's own lanes of a net if it has them, else the lanes of the fault-free design.
+/// Returns the lanes of `net` in the mutant, or else in the fault-free design.
 fn lanes_of<'v>(sound: &'v LanesByNet, mutant: Option<&'v LanesByNet>, net: NetId) -> &'v NetLanes {
     if let Some(mutant) = mutant
         && let Some(lanes) = &mutant[net.index()]

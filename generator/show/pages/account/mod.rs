@@ -1,6 +1,4 @@
 //! Writes the tables and sentences that describe a configuration, for pages in Markdown and in HTML.
-//!
-//! The text of cells and sentences is plain, with names in backquotes, which each page format converts.
 
 pub mod blocks;
 mod table;
@@ -18,11 +16,11 @@ use glint_rtl::netlist::{Design, Pipeline};
 use glint_rtl::verilog::naming::Naming;
 pub use table::{Align, Column, TextTable, code};
 
-/// The heading of the column with the numbers in the figure of the source document.
+/// The heading of the column with the numbers in the source document's figure.
 const NUMBER: &str = "no.";
 
 pub struct PageInputs<'a> {
-    /// The path as the user gave it: `configs/<name>.toml`.
+    /// The path that the user gave, for example `configs/<name>.toml`.
     pub path: &'a str,
     pub config: &'a Config,
     pub schema: &'a Schema,
@@ -32,20 +30,22 @@ pub struct PageInputs<'a> {
     pub advice: Option<Advice>,
     pub timing: &'a HandshakeTiming,
     pub example: &'a WorkedExample,
-    /// The clocks of a line, for a device that computes several points after one `start`.
+    /// A line's clocks, for a device that computes several points after one `start`.
     pub line: Option<&'a LineClocks>,
 }
 
-/// The largest number of combinations for which an exhaustive check of a highlight takes minutes: some 30 ns for each.
+/// The largest number of combinations for which an exhaustive check of a highlight takes only minutes. A combination takes some
+/// 30 ns.
 const MOST_OF_F: u64 = 1 << 34;
 
-/// The largest number of combinations for which an exhaustive check of any other device takes minutes: some µs for each.
+/// The largest number of combinations for which an exhaustive check of any other device takes only minutes. A combination takes
+/// some µs.
 const MOST_OF_OUTPUTS: u64 = 1 << 28;
 
 pub const FORMATS: &str = "Formats: `uI.F` is unsigned, `sI.F` two's complement, with I integer bits (a sign bit apart) \
                            and F fraction bits; the value of a signal is its integer times 2⁻ᶠ.";
 
-/// Says whether the figure of the source document, such as a patent, numbers the blocks.
+/// Says whether the source document's figure, such as a patent, numbers the blocks.
 pub fn numbering(design: &Design) -> &'static str {
     if design.nets.iter().any(|net| net.block.is_some()) {
         "In order of their numbers in the source's figure; those without a number are ours."
@@ -54,7 +54,7 @@ pub fn numbering(design: &Design) -> &'static str {
     }
 }
 
-/// Returns for example `u0.8`; a single bit without a binary point gives `1 bit`.
+/// Returns a format as text, for example `u0.8`; a single bit gives `1 bit`.
 pub fn format_text(format: Format) -> String {
     match format.width() {
         1 => "1 bit".to_owned(),
@@ -156,8 +156,7 @@ fn number(number: Option<u16>) -> String {
     }
 }
 
-/// A write strobe is in the row of its operand: for example, the row of `exponent` has `exponent_write` in the column "written
-/// by".
+/// Lists the ports. A write strobe has no row of its own: the row of `exponent` has `exponent_write` in the column "written by".
 pub fn ports(design: &Design) -> TextTable {
     let mut table =
         TextTable::of("port | no.: | direction | role | format | written by | what it is");
@@ -218,13 +217,13 @@ pub fn roms(design: &Design, config: &Config) -> TextTable {
     table.without_empty(NUMBER)
 }
 
-/// Returns the numbers of control lines in the source's figure. For example, `30 31`.
+/// Returns the numbers of control lines in the source's figure, for example `30 31`.
 fn lines(lines: &[u16]) -> String {
     let numbers: Vec<String> = lines.iter().map(u16::to_string).collect();
     numbers.join(" ")
 }
 
-/// Lists the fields of the control word. The column "bits" has `4:2` for a field of three bits from bit 2 on.
+/// Lists the control word's fields. The column "bits" has `4:2` for a field of three bits from bit 2 on.
 pub fn fields(design: &Design) -> TextTable {
     let mut table = TextTable::of("field | lines | bits | controls");
     for field in facts::fields(design) {
@@ -250,8 +249,8 @@ pub fn fields(design: &Design) -> TextTable {
     table.without_empty("lines")
 }
 
-/// The table has the form of the source patents: a row for each microinstruction, and a column for each field of the control
-/// word. A cell has the bits of the field, for example `0 1`.
+/// Lists the microprogram in the form of the source patents: a row for each microinstruction, and a column for each field of the
+/// control word.
 pub fn microprogram(design: &Design) -> TextTable {
     let fields = facts::fields(design);
     let mut headings = String::new();
@@ -290,8 +289,8 @@ pub fn microprogram(design: &Design) -> TextTable {
     table
 }
 
-/// Clocks are counted from the clock that takes `start`. If a clock depends on the length of a line, the table has a formula;
-/// if it depends on the function of a unit, a row for each function; if it depends on other operands, a remark.
+/// Lists a computation's clocks, counted from the clock that takes `start`. A clock may depend on the operands. The table then
+/// has a formula for the length of a line, a row for each function of a unit, or a remark.
 pub fn clocks(timing: &HandshakeTiming, line: Option<&LineClocks>, design: &Design) -> TextTable {
     let mut events: Vec<(&str, Option<u32>, Option<Linear>)> =
         vec![("`valid` is high, first", timing.start_to_valid, None)];
@@ -321,8 +320,7 @@ pub fn clocks(timing: &HandshakeTiming, line: Option<&LineClocks>, design: &Desi
     table
 }
 
-/// Returns sentences that state in which clocks a pipeline takes a point, and in which clocks its results are on the outputs.
-/// They mention `in_ready` and `out_ready` only if the pipeline can stall.
+/// Returns sentences about the clocks in which a pipeline takes a point, and in which its results are on the outputs.
 pub fn handshake(pipeline: &Pipeline) -> &'static str {
     if pipeline.stall {
         "A point is taken in each clock in which `in_valid` and `in_ready` are high: the operands of that clock are its \
@@ -334,7 +332,7 @@ pub fn handshake(pipeline: &Pipeline) -> &'static str {
     }
 }
 
-/// Clocks are counted from taking a point.
+/// Lists a pipeline's clocks, counted from the clock that takes a point.
 pub fn pipeline_clocks(pipeline: &Pipeline) -> TextTable {
     let mut table = TextTable::of("event | clock:");
     table.row(["the next point is taken".to_owned(), pipeline.interval.to_string()]);
@@ -362,8 +360,8 @@ pub fn terms(bounds: &Bounds) -> TextTable {
     table
 }
 
-/// Lists the parts of the computation, with the share of each in the error of each output and in the area. The last row has
-/// the sums of the area. Returns `None` if the contract does not know the parts.
+/// Lists the computation's operations, with the share of each in the error of each output and in the area. Returns `None` if the
+/// contract does not know the operations.
 pub fn parts(contract: &dyn Contract) -> Option<TextTable> {
     let parts = contract.parts();
     if parts.is_empty() {
@@ -436,7 +434,8 @@ pub fn example(contract: &dyn Contract, example: &WorkedExample) -> TextTable {
     table
 }
 
-/// Keys that every device has are listed only if they are not at their defaults. A key that does not apply has the value `–`.
+/// Lists the keys and their values. Keys that every device has are listed only if they are not at their defaults. A key that does
+/// not apply has the value `–`.
 pub fn keys(schema: &Schema, config: &Config) -> TextTable {
     let mut table = TextTable::of("key | value | accepts | what it governs");
     let mut keys: Vec<&Key> = schema.keys.iter().collect();
@@ -463,7 +462,7 @@ pub fn keys(schema: &Schema, config: &Config) -> TextTable {
     table
 }
 
-/// Cuts a text after 520 characters, and adds its number of characters.
+/// Cuts a text after 520 characters, and adds the number of characters of the whole text.
 fn shortened(text: String) -> String {
     const ROOM: usize = 520;
     match text.char_indices().nth(ROOM) {
@@ -472,7 +471,7 @@ fn shortened(text: String) -> String {
     }
 }
 
-/// Writes six decimals, without trailing zeros. For example, `0.866026`, `-0.25` and `1000`.
+/// Writes a value with six decimals, without trailing zeros, for example `0.866026`, `-0.25` and `1000`.
 pub fn short(value: f64) -> String {
     let text = format!("{value:.6}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()

@@ -32,7 +32,7 @@ impl TextTable {
         Self { columns: headings.split(" | ").map(column).collect(), rows: Vec::new() }
     }
 
-    /// The row must have a cell for each column.
+    /// Adds a row, which must have a cell for each column.
     pub fn row(&mut self, cells: impl IntoIterator<Item = String>) {
         self.rows.push(cells.into_iter().collect());
     }
@@ -54,7 +54,7 @@ impl TextTable {
     }
 }
 
-/// An empty text stays empty.
+/// Puts `text` between backquotes. An empty text stays empty.
 pub fn code(text: &str) -> String {
     match text {
         "" => String::new(),

@@ -5,12 +5,12 @@ use super::table::TableView;
 use crate::figures::{Figures, Frequency, Rate, SynthesisRecord};
 use crate::pages::account::TextTable;
 
-/// The table has this text if the target has no such resource, or if nothing was measured.
+/// A cell's text if the target has no such resource, or if nothing was measured.
 const NONE: &str = "–";
 
 pub struct RecordView {
     pub table: TableView,
-    /// The name of each timed chip or cell library, and its longest path as text.
+    /// The name of each chip or cell library with a frequency, and its longest path as text.
     pub paths: Vec<(String, String)>,
     /// The chips on which no frequency was measured, with the reason.
     pub untimed: Vec<(String, String)>,
@@ -18,7 +18,7 @@ pub struct RecordView {
 }
 
 impl RecordView {
-    /// The row of the target named `target` comes first, if the record has it.
+    /// Makes the tables. The row of the target named `target` comes first, if the record has it.
     pub fn new(record: &SynthesisRecord, target: Option<&str>) -> Self {
         let mut measured: Vec<&Figures> = record.targets.iter().collect();
         measured.sort_by_key(|figures| Some(figures.target.name()) != target);
@@ -41,9 +41,8 @@ impl RecordView {
     }
 }
 
-/// Returns the measurement for the summary at the head of the datasheet. It is for the FPGA `target` if the record has it, and
-/// otherwise for the FPGA with the most points per second. A pipeline for ECP5 thus shows its numbers on ECP5, even if another
-/// FPGA is faster.
+/// Returns the measurement for the summary at the datasheet's head. It is for the FPGA `target` if the record has it, and
+/// otherwise for the FPGA with the most points per second.
 pub fn leading<'r>(
     record: &'r SynthesisRecord,
     target: Option<&str>,

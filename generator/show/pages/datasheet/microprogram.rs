@@ -1,5 +1,5 @@
-//! Makes the datasheet's table of the microprogram in the form that the patents use. It has a row for each microinstruction
-//! and a column for each control line.
+//! Makes the datasheet's table of the microprogram in the form of the patents: a row for each microinstruction, and a column for
+//! each control line.
 
 use crate::pages::account;
 use crate::pages::markup::html;
@@ -16,8 +16,8 @@ pub struct Microprogram {
 
 pub struct FieldView {
     pub name: String,
-    /// For each control line, its number in the source's figure. If the figure numbers no line of any field, it is the bit in
-    /// the control word. If the figure numbers only other fields, it is `–`.
+    /// A label for each control line: its number in the source's figure. If the figure numbers no line of any field, it is the
+    /// bit in the control word. If the figure numbers only other fields, it is `–`.
     pub lines: Vec<String>,
 }
 
@@ -27,7 +27,7 @@ pub struct MicroinstructionRow {
     /// For each line: whether a field begins here, whether it is 1, and the meaning of the field's value. For example, the
     /// value 2 of a field of two bits has a line with `(true, true, …)` and a line with `(false, false, …)`.
     pub bits: Vec<(bool, bool, String)>,
-    /// The microinstruction that follows, as HTML.
+    /// The next microinstruction, as HTML.
     pub then: String,
 }
 

@@ -1,8 +1,6 @@
-//! Makes the datasheet of a configuration: one HTML page, like a vendor's product guide, that needs no other file and no
-//! network.
+//! Makes a configuration's datasheet: one HTML page, like a vendor's product guide, that needs no other file and no network.
 //!
 //! All content comes from the configuration, the netlist, the golden model, the contract, simulation, synthesis and records.
-//! No code here depends on the name of a device.
 
 mod measured;
 mod microprogram;
@@ -26,7 +24,7 @@ use glint_core::cosim::exhaustive::{Backing, Record};
 use glint_core::package::{HandshakeTiming, LineClocks, WorkedExample};
 use waves::Waves;
 
-/// The width and the height of the picture of a highlight, in pixels.
+/// The width and the height of a highlight's picture, in pixels.
 const SIDE: u32 = 260;
 
 /// The number of samples along each side of a pixel of the picture.
@@ -34,12 +32,12 @@ const SAMPLES: u32 = 2;
 
 pub struct Subject<'a> {
     pub core: &'a Core,
-    /// The path as the user gave it. The page shows its label.
+    /// The path that the user gave. The page shows its label.
     pub path: &'a str,
     pub backing: Backing,
     pub proof: Option<Record>,
     pub figures: Option<figures::SynthesisRecord>,
-    /// The tool that counts the core's cells if there is no record. Without record and tool, the page explains how to
+    /// The tool that counts the core's cells if there is no record. With neither record nor tool, the page explains how to
     /// synthesise the core.
     pub synthesis: Option<&'a dyn Synthesis>,
 }
@@ -51,16 +49,16 @@ pub struct Datasheet {
     pub wavedrom: String,
 }
 
-/// The results for a page that simulation, rendering, measurement or synthesis must compute.
+/// The results for a page that need simulation, rendering, measurement or synthesis.
 struct DatasheetResults {
     timing: HandshakeTiming,
     example: WorkedExample,
     line: Option<LineClocks>,
     waves: Waves,
     curves: DeviceCurves,
-    /// The charts of a function of one operand; empty for other devices.
+    /// The charts of a function of one operand; empty for all other devices.
     over_domain: Vec<Chart>,
-    /// The picture of a highlight; `None` if a scene cannot supply the operands of the device.
+    /// A highlight's picture; `None` if a scene cannot supply the device's operands.
     highlight: Option<HighlightPicture>,
     synthesis: Option<(String, Vec<FamilyUsage>)>,
 }
@@ -79,15 +77,16 @@ struct HighlightPicture {
     gain: u8,
 }
 
-/// Returns the number of calls of `done` by [`datasheet`]. For example, without synthesis it is 26: 25 times for the curves
+/// Returns the number of times that [`datasheet`] calls `done`. For example, without synthesis it is 26: 25 times for the curves
 /// and once for the picture.
 pub fn steps(synthesis: bool) -> usize {
     curves::STEPS + 1 + if synthesis { COMPARED.len() } else { 0 }
 }
 
-/// The function calls `done` after each step of work, so that a caller can show progress.
+/// Makes the datasheet.
 ///
 /// # Errors
+///
 /// Fails if a simulated computation of the device never ends, if synthesis fails, or if a picture or a chart cannot be drawn.
 pub fn datasheet(subject: &Subject, done: &(dyn Fn() + Sync)) -> Result<Datasheet> {
     let core = subject.core;
@@ -119,16 +118,17 @@ pub fn datasheet(subject: &Subject, done: &(dyn Fn() + Sync)) -> Result<Datashee
     Ok(Datasheet { page: page::page(subject, &measured)?, wavedrom: measured.waves.wavedrom()? })
 }
 
-/// Returns the SVG file, and a description of the diagram in words.
+/// Returns the timing diagram as an SVG file, and a description of the diagram in words.
 ///
 /// # Errors
+///
 /// Fails if a simulated computation of the device never ends.
 pub fn timing_diagram(core: &Core) -> Result<(String, String)> {
     let waves = Waves::record(core)?;
     Ok((timing::drawing(&waves).file()?, waves.described()))
 }
 
-/// Renders a ball in the two default lights, through the golden model and with Blinn's function.
+/// Renders a ball in the two default lights, with the golden model and with Blinn's function.
 fn highlight(core: &Core) -> Result<HighlightPicture> {
     let contract = core.contract.as_ref();
     let exponent = render::usual_exponent(contract);

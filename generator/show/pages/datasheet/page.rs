@@ -99,7 +99,7 @@ impl ControlSection {
 struct ProofView {
     holds: bool,
     evaluations: String,
-    /// `None` if nothing multiplies colours.
+    /// The number of colour products; `None` if nothing multiplies colours.
     products: Option<String>,
     /// The largest errors that the check found, in words.
     found: String,
@@ -113,7 +113,7 @@ struct HighlightView {
     gain: u8,
 }
 
-/// Fails if a chart cannot be plotted, or if a template cannot be printed.
+/// Prints the page. Fails if a chart cannot be plotted, or if a template cannot be printed.
 pub fn page(subject: &Subject, measured: &DatasheetResults) -> Result<String> {
     let core = subject.core;
     let path = &input::label(subject.path);
@@ -203,7 +203,7 @@ pub fn page(subject: &Subject, measured: &DatasheetResults) -> Result<String> {
     Ok(package::sealed(text, Seal::Markup))
 }
 
-/// The rows have the name of a quantity, and its value with the unit.
+/// Returns the summary's rows: a quantity's name, and its value with the unit.
 fn glance(subject: &Subject, measured: &DatasheetResults) -> Vec<(&'static str, String)> {
     let design = &subject.core.design;
     let contract = subject.core.contract.as_ref();
@@ -266,14 +266,14 @@ fn target(design: &Design) -> Option<&str> {
     design.pipeline.as_ref().map(|pipeline| pipeline.target.as_str())
 }
 
-/// Returns the cells on the FPGA family `target` if it is known, and otherwise on the first family.
+/// Returns the cells on the FPGA family `target` if they are known, and otherwise on the first family.
 fn first_usage<'u>(usage: &'u [FamilyUsage], target: Option<&str>) -> Option<&'u FamilyUsage> {
     let family = FAMILIES.iter().find(|family| Some(family.name()) == target);
     let on_target = usage.iter().find(|it| family.is_some_and(|own| own.title == it.family));
     on_target.or_else(|| usage.first())
 }
 
-/// Counts the multipliers of each size, the largest size first. For example, `21 × 10, 3 of 10 × 8`, or `none`.
+/// Returns the number of multipliers of each size, the largest size first, for example `21 × 10, 3 of 10 × 8`, or `none`.
 fn multipliers(design: &Design) -> String {
     let all = comparison::multipliers(design);
     let sizes = all.chunk_by(|a, b| a == b).map(|alike| {
@@ -289,7 +289,7 @@ fn multipliers(design: &Design) -> String {
     }
 }
 
-/// Returns `None` if no frequency was measured.
+/// Returns the points per second as text, or `None` if no frequency was measured.
 fn rate(subject: &Subject) -> Option<String> {
     let target = target(&subject.core.design);
     let (figures, frequency, rate) = measured::leading(subject.figures.as_ref()?, target)?;
@@ -322,7 +322,6 @@ fn throughput(subject: &Subject, timing: &HandshakeTiming) -> String {
     }
 }
 
-/// Puts narrow spaces, at which no line breaks, between thousands.
 fn grouped(number: u64) -> String {
     text::grouped(number).replace(' ', "\u{202f}")
 }

@@ -4,15 +4,15 @@
 use crate::pages::account::{Align, TextTable};
 use crate::pages::markup::html;
 
-/// The width of a phone in characters. On a phone, a wider table has its cells below each other.
+/// The width of a phone in characters. On a phone, a wider table shows the cells of a row below each other.
 const NARROW: usize = 36;
 
 pub struct TableView {
     /// A description for screen readers.
     pub label: &'static str,
-    /// Whether a narrow page shows the cells of a row below each other, for example because a cell has a sentence.
+    /// Whether a phone shows the cells of a row below each other, for example because a cell has a sentence.
     pub stacks: bool,
-    /// The class and the heading of each column.
+    /// The class and each column's heading.
     pub columns: Vec<(&'static str, String)>,
     pub rows: Vec<Vec<CellView>>,
 }
@@ -20,7 +20,7 @@ pub struct TableView {
 pub struct CellView {
     /// The class in the style sheet.
     pub class: &'static str,
-    /// The heading of its column, for a narrow page that has no room for columns.
+    /// The heading of the cell's column, for a phone, where the table has no columns.
     pub label: String,
     /// The contents as HTML.
     pub text: String,

@@ -21,16 +21,16 @@ const CLOCK: std::ops::RangeInclusive<i32> = 34..=104;
 /// The horizontal length of a slanted edge.
 const SLANT: i32 = 3;
 
-/// A frame with a value is wider than its text by this.
+/// The amount by which a frame is wider than the text in it.
 const MARGIN: i32 = 10;
 
-/// A page shows a drawing of this width without scrolling.
+/// The largest width of a drawing that a page shows without scrolling.
 const ROOM: i32 = 1120;
 
 /// The vertical distance between two strips of a waveform that is too wide for one strip.
 const APART: i32 = 22;
 
-/// A waveform that is too long for one strip continues in strips below.
+/// Draws the waveform. A waveform that is too long for one strip continues in strips below.
 pub fn drawing(waves: &Waves) -> Drawing {
     let widest = waves.lanes.iter().map(|lane| text_width(&label(lane)));
     let left = widest.max().unwrap_or(0) + 16;
@@ -56,7 +56,7 @@ pub fn drawing(waves: &Waves) -> Drawing {
     }
 }
 
-/// The number of the signal's block in the source's figure is added.
+/// Returns a signal's name, with the number of its block in the source's figure.
 fn label(lane: &Lane) -> String {
     match lane.number {
         Some(number) => format!("{} ({number})", lane.name),
@@ -64,8 +64,8 @@ fn label(lane: &Lane) -> String {
     }
 }
 
-/// Returns two widths for a clock, both limited to [`CLOCK`]. All texts fit with the first width, and with the second if the
-/// diagram shows addresses instead of the names of microinstructions.
+/// Returns two widths for a clock, both limited to [`CLOCK`]. With the first width, all texts fit. With the second, they fit if
+/// the diagram shows addresses instead of the names of microinstructions.
 fn clock_widths(waves: &Waves) -> [i32; 2] {
     let (mut with_names, mut with_addresses) = (0, 0);
     for lane in &waves.lanes {
@@ -85,8 +85,8 @@ fn clock_widths(waves: &Waves) -> [i32; 2] {
     [with_names, with_addresses].map(|width| width.clamp(*CLOCK.start(), *CLOCK.end()))
 }
 
-/// Returns the half-open ranges of positions in `places` over which a value stays the same. For example, the values 5, 5 and 6
-/// have the ranges from 0 to 2 and from 2 to 3.
+/// Returns the half-open ranges of positions in `places` over which the value stays the same. For example, the values 5, 5 and 6
+/// give the ranges from 0 to 2 and from 2 to 3.
 fn segments(lane: &Lane, places: Range<usize>) -> Vec<(usize, usize)> {
     let mut segments = Vec::new();
     let mut from = places.start;
@@ -98,8 +98,7 @@ fn segments(lane: &Lane, places: Range<usize>) -> Vec<(usize, usize)> {
     segments
 }
 
-/// A strip of the drawing: `places` are the indices of its clocks, `left` and `top` its position, and `clock` the width of a
-/// clock.
+/// A strip of the drawing: `places` are the indices of its clocks, `left` and `top` its position, and `clock` a clock's width.
 struct Grid<'a> {
     waves: &'a Waves,
     places: Range<usize>,
@@ -145,7 +144,7 @@ impl Grid<'_> {
         self.places.clone().filter(|&at| at > 0 && clocks[at] != clocks[at - 1] + 1)
     }
 
-    /// `top` is the vertical position of a high signal.
+    /// Draws a clock signal. `top` is the vertical position of a high level.
     fn clock(&self, top: i32) -> String {
         let low = top + SWING;
         let mut d = format!("M{} {low}", self.left);
@@ -156,7 +155,7 @@ impl Grid<'_> {
         d
     }
 
-    /// `top` is the vertical position of a high signal.
+    /// Draws a signal of one bit. `top` is the vertical position of a high level.
     fn bit(&self, lane: &Lane, top: i32) -> String {
         let mut d = String::new();
         for (from, to) in segments(lane, self.places.clone()) {

@@ -1,8 +1,8 @@
 //! Records the waveform of one computation, or of several points in a pipeline, with the built-in simulator.
 //!
-//! A waveform has a lane for the clock and for each recorded signal. In a core with a microprogram, these are the handshake,
-//! the microinstruction, the registers that change, and the results. In a pipeline, they are the handshake, the operands, the
-//! results and the status outputs. It can be written as JSON for the drawing tool WaveDrom.
+//! A waveform has a lane for the clock and for each recorded signal. In a core with a microprogram, these are the handshake, the
+//! microinstruction, the registers that change, and the results. In a pipeline, they are the handshake, the operands, the results
+//! and the status outputs. A waveform can be written as JSON for the drawing tool WaveDrom.
 
 use anyhow::Result;
 use serde_json::{Value, json};
@@ -14,13 +14,13 @@ use glint_core::cosim::trial;
 use glint_core::package::sealed_json;
 use glint_rtl::netlist::{Design, Driver, Handshake, NetId, Port, RegisterKind, Role};
 
-/// The diagram leaves out the middle of a computation with more clocks.
+/// The largest number of clocks that the diagram shows in full. It leaves out the middle of a longer computation.
 const MOST: usize = 40;
 
-/// The number of clocks that the diagram shows of the beginning of a long computation.
+/// The number of clocks at the beginning of a long computation that the diagram shows.
 const HEAD: usize = 24;
 
-/// The number of clocks that the diagram shows of the end of a long computation.
+/// The number of clocks at the end of a long computation that the diagram shows.
 const TAIL: usize = 8;
 
 pub const MICROINSTRUCTION: &str = "microinstruction";
@@ -38,7 +38,7 @@ pub struct Waves {
 
 pub struct Lane {
     pub name: String,
-    /// The number in the source's figure of the block that drives the signal.
+    /// The number of the block that drives the signal, in the source's figure.
     pub number: Option<u16>,
     pub shape: LaneStyle,
     /// The value in each shown clock; `None` while the signal has no meaning, such as a result before the first `valid`.
@@ -62,7 +62,7 @@ struct Probe {
 
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Meaning {
-    /// The signal has a known value from the start.
+    /// The signal has a known value from the first clock on.
     Control,
     /// The signal has no known value before it first changes.
     Register,
@@ -71,9 +71,10 @@ enum Meaning {
 }
 
 impl Waves {
-    /// Simulates the worked example. A pipeline gets several points one after another, and the first point is the example.
+    /// Simulates the worked example. A pipeline gets several points, one after another, beginning with the example.
     ///
     /// # Errors
+    ///
     /// Fails if a simulated computation of the device never ends.
     pub fn record(core: &Core) -> Result<Self> {
         match core.design.pipeline {
@@ -82,7 +83,7 @@ impl Waves {
         }
     }
 
-    /// The operands are shown while `in_valid` is 1, and the results while `out_valid` is 1.
+    /// Records points in a pipeline. The diagram shows operands while `in_valid` is 1, and results while `out_valid` is 1.
     fn points(core: &Core) -> Result<Self> {
         let design = &core.design;
         let groups: [&[Role]; 6] = [
@@ -158,14 +159,14 @@ impl Waves {
         Self { name: design.name.clone(), pipelined, what, clocks: shown, lanes }
     }
 
-    /// Returns the number of the first shown clock in which the signal `name` is 1.
+    /// Returns the number of the first shown clock in which the signal `name` is 1, or `None` without such a clock.
     pub fn first(&self, name: &str) -> Option<u32> {
         let lane = self.lanes.iter().find(|lane| lane.name == name)?;
         let at = lane.values.iter().position(|value| value.as_deref() == Some("1"))?;
         u32::try_from(self.clocks[at]).ok()
     }
 
-    /// Describes the diagram for readers who do not see it.
+    /// Describes the diagram in words, for example for a screen reader.
     pub fn described(&self) -> String {
         if self.pipelined {
             return format!(
@@ -186,7 +187,7 @@ impl Waves {
         )
     }
 
-    /// Returns the word `some` if the signal is 1 in no shown clock.
+    /// Returns the number of the first clock as text, or `some` if the signal is 1 in no shown clock.
     fn first_text(&self, name: &str) -> String {
         match self.first(name) {
             Some(clock) => clock.to_string(),
@@ -194,10 +195,11 @@ impl Waves {
         }
     }
 
-    /// Returns JSON that ends with a newline. For example, a bit that is 0 and 1, and after a gap 1 and 0, has the wave
-    /// `01|.0`.
+    /// Returns the waveform as JSON that ends with a newline. For example, a bit that is 0 and 1, and after a gap 1 and 0, has
+    /// the wave `01|.0`.
     ///
     /// # Errors
+    ///
     /// Fails only through a bug, not through anything that a user gives.
     pub fn wavedrom(&self) -> Result<String> {
         let signal: Vec<Value> = self.lanes.iter().map(|lane| self.signal(lane)).collect();
@@ -271,8 +273,8 @@ fn shape(format: Format) -> LaneStyle {
     if format.width() == 1 { LaneStyle::Bit } else { LaneStyle::Bus }
 }
 
-/// `bits` has the bit pattern of the net in each clock, and `valid` is the index of the first clock with results. A register
-/// that never changes has no lane.
+/// Returns a signal's lane. `bits` has the bit pattern of the net in each clock, and `valid` is the index of the first clock with
+/// results. Returns `None` for a register that never changes.
 fn lane(design: &Design, probe: &Probe, bits: &[u64], valid: usize) -> Option<Lane> {
     let net = design.net(probe.net);
     let known = match probe.kind {
@@ -294,7 +296,7 @@ fn lane(design: &Design, probe: &Probe, bits: &[u64], valid: usize) -> Option<La
     Some(Lane { name: net.name.clone(), number: net.block, shape: shape(net.format), values })
 }
 
-/// The values are, for example, `3 result` and `idle`.
+/// Returns the lane of the microinstructions, with values such as `3 result` and `idle`.
 fn microprogram_lane(design: &Design, addresses: &[u64], busy: &[u64]) -> Lane {
     let mut values = Vec::new();
     for (&address, &busy) in addresses.iter().zip(busy) {
@@ -308,7 +310,7 @@ fn microprogram_lane(design: &Design, addresses: &[u64], busy: &[u64]) -> Lane {
     Lane { name: MICROINSTRUCTION.to_owned(), number: None, shape: LaneStyle::Bus, values }
 }
 
-/// Rounds to five digits after the point.
+/// Returns the value of a bit pattern as text, with at most five digits after the point.
 fn text(format: Format, bits: u64) -> String {
     let value = format.to_f64(format.raw(bits));
     match format.frac {

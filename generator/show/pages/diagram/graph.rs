@@ -9,7 +9,7 @@ use glint_rtl::netlist::{Design, Driver, FieldId, NetId, Role, Sequence};
 
 pub struct DiagramGraph {
     pub boxes: Vec<DiagramBox>,
-    /// Each wire leads from the output of a box to one input of another.
+    /// The wires. Each leads from a box's output to one input of a box.
     pub wires: Vec<DiagramWire>,
     /// The number of stages; 0 for a design that is no pipeline.
     pub stages: usize,
@@ -18,11 +18,11 @@ pub struct DiagramGraph {
 #[derive(Default)]
 pub struct DiagramBox {
     pub form: BoxForm,
-    /// The number in the figure of the source document.
+    /// The number of the block in the source's figure.
     pub number: Option<u16>,
     pub name: String,
     pub caption: String,
-    /// Further names of the value at the output of the box. Only a pipeline has such names.
+    /// Additional names of the value at the box's output. Only a pipeline has such names.
     pub aliases: Vec<String>,
     /// The control lines of the block, by number or name; may be empty.
     pub control: String,
@@ -34,13 +34,13 @@ pub struct DiagramBox {
 
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum BoxForm {
-    /// An input port, at the top of the diagram.
+    /// An input port, at the diagram's top.
     Input,
-    /// An output port, at the bottom of the diagram.
+    /// An output port, at the diagram's bottom.
     Output,
     Control,
     Block(BlockKind),
-    /// Nothing is drawn: values only pass through the stage.
+    /// An empty stage: values only pass through, and nothing is drawn.
     #[default]
     Empty,
 }
@@ -87,7 +87,7 @@ struct GraphBuilder<'a> {
     design: &'a Design,
     blocks: Blocks<'a>,
     graph: DiagramGraph,
-    /// For each net at the output of a box, the index of the box.
+    /// The index of the box that drives each net.
     driver: HashMap<NetId, usize>,
 }
 
@@ -97,14 +97,14 @@ impl<'a> GraphBuilder<'a> {
         self.graph.boxes.len() - 1
     }
 
-    /// Adds nothing if no box drives the net.
+    /// Adds a wire from the box that drives `net` to the box `to`, or nothing without such a box.
     fn wire(&mut self, net: NetId, to: usize) {
         if let Some(&from) = self.driver.get(&net) {
             self.graph.wires.push(DiagramWire { from, to });
         }
     }
 
-    /// A constant gets a box of its own beside the box that takes it.
+    /// Adds a wire for an input of the box `to`. A constant gets a box of its own beside the box that reads it.
     fn takes(&mut self, net: NetId, to: usize) {
         if self.driver.contains_key(&net)
             || !matches!(self.design.net(net).driver, Driver::Constant(_))
@@ -122,7 +122,7 @@ impl<'a> GraphBuilder<'a> {
         self.graph.wires.push(DiagramWire { from, to });
     }
 
-    /// Adds an empty box to each stage without a block, so that the stage has a column in the diagram too.
+    /// Adds an empty box to each stage without a block, so the stage also has a column in the diagram.
     fn fill(&mut self) {
         for stage in 0..self.graph.stages {
             if self.graph.boxes.iter().all(|it| it.stage != Some(stage)) {
@@ -144,7 +144,7 @@ impl<'a> GraphBuilder<'a> {
         })
     }
 
-    /// Adds the number of clocks for which registers hold the value of `net`, if they hold it for two clocks or more. `stage`
+    /// Appends the number of clocks for which registers hold the value of `net` to `caption`, if it is at least two. `stage`
     /// computes the value. For example, `adder · u0.8 · held 3 clocks`.
     fn held(&self, caption: String, net: NetId, stage: usize) -> String {
         let Some(pipeline) = &self.design.pipeline else { return caption };
@@ -156,7 +156,7 @@ impl<'a> GraphBuilder<'a> {
         }
     }
 
-    /// Strobes get no port; they are drawn at the registers that they write.
+    /// Adds a box for each input port, except strobes, which are drawn at the registers that they write.
     fn inputs(&mut self) {
         for port in self.design.inputs() {
             if matches!(
@@ -169,7 +169,7 @@ impl<'a> GraphBuilder<'a> {
         }
     }
 
-    /// `in_ready` is left out, because it carries no data of a point.
+    /// Adds a box for each output port, except `in_ready`, which carries no data of a point.
     fn outputs(&mut self, control: Option<usize>) {
         for port in self.design.outputs().filter(|port| port.role != Role::InReady) {
             let at = self.port(port.net, BoxForm::Output);
@@ -207,7 +207,7 @@ impl<'a> GraphBuilder<'a> {
         at
     }
 
-    /// Adds a wire to the control unit from each block or port on which the order of the microinstructions depends.
+    /// Adds a wire to the control unit from each block or port on which a loop or a dispatch of the microprogram depends.
     fn conditions(&mut self, control: usize) {
         for microinstruction in &self.design.control.microprogram {
             let (Sequence::LoopWhile { condition: deciding, .. }
@@ -264,7 +264,7 @@ impl<'a> GraphBuilder<'a> {
         lines.join(" ")
     }
 
-    /// Returns the numbers in the source's figure, or the name of a field without numbers.
+    /// Returns the numbers of a field's control lines in the source's figure, or the name of a field without numbers.
     fn lines(&self, field: FieldId) -> String {
         let field = &self.design.control.fields[field.index()];
         let lines: Vec<String> = field.lines.iter().map(u16::to_string).collect();
@@ -272,7 +272,8 @@ impl<'a> GraphBuilder<'a> {
     }
 }
 
-/// An operand is called a register here, because the port above it shows that it is an operand. For example, `adder · u0.8`.
+/// Returns a block's caption, for example `adder · u0.8`. An operand is called a register, because the port above it shows that
+/// it is an operand.
 fn caption(block: &Block) -> String {
     match block.kind {
         BlockKind::Operand => format!("{} · {}", BlockKind::Register, block.format),
@@ -280,7 +281,7 @@ fn caption(block: &Block) -> String {
     }
 }
 
-/// Returns the tooltip. For example, `exponent, u10.0: specular exponent n`.
+/// Returns the tooltip, for example `exponent, u10.0: specular exponent n`.
 fn titled(name: &str, format: &str, doc: &str) -> String {
     match doc {
         "" => format!("{name}, {format}"),

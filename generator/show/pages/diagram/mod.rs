@@ -1,8 +1,8 @@
 //! Draws the block diagram of a core as SVG, with the blocks in columns from the inputs to the outputs.
 //!
-//! `place` assigns the blocks to columns from left to right, and `route` draws the wires. The finished diagram is turned, so that
-//! it reads from top to bottom: a datapath has more columns than blocks in one column, and the turned form fits a page. For a
-//! pipeline, each stage has a band, and a mark on a wire shows a register between two stages.
+//! `place` assigns the blocks to columns from left to right, and `route` draws the wires. The finished diagram is turned by 90°,
+//! so it reads from top to bottom. A datapath has more columns than blocks in one column, so the turned diagram fits a page. For
+//! a pipeline, each stage has a band, and a mark on a wire shows a register between two stages.
 
 mod graph;
 mod place;
@@ -24,7 +24,8 @@ const LINE: i32 = 14;
 /// The space above, and below, the text in a box.
 const PADDING: i32 = 6;
 
-/// The longest caption on one line, in characters. A longer one has a line for each of its parts, separated by ` · `.
+/// The length of the longest caption on one line, in characters. A longer caption has a line for each of its parts, which ` · `
+/// separates.
 const LONG: usize = 17;
 
 /// The smallest distance between two pins of a box.
@@ -45,7 +46,7 @@ const BORDER: i32 = 12;
 /// The width of the notes beside a stage.
 const ASIDE: i32 = 140;
 
-/// The distance from the boxes of a stage to the registers at its end.
+/// The distance from a stage's boxes to the registers at its end.
 const REGISTERS: f64 = 7.0;
 
 pub fn drawing(design: &Design) -> Drawing {
@@ -108,7 +109,7 @@ pub fn drawing(design: &Design) -> Drawing {
     }
 }
 
-/// Fails if the template cannot be printed.
+/// Returns the block diagram as an SVG file. Fails if the template cannot be printed.
 pub fn svg(design: &Design) -> Result<String> {
     drawing(design).file()
 }
@@ -139,12 +140,12 @@ impl Sizes {
         }
     }
 
-    /// Includes the lanes and the control arrow beside the box.
+    /// Returns the height of the box with the lanes and the control arrow beside it.
     fn all(&self) -> f64 {
         self.lanes + self.stub + self.height
     }
 
-    /// `middle` is the middle of the whole height.
+    /// Returns the box's position. `middle` is the middle of its whole height.
     fn body(&self, middle: f64) -> Body {
         let top = (middle - self.all() / 2.0).round();
         let upper = top + self.lanes + self.stub;
@@ -156,7 +157,7 @@ fn is_port(one: &DiagramBox) -> bool {
     matches!(one.form, BoxForm::Input | BoxForm::Output)
 }
 
-/// Returns the lines of text of a box, each with its class, the control lines last. For example, `15 difference`, `adder ·
+/// Returns the lines of text of a box, each with its class. The control lines come last. For example, `15 difference`, `adder ·
 /// u0.8` and `30`.
 fn lines(one: &DiagramBox) -> Vec<(&'static str, String)> {
     let head = match one.number {
@@ -184,25 +185,24 @@ fn bottom(bodies: &[Body], routes: &Routes) -> f64 {
     bodies.iter().map(|body| body.lower).fold(routes.bottom(), f64::max)
 }
 
-/// Rounds a coordinate of the layout, and adds the border.
 fn coordinate(value: f64) -> i32 {
     value.round() as i32 + BORDER
 }
 
-/// The area to the right of the notes on stages, which begins at `left`. Its methods append to `items`.
+/// The area to the right of the notes on stages. It begins at `left`, and its methods append to `items`.
 struct Page<'a> {
     left: i32,
     items: &'a mut Vec<Item>,
 }
 
 impl Page<'_> {
-    /// The page shows the layout turned.
+    /// Converts a point of the layout to the page, which shows the layout turned.
     fn point(&self, (x, y): (f64, f64)) -> String {
         format!("{} {}", self.left + coordinate(y), coordinate(x))
     }
 
-    /// Draws the stages of a pipeline: beside each a note with its delay, slack and register bits, at its end a line, and on
-    /// this line a mark for each wire that a register interrupts.
+    /// Draws a pipeline's stages. Beside a stage is a note with its delay, slack and register bits. At its end is a line, with a
+    /// mark for each wire that a register interrupts.
     fn stages(
         &mut self,
         pipeline: &Pipeline,
@@ -293,7 +293,7 @@ impl Page<'_> {
         items.push(Item::Open { class: "block", title: one.title.clone() });
         items.push(Item::path(class(one.form), outline(one.form, x, y, width, height)));
         if matches!(one.form, BoxForm::Block(BlockKind::Register | BlockKind::Operand)) {
-            // The mark of the clock.
+            // The clock's mark.
             let (right, edge) = (x + width, y + height);
             items.push(Item::path("notch", format!("M{right} {}l-6 -4l6 -4", edge - 3)));
         }
@@ -336,7 +336,7 @@ fn class(form: BoxForm) -> &'static str {
     }
 }
 
-/// Ports point in the direction of the signal, down the page; muxes narrow toward their output.
+/// Returns a box's outline. Ports point down the page, in the signal's direction; muxes narrow toward their output.
 fn outline(form: BoxForm, x: i32, y: i32, width: i32, height: i32) -> String {
     let (right, bottom, middle) = (x + width, y + height, x + width / 2);
     match form {

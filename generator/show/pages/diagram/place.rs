@@ -16,32 +16,30 @@ const BOXES: f64 = 12.0;
 /// The distance between two wires that pass a column.
 const WIRES: f64 = 8.0;
 
-/// The weight of a wire at a port. The layout keeps wires with a larger weight shorter.
+/// A wire's weight at a port. The layout keeps wires with a larger weight shorter.
 const PORT: i32 = 4;
 
-/// The weight of the edges that pull outputs to the end of the diagram. Inputs have no such edge: the layout places an input
-/// near the blocks that read it, so that no long wire passes all other blocks.
+/// The weight of the edges that pull outputs to the diagram's end.
 const LAST: i32 = 20;
 
-/// The node at the end of the diagram, to which edges pull the outputs. It is not drawn.
+/// The node at the diagram's end, which pulls the outputs. It is not drawn.
 const END: &str = "outputs";
 
-/// Columns are numbered from the left.
+/// The positions of boxes and wires. Columns are numbered from the left.
 pub struct Placement {
     pub column: Vec<usize>,
-    /// For each box, the vertical position of its middle.
+    /// The vertical position of each box's middle.
     pub middle: Vec<f64>,
     pub columns: usize,
-    /// For each wire, whether it leads back to a column further left.
+    /// Whether each wire leads back to an earlier column.
     pub back: Vec<bool>,
-    /// For each wire, the columns that it passes between its ends, with its vertical position in each, in the direction of the
-    /// wire.
+    /// The columns that each wire passes between its ends, with its vertical position in each, in the wire's direction.
     pub passes: Vec<Vec<(usize, f64)>>,
 }
 
 impl Placement {
-    /// `heights` are the heights of the boxes, and `back` marks the wires that lead back, as the function [`back`] does. The
-    /// function computes four layouts and takes the lowest one, because the turned diagram then has the smallest width.
+    /// Places the boxes. `heights` are the heights of the boxes, and `back` marks the wires that lead back ([`back`]). The lowest
+    /// of four layouts is taken, because the turned diagram then has the smallest width.
     pub fn new(graph: &DiagramGraph, heights: &[f64], back: &[bool]) -> Self {
         let variants = [
             (Ranker::NetworkSimplex, false),
@@ -65,8 +63,8 @@ impl Placement {
         bottom - top
     }
 
-    /// `ranker` is the algorithm that chooses columns. With `handshake`, the outputs of the handshake are at the end too;
-    /// otherwise they are placed where there is room.
+    /// Computes one layout. `ranker` is the algorithm that chooses columns. With `handshake`, the handshake's outputs are also at
+    /// the end; otherwise the layout chooses their places.
     fn variant(
         graph: &DiagramGraph,
         heights: &[f64],
@@ -163,8 +161,7 @@ fn is_port(graph: &DiagramGraph, at: usize) -> bool {
     matches!(graph.boxes[at].form, BoxForm::Input | BoxForm::Output)
 }
 
-/// Names a wire's ends and its edge in the layout. For a wire that leads back, the ends are swapped. Several wires from one
-/// box to another are one edge.
+/// Returns the names of a wire's ends and of its edge in the layout. For a wire that leads back, the ends are swapped.
 fn edge_names(graph: &DiagramGraph, back: &[bool], wire: usize) -> (String, String, String) {
     let DiagramWire { from, to } = graph.wires[wire];
     let (start, end) = if back[wire] { (to, from) } else { (from, to) };
@@ -176,8 +173,8 @@ fn nearest_column(columns: &[f64], x: f64) -> Option<usize> {
     columns.iter().position(|&column| (column - x).abs() < 1.5)
 }
 
-/// Adds two nodes around each stage that are not drawn, and edges from them to the boxes of the stage. All boxes of a column
-/// are then in the same stage.
+/// Adds two nodes around each stage, which are not drawn, and edges from them to the stage's boxes. All boxes of a column are
+/// then in the same stage.
 fn stages(graph: &DiagramGraph, layered: &mut Layered<NodeLabel, EdgeLabel>) {
     if graph.stages == 0 {
         return;
@@ -209,9 +206,9 @@ fn driven_by_control(graph: &DiagramGraph, output: usize) -> bool {
     drivers.any(|wire| graph.boxes[wire.from].form == BoxForm::Control)
 }
 
-/// Returns for each wire whether it leads back to an earlier column. Every loop has such a wire. If a loop has a mux, the
-/// marked wire ends at the mux, and at the one with the most inputs if it has several. For example, in an accumulator it is
-/// the wire from the register to the mux in front of the adder.
+/// Returns for each wire whether it leads back to an earlier column. Every loop has such a wire. If a loop has a mux, the wire
+/// ends at the mux with the most inputs. For example, in an accumulator it is the wire from the register to the mux in front of
+/// the adder.
 pub fn back(graph: &DiagramGraph) -> Vec<bool> {
     let mut order: Vec<usize> = (0..graph.wires.len()).collect();
     order.sort_by_key(|&wire| std::cmp::Reverse(back_weight(graph, graph.wires[wire].to)));
@@ -232,7 +229,7 @@ fn back_weight(graph: &DiagramGraph, at: usize) -> usize {
     }
 }
 
-/// Follows the wires in their direction, except the wires that lead back.
+/// Returns whether a path leads from the box `from` to the box `to`, without wires that lead back.
 fn reaches(graph: &DiagramGraph, back: &[bool], from: usize, to: usize) -> bool {
     let mut seen = vec![false; graph.boxes.len()];
     let mut pending = vec![from];

@@ -1,4 +1,4 @@
-//! Routes the wires of a block diagram.
+//! Routes a block diagram's wires.
 //!
 //! A wire runs horizontally through the columns of boxes, and vertically in the gaps between two columns. A wire that leads back
 //! to an earlier column goes around the boxes.
@@ -15,10 +15,10 @@ const TRACK: f64 = 9.0;
 /// The space on each side of the tracks of a gap.
 const MARGIN: f64 = 14.0;
 
-/// The distance from the border of a box to its first pin.
+/// The distance from a box's border to its first pin.
 const EDGE: f64 = 8.0;
 
-/// The width of a lane, in which a wire that leads back to an earlier column runs around a box.
+/// A lane's width, in which a wire that leads back to an earlier column runs around a box.
 pub const LANE: f64 = 10.0;
 
 #[derive(Clone, Copy, Debug)]
@@ -49,7 +49,7 @@ pub struct WireSegment {
 #[derive(Clone, Debug, Default)]
 pub struct WireRoute {
     pub pieces: Vec<WireSegment>,
-    /// The positions at which three or more pieces meet, which the drawing marks with a dot.
+    /// The positions at which three or more pieces meet; the drawing marks them with a dot.
     pub junctions: Vec<(f64, f64)>,
     /// The positions at which the wires end in arrows at boxes.
     pub pins: Vec<(f64, f64)>,
@@ -57,7 +57,7 @@ pub struct WireRoute {
 
 pub struct Routes {
     pub left: Vec<f64>,
-    /// For each box, the wires that it drives.
+    /// The wires that each box drives.
     pub nets: Vec<WireRoute>,
     pub width: f64,
     /// The left and the right edge of each column.
@@ -65,7 +65,7 @@ pub struct Routes {
 }
 
 impl Routes {
-    /// Returns `f64::MAX` without wires.
+    /// Returns the vertical position of the highest wire, or `f64::MAX` without wires.
     pub fn top(&self) -> f64 {
         let mut top = f64::MAX;
         for piece in self.nets.iter().flat_map(|net| &net.pieces) {
@@ -74,7 +74,7 @@ impl Routes {
         top
     }
 
-    /// Returns 0 without wires. Positions grow downward.
+    /// Returns the vertical position of the lowest wire, or 0 without wires. Positions grow downward.
     pub fn bottom(&self) -> f64 {
         let mut bottom: f64 = 0.0;
         for piece in self.nets.iter().flat_map(|net| &net.pieces) {
@@ -96,8 +96,8 @@ impl Routes {
     }
 }
 
-/// Returns for each box the nets whose wires run around it, because they lead back to an earlier column. A net is the index of
-/// the box that drives it, and takes one [`LANE`]. For example, a wire from box 5 back to box 2 gives both boxes a lane for
+/// Returns for each box the nets with wires that run around it, because they lead back to an earlier column. A net is the index
+/// of the box that drives it, and takes one [`LANE`]. For example, a wire from box 5 back to box 2 gives both boxes a lane for
 /// the net 5.
 pub fn lanes(graph: &DiagramGraph, back: &[bool]) -> Vec<Vec<usize>> {
     let mut lanes = vec![Vec::new(); graph.boxes.len()];
@@ -114,8 +114,7 @@ pub fn lanes(graph: &DiagramGraph, back: &[bool]) -> Vec<Vec<usize>> {
     lanes
 }
 
-/// Routes the wires between the boxes of a placement. `bodies` are the positions of the boxes, and `lanes` comes from
-/// [`lanes`].
+/// Routes the wires between a placement's boxes. `bodies` are the positions of the boxes, and [`lanes`] returns `lanes`.
 pub fn routes(
     graph: &DiagramGraph,
     placement: &Placement,
@@ -131,7 +130,7 @@ pub fn routes(
         crossings: Vec::new(),
         passes: HashMap::new(),
     };
-    // The longest wire of a net is first, so that the shorter wires of the net can follow its way.
+    // The longest wire of a net is first, so the shorter wires of the net can follow its way.
     let mut order: Vec<usize> = (0..graph.wires.len()).collect();
     order.sort_by_key(|&wire| std::cmp::Reverse(placement.passes[wire].len()));
     let pins = router.pins(&order);
@@ -148,9 +147,9 @@ struct Router<'a> {
     lanes: &'a [Vec<usize>],
     /// Gap number k is left of column k.
     gaps: Vec<Vec<Trunk>>,
-    /// For each crossing of a column: the net, the column and the vertical position.
+    /// The net, the column and the vertical position of each crossing of a column.
     crossings: Vec<(usize, usize, f64)>,
-    /// For a net, a column, and whether the wire leads back: the vertical position in the column.
+    /// The vertical position in a column, for each net, column, and whether the wire leads back.
     passes: HashMap<(usize, usize, bool), f64>,
 }
 
@@ -167,7 +166,7 @@ impl Router<'_> {
         self.bodies[at].top + LANE * (lane.unwrap_or(0) as f64 + 0.5)
     }
 
-    /// Returns the columns that a wire passes, with its vertical positions, in the direction of the wire.
+    /// Returns the columns that a wire passes, with its vertical positions, in the wire's direction.
     fn between(&mut self, wire: usize) -> Vec<(usize, f64)> {
         let (net, back) = (self.graph.wires[wire].from, self.placement.back[wire]);
         let mut between = Vec::new();
@@ -179,8 +178,8 @@ impl Router<'_> {
         between
     }
 
-    /// Returns the y coordinate at which each wire enters its box. The pins of a box are in the order in which its wires
-    /// arrive, from above.
+    /// Returns the y coordinate at which each wire enters its box. A box's pins are in the order in which its wires arrive, from
+    /// above.
     fn pins(&mut self, order: &[usize]) -> Vec<f64> {
         let mut coming: Vec<Vec<(f64, usize)>> = vec![Vec::new(); self.graph.boxes.len()];
         for &at in order {
@@ -242,7 +241,8 @@ impl Router<'_> {
         self.hop(net, to, (y, Side::Right), (pin, Side::Right));
     }
 
-    /// Adds the way of a net through a gap, as a further exit of a trunk if the net already enters the gap at `entry`.
+    /// Adds the way of a net through a gap. If the net already enters the gap at `entry`, the way becomes one more exit of its
+    /// trunk.
     fn hop(&mut self, net: usize, gap: usize, entry: (f64, Side), exit: (f64, Side)) {
         let trunks = &mut self.gaps[gap];
         let found = trunks.iter_mut().find(|it| it.net == net && it.entry == entry);
@@ -253,8 +253,8 @@ impl Router<'_> {
         }
     }
 
-    /// Assigns tracks to all gaps, and gives columns and boxes their horizontal positions. `pins` has for each wire the
-    /// vertical position at which it enters its box.
+    /// Assigns tracks to all gaps, and gives columns and boxes their horizontal positions. `pins` has the vertical position at
+    /// which each wire enters its box.
     fn finish(mut self, pins: &[f64]) -> Routes {
         let columns = self.placement.columns;
         let tracks: Vec<usize> = self.gaps.iter_mut().map(|gap| assign(gap)).collect();

@@ -18,7 +18,7 @@ pub enum Side {
     Right,
 }
 
-/// The vertical piece of one box's wires in the gap between two columns, with horizontal taps to both sides.
+/// The vertical piece of one box's wires in the gap between two columns, with horizontal taps to the left and right.
 #[derive(Clone, Debug)]
 pub struct Trunk {
     /// The index of the box that drives the wires.
@@ -54,8 +54,8 @@ impl Trunk {
         high - low < 0.5
     }
 
-    /// Returns the cost of placing this trunk to the left of `other`: the number of crossings, plus [`OVERLAP`] for each pair
-    /// of horizontal taps that would lie upon each other.
+    /// Returns a position's cost to the left of `other`: the number of crossings, plus [`OVERLAP`] for each pair of horizontal
+    /// taps that would lie upon each other.
     fn left_of(&self, other: &Self) -> usize {
         let (mut crossings, mut overlaps) = (0, 0);
         for (y, side) in self.taps() {
@@ -79,15 +79,15 @@ impl Trunk {
         crossings + OVERLAP * overlaps
     }
 
-    /// Trunks that overlap cannot share a track.
+    /// Returns whether two trunks overlap, so they cannot share a track.
     fn meets(&self, other: &Self) -> bool {
         let ((low, high), (from, to)) = (self.reach(), other.reach());
         from < high + NEAR && low < to + NEAR
     }
 }
 
-/// Orders the trunks of a gap so that few wires cross, sets their tracks, and returns the number of tracks. For example, two
-/// trunks that go down from 0 to 40 and from 20 to 60 take two.
+/// Orders a gap's trunks so that few wires cross, sets their tracks, and returns the number of tracks. For example, two trunks
+/// that go down from 0 to 40 and from 20 to 60 need two tracks.
 pub fn assign(trunks: &mut [Trunk]) -> usize {
     trunks.sort_by(|a, b| a.reach().0.total_cmp(&b.reach().0));
     // Exchange neighbours as long as an exchange reduces the cost. Every exchange reduces the total cost, so the loop ends.
@@ -121,7 +121,7 @@ pub fn assign(trunks: &mut [Trunk]) -> usize {
     tracks
 }
 
-/// Moves one trunk to the left of another if fewer wires lie upon each other then, and returns whether it did. Exchanges of
+/// Moves a trunk to the left of a second trunk if fewer wires then lie upon each other, and returns whether it did. Exchanges of
 /// neighbours can miss such a move, because a trunk between the two may cost the same on both sides.
 fn separate(trunks: &mut [Trunk]) -> bool {
     let before = overlaps(trunks);
@@ -180,7 +180,7 @@ mod tests {
         assert_eq!(trunks[0].left_of(&trunks[1]), 0);
     }
 
-    /// The straight wire between the two costs the same on both sides, so that no exchange of neighbours helps.
+    /// The straight wire between the two costs the same on both sides, so no exchange of neighbours helps.
     #[test]
     fn a_wire_between_does_not_keep_wires_upon_each_other() {
         let mut trunks = [trunk(0, 0.0, 50.0), trunk(1, 25.0, 25.0), trunk(2, 50.0, 100.0)];

@@ -36,7 +36,7 @@ struct Page<'a> {
 }
 
 enum ControlTables {
-    /// `writes` says what happens to operands that the user writes while the device is busy.
+    /// The tables of a sequential core. `writes` says what happens to operands that the user writes while the device is busy.
     Microprogram {
         blocks: String,
         fields: String,
@@ -68,7 +68,7 @@ impl ControlTables {
     }
 }
 
-/// Returns text that ends with a newline.
+/// Returns the page, which ends with a newline.
 pub fn page(design: &Design, inputs: &PageInputs) -> Result<String> {
     let about = &design.about;
     let bound = inputs.contract.bounds();

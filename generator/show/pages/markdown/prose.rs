@@ -2,8 +2,7 @@
 
 use crate::pages::account::{Align, TextTable};
 
-/// Returns a table without the last newline. All columns except the last are padded, so that the table is also readable as
-/// text.
+/// Returns a table without the last newline. All columns except the last are padded, so the source text is readable.
 pub fn table(table: &TextTable) -> String {
     let headings: Vec<String> = table.columns.iter().map(|column| prose(&column.heading)).collect();
     let mut rows: Vec<Vec<String>> = Vec::new();

@@ -22,14 +22,13 @@ use std::fmt;
 
 use super::vector::Vector;
 
-/// Two normals whose cosine is at most this count as opposite: the rotation between them is half a turn.
+/// The largest cosine of two normals that count as opposite: the rotation between them is then half a turn.
 const OPPOSITE: f64 = -1.0 + 1e-12;
 
-/// If γ, in radians, is larger than this, the half vectors count as opposite.
+/// The largest γ, in radians. Beyond it, the half vectors count as opposite.
 const LARGEST_GAMMA: f64 = PI - 1e-6;
 
-/// If γ, in radians, is at most this, the half vector counts as constant. After rounding, so short an arc has no direction,
-/// and the angle changes by less than half an ulp of the usual operand.
+/// The largest γ, in radians, at which the half vector counts as constant.
 const STILL: f64 = 1e-8;
 
 /// The amount by which rounding may make the cosine of the smallest angle to the normal exceed 1.
@@ -66,17 +65,17 @@ impl fmt::Display for Error {
 
 impl std::error::Error for Error {}
 
-/// The way of the half vector from H₁ to H₂′, seen from the fixed normal N₁; the head of this module explains the vectors.
-/// Angles are in radians.
+/// The way of the half vector from H₁ to H₂′, with the fixed normal N₁; the head of this module explains the vectors. Angles are
+/// in radians.
 ///
-/// Every field has a value even where a formula of the source document divides by zero. For γ = 0, the angle stays at λ = 0.
-/// For cos θ₁ ≤ 0, `arctan P` would be in the wrong half plane; λ is the angle of the point (cos θ₁, P·cos θ₁), from −180° to
-/// 180°, and A is never negative. For N₁ = −N₂, the normal turns by half a turn in the plane of N₂ and H₂, so that H₂′ = −H₂.
+/// Every field has a value even where a formula of the source document divides by zero. For γ = 0, the angle stays at λ = 0. For
+/// cos θ₁ ≤ 0, `arctan P` would be in the wrong half plane; λ is the angle of the point (cos θ₁, P·cos θ₁), from −180° to 180°,
+/// and A is never negative. For N₁ = −N₂, the normal turns by half a turn in the plane of N₂ and H₂, so H₂′ = −H₂.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Arc {
-    /// θ₁, the angle between the normal N₁ and the half vector H₁ at the start of the line.
+    /// θ₁, the angle between the normal N₁ and the half vector H₁ at the line's start.
     pub theta_1: f64,
-    /// θ₂, the angle between N₂ and H₂ at the end of the line, which is also the angle between N₁ and H₂′.
+    /// θ₂, the angle between N₂ and H₂ at the line's end, which is also the angle between N₁ and H₂′.
     pub theta_2: f64,
     /// γ, the angle by which the half vector turns from H₁ to H₂′; less than π.
     pub gamma: f64,
@@ -90,10 +89,12 @@ pub struct Arc {
 }
 
 impl Arc {
-    /// The vectors may have any length.
+    /// Makes an arc from the normals and half vectors at the two ends of the line. The vectors may have any length.
     ///
     /// # Errors
-    /// Fails with [`Error::NoDirection`] or [`Error::OppositeHalves`].
+    ///
+    /// Fails with [`Error::NoDirection`] if a vector has no direction, and with [`Error::OppositeHalves`] if the half vectors are
+    /// opposite.
     pub fn new(
         normal_1: Vector,
         half_1: Vector,
@@ -120,7 +121,7 @@ impl Arc {
     /// and γ, by which the half vector turns.
     ///
     /// # Errors
-    /// Fails with [`Error::OppositeHalves`] or [`Error::NoSuchAngles`].
+    /// Fails with [`Error::OppositeHalves`] if γ is π, and with [`Error::NoSuchAngles`] if no directions form these angles.
     pub fn of_angles(theta_1: f64, theta_2: f64, gamma: f64) -> Result<Self, Error> {
         let (cosine_1, cosine_2) = (libm::cos(theta_1), libm::cos(theta_2));
         let rise = (cosine_2 - cosine_1 * libm::cos(gamma)) / libm::sin(gamma);
@@ -129,7 +130,7 @@ impl Arc {
         if arc.peak > 1.0 + ROUNDING || still { Err(Error::NoSuchAngles) } else { Ok(arc) }
     }
 
-    /// The rise is ignored if γ is so small that the half vector counts as constant.
+    /// Makes the arc, without `rise` if γ is so small that the half vector counts as constant.
     fn new_of(
         [theta_1, theta_2]: [f64; 2],
         gamma: f64,
@@ -147,8 +148,8 @@ impl Arc {
         Ok(Self { theta_1, theta_2, gamma, rise, lambda, peak })
     }
 
-    /// Returns cos δ = A·cos ζ, the cosine between normal and half vector, at the part `t` of the line, 0 … 1. It is negative
-    /// if the surface faces away, except that it is 0 for γ = 0.
+    /// Returns cos δ = A·cos ζ, the cosine between normal and half vector, at the part `t` of the line, 0 … 1. It is negative if
+    /// the surface faces away; for γ = 0 it is then 0.
     pub fn cosine(&self, t: f64) -> f64 {
         self.peak * libm::cos(t * self.gamma - self.lambda)
     }
@@ -159,8 +160,7 @@ impl Arc {
         self.rise / libm::cos(self.theta_1)
     }
 
-    /// Returns the angle ζ at the start of the line: −λ, or a full turn less if that brings the lit part of the line near ζ =
-    /// 0. All angles of the line then lie within three right angles of 0.
+    /// Returns the angle ζ at the line's start: −λ, or a full turn less if this brings the lit part of the line near ζ = 0.
     pub fn zeta_start(&self) -> f64 {
         if self.gamma - self.lambda > 1.5 * PI { -self.lambda - TAU } else { -self.lambda }
     }
@@ -184,7 +184,7 @@ impl Arc {
 /// Scales a vector to length 1. `name` is its name in an error.
 ///
 /// # Errors
-/// Fails with [`Error::NoDirection`].
+/// Fails with [`Error::NoDirection`] if the length is 0 or not finite.
 pub fn direction(name: &'static str, vector: Vector) -> Result<Vector, Error> {
     vector.unit().ok_or(Error::NoDirection(name))
 }
@@ -211,7 +211,7 @@ fn turned(normal_1: Vector, normal_2: Vector, half_2: Vector) -> Vector {
     half_2 - once + v.cross(once) * (1.0 / (1.0 + cosine))
 }
 
-/// Unlike the arc cosine, this angle between two unit vectors, in radians, is exact for small angles too.
+/// Returns the angle between two unit vectors, in radians. Unlike the arc cosine, it is exact for small angles.
 fn angle(a: Vector, b: Vector) -> f64 {
     libm::atan2(a.cross(b).length(), a.dot(b))
 }
@@ -221,13 +221,13 @@ fn angle(a: Vector, b: Vector) -> f64 {
 pub struct LineParameters {
     /// C = I·k_s·Aⁿ, the amplitude operand in output units: the light times the specular coefficient times the peak.
     pub amplitude: f64,
-    /// n, the exponent of the highlight.
+    /// n, the highlight's exponent.
     pub exponent: u32,
-    /// l = X_end − X_start, the number of intervals between the points of the line.
+    /// l = X_end − X_start, the number of intervals between the line's points.
     pub length: u32,
     /// Δζ = γ/l, the angle from a point to the next; 0 for l = 0.
     pub delta_zeta: f64,
-    /// ζ(X_start), the angle of the first point.
+    /// ζ(X_start), the first point's angle.
     pub zeta_start: f64,
 }
 

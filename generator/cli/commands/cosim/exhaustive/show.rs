@@ -38,11 +38,11 @@ pub fn announce(one: &Loaded, job: &Job<'_>, state: &ShardState) {
     }
 }
 
-/// Reports the result of a shard, and adds it to `list`. Returns whether the errors are within the bound, and model and
-/// hardware do not differ.
+/// Reports a shard's result, and adds it to `list`. Returns whether the errors are within the bound, and model and hardware do
+/// not differ.
 ///
 /// # Errors
-/// Fails if the design cannot be simulated, or if the waveform of a difference cannot be written.
+/// Fails if the design cannot be simulated, or if a difference's waveform cannot be written.
 pub fn report(
     one: &Loaded,
     job: &Job<'_>,
@@ -82,7 +82,8 @@ impl CommandReport for ProofReport<'_> {
     }
 }
 
-/// Returns the first combination for which model and hardware differ, if any, and writes its waveform.
+/// Returns the first combination for which model and hardware differ, and writes its waveform. Returns `None` if they never
+/// differ.
 fn found(
     one: &Loaded,
     job: &Job<'_>,
@@ -125,7 +126,7 @@ fn print(one: &Loaded, job: &Job<'_>, proof: &Proof, state: &ShardState) {
     }
 }
 
-/// Returns the result for scripts and for the record in the repository.
+/// Returns the result for scripts and for the records in the repository.
 fn as_json(
     one: &Loaded,
     job: &Job<'_>,
@@ -178,8 +179,8 @@ fn as_json(
     value
 }
 
-/// The object has the keys of a difference in a random run, but `seed` is null, and `combination`, `clock_of_computation` and
-/// `operands` are added.
+/// Returns a difference as JSON. The object has the keys of a difference in a random run, but `seed` is null, and `combination`,
+/// `clock_of_computation` and `operands` are added.
 fn mismatch_json((difference, reproducer): &(Difference, Reproducer)) -> Value {
     let mut value = reproducer.json(&difference.mismatch);
     let operands: BTreeMap<&str, String> = difference

@@ -2,25 +2,25 @@
 //! statement makes several blocks if its operators do not belong together, such as a multiplier and an adder in a sequential
 //! core.
 //!
-//! For each net, the module finds its *sources*: the blocks, ports and ROMs whose values reach it through wiring and gates
-//! alone. If several sources meet in one net, and an operator such as an adder takes the net, that net is a *joint*. A joint is
-//! drawn as a block of gates or wiring.
+//! For each net, the module finds its *sources*: the blocks, ports and ROMs whose values reach it through wiring and gates alone.
+//! A *joint* is a net in which several sources meet, and which an operator, such as an adder, reads. A joint is drawn as a block
+//! of gates or wiring.
 
 use std::collections::BTreeSet;
 
 use super::kind::{MULTIPLIER, MUX, operator};
 use glint_rtl::netlist::{Design, Driver, Net, NetId, Op, Partition, Role, RomId};
 
-/// The nets of a design, grouped into blocks, and the sources of each net.
+/// A design's nets, grouped into blocks, and each net's sources.
 pub struct Groups<'a> {
     pub design: &'a Design,
-    /// For each net, its group: the lowest number of a net in the group.
+    /// Each net's group: the lowest number of a net in the group.
     pub group: Vec<usize>,
-    /// For each net, whether it makes its group a block: it is a register, a ROM or an operator, or the description documents
-    /// or numbers it.
+    /// Whether each net makes its group a block: it is a register, a ROM or an operator, or the description documents or numbers
+    /// it.
     pub cell: Vec<bool>,
-    /// For each net, its sources: the blocks, ports and ROMs whose values reach it within a clock. In a pipeline, a source may
-    /// lie several clocks back.
+    /// Each net's sources: the blocks, ports and ROMs whose values reach it within a clock. In a pipeline, a source may lie
+    /// several clocks back.
     pub sources: Vec<Vec<NetId>>,
     pub head: Vec<Option<NetId>>,
     pub joints: BTreeSet<NetId>,
@@ -46,8 +46,8 @@ impl<'a> Groups<'a> {
         groups
     }
 
-    /// Forms the groups, and finds the sources of each net. If `statements` is set, the nets that one statement of the
-    /// description made are a group, as far as [`Groups::belongs`] allows it. Otherwise each net is a group of its own.
+    /// Forms the groups, and finds each net's sources. With `statements`, the nets that one statement of the description made are
+    /// a group, if [`Groups::belongs`] allows it. Otherwise each net is a group of its own.
     fn form(&mut self, statements: bool) {
         let design = self.design;
         self.group = (0..design.nets.len()).collect();
@@ -65,8 +65,7 @@ impl<'a> Groups<'a> {
                 continue;
             }
             let head = &mut self.head[self.group[id.index()]];
-            // The output of a block is preferably a net that the source document numbers, then a net with a name, then the
-            // last net.
+            // A block's output is preferably a net that the source document numbers, then a net with a name, then the last net.
             let is_better = match head {
                 Some(before) => {
                     let before = design.net(*before);
@@ -112,8 +111,8 @@ impl<'a> Groups<'a> {
         }
     }
 
-    /// Returns whether the nets `from` and `to`, which takes the value of `from`, belong to one block. For example, a mux
-    /// behind another mux does, and an adder behind a multiplier does not in a sequential core.
+    /// Returns whether the net `from` and its reader `to` belong to one block. For example, a mux behind a mux belongs to the
+    /// block of the first mux. In a sequential core, an adder behind a multiplier is in a separate block.
     fn belongs(&self, from: NetId, to: NetId) -> bool {
         let design = self.design;
         let (Some(a), Some(b)) = (self.operator(from), self.operator(to)) else {
@@ -134,7 +133,7 @@ impl<'a> Groups<'a> {
         }
     }
 
-    /// Returns the index of an operator's kind, as [`operator`] does.
+    /// Returns the kind of a net's operator ([`operator`]), or `None` if the net is in no block.
     fn operator(&self, id: NetId) -> Option<usize> {
         match self.cell[id.index()] {
             true => operator(&self.design.net(id).driver),
@@ -142,8 +141,7 @@ impl<'a> Groups<'a> {
         }
     }
 
-    /// Returns whether an operator of a pipeline takes only values of operators that the same statement made. Rows of a
-    /// product (gates of the same statement, one row for each bit of a factor) do not count.
+    /// Returns whether an operator of a pipeline reads only values of operators that the same statement made.
     fn takes_its_statement_alone(&self, id: NetId) -> bool {
         let mut whole = self.operands(id);
         whole.retain(|operand| !self.is_product_row(*operand, id));
@@ -177,7 +175,7 @@ impl<'a> Groups<'a> {
         self.operands(adder).iter().any(|operand| self.design.net(*operand).range == (0, 1))
     }
 
-    /// Returns the operators, registers and ROMs from whose values wires and gates form the value of a net. In a pipeline, the
+    /// Returns the operators, registers and ROMs whose values form the value of a net through wires and gates. In a pipeline, the
     /// search also passes through registers.
     pub fn operators(&self, id: NetId) -> Vec<NetId> {
         self.through(self.operands(id))
@@ -197,7 +195,7 @@ impl<'a> Groups<'a> {
         found
     }
 
-    /// Returns the operands of a net's cell, the data of a register or the address of a ROM. Other nets have none.
+    /// Returns the operands of a net's cell, the data of a register, or the address of a ROM; nothing for other nets.
     pub fn operands(&self, id: NetId) -> Vec<NetId> {
         match &self.design.net(id).driver {
             Driver::Op(op) => op.operands(),
@@ -238,8 +236,7 @@ impl<'a> Groups<'a> {
         }
     }
 
-    /// Returns the sources of a net that is wiring or a gate: all sources of its operands, each once. If the output of the
-    /// net's own block is among them, it is the only source.
+    /// Returns the sources of a net that is wiring or a gate: all sources of its operands, each once.
     fn joined_sources(
         &self,
         id: NetId,
@@ -261,7 +258,7 @@ impl<'a> Groups<'a> {
         }
     }
 
-    /// A drawing by stages cannot show a pipeline whose blocks form a cycle.
+    /// Returns whether the blocks of a pipeline form a cycle, which a drawing by stages cannot show.
     fn is_tangled(&self) -> bool {
         if self.design.pipeline.is_none() {
             return false;
@@ -285,7 +282,7 @@ impl<'a> Groups<'a> {
         }
     }
 
-    /// Finds the joints: the nets at which several signals meet before a block or an output port takes them.
+    /// Finds the joints: the nets in which several signals meet before a block or an output port reads them.
     fn meet(&mut self) {
         let mut read: Vec<NetId> = Vec::new();
         for port in self.design.outputs() {
@@ -315,9 +312,8 @@ impl<'a> Groups<'a> {
         operands
     }
 
-    /// Returns whether the sources of `operand` meet inside the block whose output is `head`, so that no joint is drawn.
-    /// Either the block is one of the sources, or the gates at which they meet belong to the block's statement of the
-    /// description.
+    /// Returns whether the sources of `operand` meet inside the block with the output `head`, so no joint is drawn. Either the
+    /// block is one of the sources, or the gates in which they meet belong to the block's statement of the description.
     pub fn is_part(&self, operand: NetId, head: NetId) -> bool {
         if self.sources[operand.index()].contains(&head) {
             return true;
@@ -333,8 +329,8 @@ impl<'a> Groups<'a> {
         }
     }
 
-    /// Returns the net at which several signals meet by wiring or gates to form a net. Returns `None` if only one signal forms
-    /// it.
+    /// Returns the net in which several signals meet, by wiring or gates, to form the net `id`. Returns `None` if a single signal
+    /// forms it.
     pub fn joint(&self, mut id: NetId) -> Option<NetId> {
         if self.sources[id.index()].len() < 2 {
             return None;
@@ -349,7 +345,7 @@ impl<'a> Groups<'a> {
         }
     }
 
-    /// Returns the cells of a block, and wiring that passes on its value.
+    /// Returns a block's cells, and wiring that passes on its value.
     pub fn inside(&self, head: NetId) -> Vec<NetId> {
         let group = self.group[head.index()];
         let mut inside = Vec::new();
@@ -410,16 +406,15 @@ impl<'a> Groups<'a> {
     }
 }
 
-/// Returns whether a net is the slot counter of a pipeline, or an operator of it or of its comparisons. They belong to the
-/// handshake, which is not drawn.
+/// Returns whether a net is the slot counter of a pipeline, or an operator of the counter or its comparisons.
 fn counts_slots(design: &Design, id: NetId) -> bool {
     let Some(pipeline) = &design.pipeline else { return false };
     let is_operator = operator(&design.net(id).driver).is_some();
     pipeline.slot == Some(id) || is_operator && pipeline.handshake.contains(&id)
 }
 
-/// Returns whether a net of the datapath is a register, a ROM or an operator, or is shown because the source numbers or the
-/// description documents it. A register of a pipeline is not, because it only delays a value.
+/// Returns whether a net makes a block. Registers, ROMs and operators of the datapath do, and nets that the source numbers or the
+/// description documents.
 fn is_cell(design: &Design, id: NetId, net: &Net, figure: bool) -> bool {
     if net.partition != Partition::Datapath || counts_slots(design, id) {
         return false;

@@ -4,7 +4,7 @@ use std::fmt;
 
 use glint_rtl::netlist::{Driver, Op};
 
-/// The kind of a block. As text, for example, `3:1 mux`, `21 × 10 multiplier` or `2 adders, mux`.
+/// A block's kind. As text, for example, `3:1 mux`, `21 × 10 multiplier` or `2 adders, mux`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BlockKind {
     /// An operand register, which a port writes.
@@ -29,9 +29,9 @@ pub enum BlockKind {
     Several([u16; 5]),
     /// All bits inverted.
     Inverter,
-    /// Any other logic of single bits.
+    /// Logic of single bits other than an inverter.
     Gate,
-    /// Bits under another name, or side by side.
+    /// A rename or a concatenation of bits.
     Wiring,
     Other,
 }
@@ -80,7 +80,7 @@ pub const MULTIPLIER: usize = 0;
 pub const ADDER: usize = 1;
 pub const MUX: usize = 4;
 
-/// Returns the index in [`OPERATORS`] of the operator that drives a net.
+/// Returns the index in [`OPERATORS`] of the operator that drives a net, or `None` for any other driver.
 pub fn operator(driver: &Driver) -> Option<usize> {
     match driver {
         Driver::Op(Op::Mul(..)) => Some(MULTIPLIER),

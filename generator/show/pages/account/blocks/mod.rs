@@ -1,9 +1,9 @@
-//! Finds the blocks of a datapath, which pages list and the block diagram draws.
+//! Finds a datapath's blocks, which pages list and the block diagram draws.
 //!
-//! A block is the hardware of one statement in the device's description, or a part of it, for example a rounding with its
-//! limits, a tree of muxes, or a product in parts. Every register, ROM and operator of the datapath is in exactly one block.
-//! Wiring, and gates with one signal, belong to the connection between two blocks. In a pipeline, a register belongs to the
-//! block or the operand port whose value it delays, and the registers of the handshake are in no block.
+//! A block is the hardware of one statement in the device's description, or a part of it: for example a rounding with its limits,
+//! a tree of muxes, or a product in parts. Every register, ROM and operator of the datapath is in exactly one block. Wiring, and
+//! gates with one signal, belong to the connection between two blocks. In a pipeline, a register belongs to the block or port
+//! whose value it delays, and the handshake's registers are in no block.
 
 mod groups;
 mod kind;
@@ -16,8 +16,8 @@ use groups::Groups;
 pub use kind::BlockKind;
 use kind::{ADDER, MULTIPLIER, operator};
 
-/// Returns a table of the blocks, in the order of their numbers in the figure of the source document. Blocks without a number
-/// come last.
+/// Returns a table of the blocks, in the order of their numbers in the source document's figure. Blocks without a number come
+/// last.
 pub fn table(design: &Design) -> TextTable {
     let blocks = Blocks::new(design, false);
     let mut table = TextTable::of("no.: | block | kind | format | takes | what it is");
@@ -42,7 +42,6 @@ pub fn table(design: &Design) -> TextTable {
     table.without_empty(NUMBER)
 }
 
-/// Returns the stage of a pipeline in which a cell computes its value.
 fn stage(design: &Design, pipeline: &Pipeline, cell: NetId) -> usize {
     let clock = pipeline.clock_of(cell);
     match design.net(cell).driver {
@@ -61,15 +60,15 @@ pub struct Block {
     pub kind: BlockKind,
     pub format: String,
     pub output: NetId,
-    /// The nets that the block reads, each driven by another block, a port, a constant or a ROM. An operator has one for each
-    /// operand.
+    /// The nets that the block reads, each driven by another block, a port, a constant or a ROM. A block with a single operator
+    /// has one for each operand.
     pub inputs: Vec<NetId>,
-    /// The select of a mux: a field of the control word, or blocks.
+    /// The nets that select among the inputs of muxes: fields of the control word, or outputs of blocks.
     pub selected_by: Vec<NetId>,
-    /// The comment of the description, one line; may be empty.
+    /// The comment in the description, of one line; may be empty.
     pub doc: String,
     pub cells: Vec<NetId>,
-    /// In a pipeline, the further names of the value that the block computes.
+    /// In a pipeline, additional names of the value that the block computes.
     pub aliases: Vec<String>,
 }
 
@@ -79,8 +78,8 @@ pub struct Blocks<'a> {
 }
 
 impl<'a> Blocks<'a> {
-    /// If `figure` is set, the blocks are for a block diagram. Gates and wiring are then blocks only if the source document
-    /// numbers them, or if several signals meet in them.
+    /// Finds the blocks of `design`. With `figure`, they are for a block diagram: gates and wiring are then blocks only if the
+    /// source document numbers them, or if several signals meet in them.
     pub fn new(design: &'a Design, figure: bool) -> Self {
         Self { design, groups: Groups::new(design, figure) }
     }
@@ -197,7 +196,7 @@ impl<'a> Blocks<'a> {
         matches!(self.design.net(id).driver, Driver::Op(Op::Mux { .. }))
     }
 
-    /// Returns the comment of the description on a block's output, or else on the last net inside that has one.
+    /// Returns the comment in the description on the net `head`, or else on the last net of `inside` that has a comment.
     fn doc(&self, inside: &[NetId], head: NetId) -> String {
         let of_head = &self.design.net(head).doc;
         if inside.contains(&head) && !of_head.is_empty() {
@@ -220,8 +219,8 @@ impl<'a> Blocks<'a> {
         cells
     }
 
-    /// Returns the source of an operand: the output net of a block, a port, a constant, or a joint. A signal of the control
-    /// unit has none.
+    /// Returns an operand's source: the output net of a block, a port, a constant, or a joint. Returns `None` for a signal of the
+    /// control unit.
     fn source(&self, operand: NetId) -> Option<NetId> {
         match self.groups.sources[operand.index()][..] {
             [] => self.constant(operand),
@@ -230,7 +229,7 @@ impl<'a> Blocks<'a> {
         }
     }
 
-    /// Returns the constant whose value a net has, through the first operands of cells, such as an extension.
+    /// Returns the constant whose value a net has. The search follows the first operand of cells, such as an extension.
     fn constant(&self, mut id: NetId) -> Option<NetId> {
         loop {
             match &self.design.net(id).driver {
@@ -241,7 +240,7 @@ impl<'a> Blocks<'a> {
         }
     }
 
-    /// In a pipeline, returns the shortest name of the block's parts, without the stage.
+    /// Returns a block's name. In a pipeline, it is the shortest name of the block's parts, without the stage.
     fn called(&self, inside: &[NetId], head: NetId) -> String {
         let design = self.design;
         let Some(pipeline) = &design.pipeline else { return design.net(head).name.clone() };
@@ -258,8 +257,8 @@ impl<'a> Blocks<'a> {
         shortest.unwrap_or(&pipeline.value_of[head.index()]).clone()
     }
 
-    /// Returns the other names of the value in a pipeline. These are the names of checkpoints whose only source is the block,
-    /// with their numbers in the source's figure.
+    /// Returns additional names of a value in a pipeline: the names of checkpoints with the block as their only source, with
+    /// their numbers in the source's figure.
     fn aliases(&self, head: NetId, name: &str) -> Vec<String> {
         let design = self.design;
         let Some(pipeline) = &design.pipeline else { return Vec::new() };
@@ -278,7 +277,7 @@ impl<'a> Blocks<'a> {
         names
     }
 
-    /// The block of a joint is drawn for gates in which several signals meet, or for their concatenation.
+    /// Returns a joint's block, for gates in which several signals meet, or for their concatenation.
     fn meeting(&self, joint: NetId) -> Block {
         let net = self.design.net(joint);
         let inputs = self.groups.sources[joint.index()].clone();
@@ -309,7 +308,7 @@ impl<'a> Blocks<'a> {
         names.join(", ")
     }
 
-    /// Returns the name of the block, port or ROM that drives a net of [`Block::inputs`], or the value of a constant.
+    /// Returns the name of the block, port or ROM that drives a net of [`Block::inputs`], or a constant's value.
     pub fn name(&self, id: NetId) -> String {
         let net = self.design.net(id);
         match &net.driver {
@@ -358,7 +357,7 @@ impl<'a> Blocks<'a> {
         }
     }
 
-    /// Returns the width of an operand before it was widened by a sign or zero extension: 8 if 8 bits were extended to 12.
+    /// Returns the width of an operand before a sign or zero extension. For example, 8 bits that were extended to 12 give 8.
     fn narrow_width(&self, operand: NetId) -> u32 {
         match &self.design.net(operand).driver {
             Driver::Op(Op::Extend(of)) => self.design.width(*of),
@@ -397,8 +396,8 @@ impl<'a> Blocks<'a> {
         &self.groups.sources[net.index()]
     }
 
-    /// Returns the first and the last pipeline stage that contains operators of the block. A block without operators has the
-    /// stage of its output. A sequential core gives 0 and 0.
+    /// Returns the first and the last pipeline stage with operators of the block. A block without operators has the stage of its
+    /// output. A sequential core gives 0 and 0.
     pub fn stages(&self, block: &Block) -> (usize, usize) {
         let design = self.design;
         let Some(pipeline) = &design.pipeline else { return (0, 0) };
@@ -417,7 +416,7 @@ impl<'a> Blocks<'a> {
         }
     }
 
-    /// Returns the fields of the control word that control a block or that its logic takes, and the strobes that write it.
+    /// Returns the fields of the control word that control a block or that its logic reads, and the strobes that write it.
     pub fn controls(&self, block: &Block) -> (Vec<FieldId>, Vec<NetId>) {
         let design = self.design;
         let mut pending: Vec<NetId> = Vec::new();
@@ -459,8 +458,8 @@ impl<'a> Blocks<'a> {
         (fields, strobes)
     }
 
-    /// Returns the source whose value a net carries: the output net of a block, a port, or the joint at which several sources
-    /// meet. A constant has none.
+    /// Returns the source whose value a net carries: the output net of a block, a port, or the joint in which several sources
+    /// meet. Returns `None` for a constant.
     pub fn driver(&self, net: NetId) -> Option<NetId> {
         self.groups.driver(net)
     }
