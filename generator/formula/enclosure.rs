@@ -203,17 +203,41 @@ impl std::ops::Sub for Enclosure {
     }
 }
 
+/// Returns the smallest interval of a product. A product with 0 is 0, even if the other factor is infinite.
+fn product(a: f64, b: f64) -> Enclosure {
+    if a == 0.0 || b == 0.0 {
+        return Enclosure::exactly(0.0);
+    }
+    let product = a * b;
+    directed(product, a.mul_add(b, -product))
+}
+
 impl std::ops::Mul for Enclosure {
     type Output = Self;
 
     fn mul(self, other: Self) -> Self {
-        self.corners(other, |a, b| {
-            if a == 0.0 || b == 0.0 {
-                return Self::exactly(0.0);
-            }
-            let product = a * b;
-            directed(product, a.mul_add(b, -product))
-        })
+        let (a, b) = (self, other);
+        if a.low == a.high && b.low == b.high {
+            return product(a.low, b.low);
+        }
+        // If the signs are known, two of the four products at the ends are the smallest and the largest.
+        let ends = if a.low >= 0.0 && b.low >= 0.0 {
+            [(a.low, b.low), (a.high, b.high)]
+        } else if a.low >= 0.0 && b.high <= 0.0 {
+            [(a.high, b.low), (a.low, b.high)]
+        } else if a.high <= 0.0 && b.low >= 0.0 {
+            [(a.low, b.high), (a.high, b.low)]
+        } else if a.high <= 0.0 && b.high <= 0.0 {
+            [(a.high, b.high), (a.low, b.low)]
+        } else if a.low >= 0.0 {
+            [(a.high, b.low), (a.high, b.high)]
+        } else if b.low >= 0.0 {
+            [(a.low, b.high), (a.high, b.high)]
+        } else {
+            return self.corners(other, product);
+        };
+        let [smallest, largest] = ends.map(|(a, b)| product(a, b));
+        Self { low: smallest.low, high: largest.high }
     }
 }
 

@@ -67,6 +67,9 @@ impl Expression {
     /// Returns the value of a formula without operands, or `None` if the value is not known to be rational. For example,
     /// `log2(16)` gives 4, and `sqrt(2)` gives `None`.
     pub fn rational(&self) -> Option<RBig> {
+        if self.varies() {
+            return None;
+        }
         let (_, value) = self.decided(&[], |_, _| true).ok()?;
         value.rational().cloned()
     }

@@ -188,6 +188,11 @@ impl Expression {
         Self::new(Kind::Operand(name.to_owned()), 0..0)
     }
 
+    /// Returns a number that is equal for equal formulas, and nearly always different for different ones. Locations do not count.
+    pub fn digest(&self) -> u64 {
+        self.hash
+    }
+
     /// Returns the formula with the location `span` in the text.
     pub fn at(self, span: impl Into<TextSpan>) -> Self {
         Self { span: span.into(), ..self }

@@ -52,6 +52,7 @@ mod frontier;
 mod guarded;
 mod hold;
 mod lower;
+mod memo;
 mod memory;
 mod mirror;
 mod node;

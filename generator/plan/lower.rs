@@ -39,6 +39,7 @@ use super::boxes::has_few_operands;
 use super::constant::dyadic;
 use super::facts::has_fact;
 use super::guarded::GuardedFormula;
+use super::memo::FormulaMemo;
 use super::memory::TableMemory;
 use super::node::{NodeId, Operation, PlanNode, StatedValue, ValueAccuracy};
 use super::order;
@@ -194,8 +195,7 @@ struct FixedGuard {
 pub(super) struct Lowering<'s> {
     statement: &'s ExpressionStatement,
     ties: WidthTies,
-    ranges: &'s RangeMemo,
-    errors: &'s ErrorMemo,
+    memo: &'s PartMemo,
     guards: &'s Guards,
     first_guard: i32,
     found: &'s FoundPolynomials,
@@ -225,8 +225,19 @@ pub(super) struct PlanSearch<'s> {
     pub(super) ties: WidthTies,
     pub(super) polynomials: Rc<PolynomialMemo>,
     pub(super) memory: TableMemory,
+    memo: PartMemo,
+}
+
+/// Facts about parts of the formulas that do not depend on the widths in a plan.
+#[derive(Default)]
+struct PartMemo {
     ranges: RangeMemo,
     errors: ErrorMemo,
+    /// The uses of a part, by the uses of the formula around it.
+    uses: FormulaMemo<PartUses, PartUses>,
+    /// Whether conditions state limits of a part, by its uses.
+    has_fact: FormulaMemo<PartUses, bool>,
+    functions: table::FunctionRanges,
 }
 
 /// The rounding operations that have the same number of guard bits.
@@ -258,10 +269,9 @@ impl<'s> PlanSearch<'s> {
             true => WidthTies::None,
             false => WidthTies::Named,
         };
-        let (ranges, errors) = (RangeMemo::default(), ErrorMemo::default());
         let polynomials = Rc::default();
         let memory = TableMemory::Logic;
-        Self { statement, tables, ties, polynomials, memory, ranges, errors }
+        Self { statement, tables, ties, polynomials, memory, memo: PartMemo::default() }
     }
 }
 
@@ -291,8 +301,7 @@ pub(super) fn lowered(
     let mut lowering = Lowering {
         statement,
         ties: search.ties,
-        ranges: &search.ranges,
-        errors: &search.errors,
+        memo: &search.memo,
         guards,
         first_guard,
         found,
@@ -332,14 +341,14 @@ impl<'s> Lowering<'s> {
     /// have no finite limits.
     fn range(&self, part: &Expression) -> Result<Enclosure, PlanRefusal> {
         let uses = self.uses_of(part);
-        let range = self.ranges.range_of(self.statement, &uses, part);
+        let range = self.memo.ranges.range_of(self.statement, &uses, part);
         range.map_err(|error| error.refusal(self.statement, part))
     }
 
     /// Returns an interval that contains the values of a part, for all operands for which the part that is being rewritten matters.
     /// Other readers of the part do not count, unlike in [`Self::range`]. Fails if the values have no finite limits.
     fn range_here(&self, part: &Expression) -> Result<Enclosure, PlanRefusal> {
-        let range = self.ranges.range_of(self.statement, &self.uses, part);
+        let range = self.memo.ranges.range_of(self.statement, &self.uses, part);
         range.map_err(|error| error.refusal(self.statement, part))
     }
 
@@ -347,6 +356,10 @@ impl<'s> Lowering<'s> {
     /// read `part` in the same cases of choices count too, so that they can share its node, unless the part then loses limits that the
     /// condition of the present result states.
     fn uses_of(&self, part: &Expression) -> PartUses {
+        self.memo.uses.value(part, &self.uses, || self.new_uses_of(part))
+    }
+
+    fn new_uses_of(&self, part: &Expression) -> PartUses {
         let mut uses = self.uses.clone();
         for (reads, result) in uses.readers.iter_mut().zip(&self.statement.results) {
             *reads |= reads_under(&result.formula, part, &self.uses.conditions);
@@ -396,7 +409,9 @@ impl<'s> Lowering<'s> {
     /// Returns the node of a part of a formula. Adds the node and all nodes that it reads if the part has no node. Fails if a
     /// part has too many bits, no finite values, or no rule. The refusal has the location of the part.
     fn part(&mut self, part: &Expression) -> Result<NodeId, PlanRefusal> {
-        let is_limited = has_fact(self.statement, &self.uses_of(part), part)
+        let uses = self.uses_of(part);
+        let has_fact = || has_fact(self.statement, &uses, part);
+        let is_limited = self.memo.has_fact.value(part, &uses, has_fact)
             || order::has_limits(part, &self.whole_domain());
         let same = self.known_part(part, is_limited).or_else(|| self.known_part(part, false));
         if let Some(known) = same
@@ -405,7 +420,6 @@ impl<'s> Lowering<'s> {
             return Ok(known.node);
         }
         let unlimited = same.map(|known| known.node);
-        let uses = self.uses_of(part);
         let outer = mem::replace(&mut self.uses, uses);
         let node = match unlimited {
             Some(node) => Ok(node),
@@ -437,7 +451,7 @@ impl<'s> Lowering<'s> {
         if known.uses.conditions == self.uses.conditions {
             return true;
         }
-        let known_range = self.ranges.range_of(self.statement, &known.uses, &known.part);
+        let known_range = self.memo.ranges.range_of(self.statement, &known.uses, &known.part);
         match (known_range, self.range(&known.part)) {
             (Ok(known_range), Ok(range)) => known_range == range,
             _ => true,

@@ -1,7 +1,6 @@
 //! Computes an interval that contains the values of a part of a formula, for all operands for which a result with this part is
 //! promised. The module divides the operands' domain into boxes, which have narrower intervals.
 
-use std::cell::RefCell;
 use std::cmp::Ordering;
 use std::collections::{BTreeSet, BinaryHeap};
 use std::sync::Arc;
@@ -10,6 +9,7 @@ use glint_formula::{Comparison, Enclosure, Expression, Function, Kind, Operator}
 
 use super::boxes::{BoxScore, OperandBox, affordable, best_halves};
 use super::guarded::GuardedFormula;
+use super::memo::FormulaMemo;
 use super::refusal::{PartToLimit, PlanRefusal};
 use super::statement::{ExpressionStatement, StatedResult};
 use super::uses::PartUses;
@@ -122,15 +122,7 @@ impl Ord for BoxEnd {
 
 /// The intervals of parts that were computed for a statement, so that each is computed once.
 #[derive(Default)]
-pub(super) struct RangeMemo {
-    known: RefCell<Vec<KnownRange>>,
-}
-
-struct KnownRange {
-    part: Expression,
-    uses: PartUses,
-    range: Result<Enclosure, NoRange>,
-}
+pub(super) struct RangeMemo(FormulaMemo<PartUses, Result<Enclosure, NoRange>>);
 
 impl RangeMemo {
     /// Returns what [`range_of`] returns. All calls must have the same statement.
@@ -143,14 +135,7 @@ impl RangeMemo {
         uses: &PartUses,
         part: &Expression,
     ) -> Result<Enclosure, NoRange> {
-        let is_same = |known: &&KnownRange| known.part == *part && known.uses == *uses;
-        if let Some(known) = self.known.borrow().iter().find(is_same) {
-            return known.range.clone();
-        }
-        let range = range_of(statement, uses, part);
-        let known = KnownRange { part: part.clone(), uses: uses.clone(), range: range.clone() };
-        self.known.borrow_mut().push(known);
-        range
+        self.0.value(part, uses, || range_of(statement, uses, part))
     }
 }
 

@@ -75,7 +75,7 @@ impl Lowering<'_> {
                 && let Some(parts) = PlanOfParts::of(plan, node, &alone, count)
             {
                 let proof = ResultProof::new(&parts.statement, &parts.plan, 0);
-                let units = self.errors.units_of(&proof, unit);
+                let units = self.memo.errors.units_of(&proof, unit);
                 if units.is_finite() {
                     errors.push(units);
                     continue;
@@ -83,7 +83,7 @@ impl Lowering<'_> {
             }
             statement.results = vec![alone];
             let proof = ResultProof::new(&statement, plan, 0);
-            errors.push(self.errors.units_of(&proof, unit));
+            errors.push(self.memo.errors.units_of(&proof, unit));
         }
         errors
     }

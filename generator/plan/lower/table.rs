@@ -8,6 +8,7 @@ use super::shape::{
     core_of, dominators, is_limit_of, is_logarithm_of_multiple, is_size_of, products_of,
 };
 use super::{Lowering, MANY_OCTAVES, MOST_PRODUCTS, WIDEST_OPERAND, exponential, root, shape};
+use crate::memo::FormulaMemo;
 use crate::node::{Approximation, NodeId};
 use crate::range::LIMIT_THE_OPERANDS;
 use crate::refusal::PlanRefusal;
@@ -97,7 +98,7 @@ impl Lowering<'_> {
         }
         let function = part.substitute(core, &Expression::operand("x"), &part.span);
         let domain = self.raw_domain(node, self.range(core)?, 0.0);
-        Ok(function_range(&function, format, domain).is_some())
+        Ok(self.function_range(&function, format, domain).is_some())
     }
 
     /// Returns the node of `part`, which is a function of the value of `core` alone, by a rewriting or by a table. Fails if a part
@@ -117,7 +118,7 @@ impl Lowering<'_> {
         let format = self.plan.node(node).format;
         if let Kind::Binary(Operator::Div, a, b) = &part.kind
             && b.varies()
-            && function_range(&function, format, self.raw_domain(node, range, 0.0)).is_none()
+            && self.function_range(&function, format, self.raw_domain(node, range, 0.0)).is_none()
         {
             // A condition excludes the divisor 0 between the smallest and the largest divisor.
             return self.quotient(a, b, part);
@@ -150,7 +151,7 @@ impl Lowering<'_> {
         // The node may differ from its exact value by the roundings before it.
         let slack = if self.is_exact(node) { 0.0 } else { self.largest_error(node) };
         let mut domain = self.raw_domain(node, range, slack);
-        if function_range(function, operand, domain).is_none() {
+        if self.function_range(function, operand, domain).is_none() {
             // For example, a root below 0. The proof decides whether the node can have such values.
             domain = self.raw_domain(node, range, 0.0);
         }
@@ -176,6 +177,17 @@ impl Lowering<'_> {
             true => self.finest + 1 + places,
             false => i32::MIN,
         }
+    }
+
+    /// Returns what [`function_range`] returns.
+    fn function_range(
+        &self,
+        function: &Expression,
+        operand: Format,
+        domain: (i64, i64),
+    ) -> Option<Enclosure> {
+        let compute = || function_range(function, operand, domain);
+        self.memo.functions.value(function, &(operand, domain), compute)
     }
 
     /// Returns the first and the last raw value that `node` can have if its exact value lies within `range`, and differs from the
@@ -209,7 +221,7 @@ impl Lowering<'_> {
             fraction,
             error: self.guards.style.table_error,
         };
-        let values = function_range(function, operand, domain).ok_or_else(|| {
+        let values = self.function_range(function, operand, domain).ok_or_else(|| {
             let [from, to] = [domain.0, domain.1].map(|raw| operand.to_f64(raw.into()));
             let formula = function.python();
             let message = format!(
@@ -261,6 +273,9 @@ fn function_of_number(function: &Expression, number: f64) -> Option<Expression> 
     let value = shape::number(&value.to_string());
     Some(function.substitute(&Expression::operand("x"), &value, &function.span))
 }
+
+/// The limits of functions of x, by the format and the raw domain of x ([`function_range`]).
+pub(super) type FunctionRanges = FormulaMemo<(Format, (i64, i64)), Option<Enclosure>>;
 
 /// Returns limits of the values of a function of x over the raw domain. Returns `None` if the limits are not finite.
 ///
