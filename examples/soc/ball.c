@@ -4,7 +4,7 @@
 #include "shade_model.h"
 
 /* The root as IEEE 754 rounds it: bit by bit, of a mantissa of 53 bits and an even exponent. */
-static double root(double value)
+double root(double value)
 {
     union {
         double value;

@@ -20,6 +20,9 @@ typedef struct {
     double base[3];
 } pixel;
 
+/* The square root as IEEE 754 rounds it. */
+double root(double value);
+
 /* The vector of length 1. */
 vector unit(vector v);
 

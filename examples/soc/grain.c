@@ -153,4 +153,4 @@ static void by_hand(const span *spans, unsigned count, const uint32_t *operands,
     }
 }
 
-const device grain = {2, {by_spans, by_registers, by_hand, by_model}};
+const device grain = {2, 0, {by_spans, by_registers, by_hand, by_model}};

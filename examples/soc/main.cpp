@@ -1,4 +1,4 @@
-// Runs the system until its program ends: its pictures go to shade.ppm and grain.ppm.
+// Runs the system until its program ends: its pictures go to shade.ppm, grain.ppm and lit.ppm.
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -22,7 +22,7 @@ std::FILE* begin(const char* name) {
     return picture;
 }
 
-constexpr unsigned SERIES = 3, WAYS = 4, BY_HAND = 2;
+constexpr unsigned SERIES = 4, WAYS = 4, BY_HAND = 2;
 const char* const NAMES[WAYS] = {"span engine:", "registers:", "C by hand:", "model in C:"};
 
 // A series of pixels: how many there are, and the clocks of each way.
@@ -31,6 +31,7 @@ void report(const char* series, const uint32_t* numbers) {
     const uint32_t* const clocks = numbers + 1;
     std::printf("%s, %u pixels\n", series, numbers[0]);
     for (unsigned way = 0; way < WAYS; way++) {
+        if (clocks[way] == 0) continue;
         std::printf("  %-12s %6.1f clocks a pixel", NAMES[way], clocks[way] / pixels);
         if (way < BY_HAND) std::printf(", C by hand %.1f times as many", (double)clocks[BY_HAND] / clocks[way]);
         std::printf("\n");
@@ -57,6 +58,7 @@ int main() {
     constexpr uint64_t MOST = 4'000'000'000;
     std::FILE* const shade = begin("shade.ppm");
     std::FILE* const grain = begin("grain.ppm");
+    std::FILE* const lit = begin("lit.ppm");
     Vsoc soc;
     std::vector<uint32_t> numbers;
     for (uint64_t clock = 0; clock < MOST; clock++) {
@@ -68,10 +70,12 @@ int main() {
         if (!soc.rst_n) continue;
         if (soc.shade_write) std::fputc((int)soc.written, shade);
         if (soc.grain_write) std::fputc((int)soc.written, grain);
+        if (soc.lit_write) std::fputc((int)soc.written, lit);
         if (soc.number_write) numbers.push_back(soc.written);
         if (soc.failed) fail("the processor trapped, or a core refused an access");
         if (soc.end_write) {
-            if (std::fclose(shade) != 0 || std::fclose(grain) != 0) fail("the pictures cannot be written");
+            const bool has_error = std::fclose(shade) != 0 || std::fclose(grain) != 0 || std::fclose(lit) != 0;
+            if (has_error) fail("the pictures cannot be written");
             if (soc.written != 0 || numbers.size() != SERIES * (1 + WAYS) + 1 + FUNCTIONS * FUNCTION_WAYS) {
                 std::fprintf(stderr, "the program ended with exit code %u\n", soc.written);
                 return 1;
@@ -80,6 +84,7 @@ int main() {
             report("cosine-power", numbers.data());
             report("rough, where it is smooth", numbers.data() + 1 + WAYS);
             report("rough, where it is not", numbers.data() + 2 * (1 + WAYS));
+            report("lit, from normals of any length", numbers.data() + 3 * (1 + WAYS));
             report_functions(numbers.data() + SERIES * (1 + WAYS));
             return 0;
         }

@@ -101,4 +101,4 @@ static void by_hand(const span *spans, unsigned count, const uint32_t *operands,
     }
 }
 
-const device shade = {1, {by_spans, by_registers, by_hand, by_model}};
+const device shade = {1, 0, {by_spans, by_registers, by_hand, by_model}};

@@ -1,14 +1,15 @@
-// A system on a chip that shades: PicoRV32, 64 kB of RAM, and two devices of Glint. Each is there twice, so that both ways can
+// A system on a chip that shades: PicoRV32, 64 kB of RAM, and three devices of Glint. Two are there twice, so that both ways can
 // be compared: a sequential core behind registers on Wishbone, and a pipeline between AXI4-Streams with a span engine, span.v.
-// The processor calls the functions of a unit, sfu, by instructions.
+// The third, lit, is a pipeline only. The processor calls the functions of a unit, sfu, by instructions.
 //
 //  0x0000_0000  RAM, with the program, the operands and the frame buffer
 //  0x1000_0000  the registers of `shade`, cosine-power
 //  0x2000_0000  +0 a byte of the picture of `shade`, +4 a number to print, +8 the end, with an exit code, +12 a byte of
-//               the picture of `grain`
+//               the picture of `grain`, +16 one of the picture of `lit`
 //  0x3000_0000  the registers of `grain`, rough
 //  0x4000_0000  the span engine of `shade_pipeline`, cosine-power
 //  0x5000_0000  the span engine of `grain_pipeline`, rough
+//  0x6000_0000  the span engine of `lit`, an expression
 
 `default_nettype none
 
@@ -17,6 +18,7 @@ module soc (
     input  wire        rst_n,
     output reg         shade_write,
     output reg         grain_write,
+    output reg         lit_write,
     output reg         number_write,
     output reg         end_write,
     output reg  [31:0] written,
@@ -109,9 +111,13 @@ module soc (
     wire        grain_writes;
     wire [15:2] grain_at;
     wire [31:0] grain_data;
-    wire [15:2] ram_at = la_ram ? mem_la_addr[15:2] : shade_asks ? shade_at : grain_at;
-    wire [31:0] ram_wdata = la_ram ? mem_la_wdata : shade_asks ? shade_data : grain_data;
-    wire        span_writes = shade_asks ? shade_writes : grain_asks & grain_writes;
+    wire        lit_asks;
+    wire        lit_writes;
+    wire [15:2] lit_at;
+    wire [31:0] lit_data;
+    wire [15:2] ram_at = la_ram ? mem_la_addr[15:2] : shade_asks ? shade_at : grain_asks ? grain_at : lit_at;
+    wire [31:0] ram_wdata = la_ram ? mem_la_wdata : shade_asks ? shade_data : grain_asks ? grain_data : lit_data;
+    wire        span_writes = shade_asks ? shade_writes : grain_asks ? grain_writes : lit_asks & lit_writes;
     wire [3:0]  ram_wstrb = la_ram ? {4{mem_la_write}} & mem_la_wstrb : {4{span_writes}};
     always @(posedge clk) begin
         ram_ready <= rst_n & la_ram;
@@ -272,19 +278,73 @@ module soc (
         .m_axis_tready(grain_result_ready)
     );
 
+    wire        lit_ready;
+    wire [9:0]  lit_exponent;
+    wire [23:0] lit_colour;
+    wire [31:0] lit_operands;       // the normal: x, y and z, 10 bits each
+    wire        lit_operands_last;
+    wire        lit_operands_valid;
+    wire        lit_operands_ready;
+    wire [23:0] lit_result;
+    wire        lit_result_last;
+    wire        lit_result_valid;
+    wire        lit_result_ready;
+    span #(.WORDS(1)) lit_span (
+        .clk(clk),
+        .rst_n(rst_n),
+        .request(mem_valid & (mem_addr[31:28] == 4'd6)),
+        .write(|mem_wstrb),
+        .at(mem_addr[4:2]),
+        .data(mem_wdata),
+        .ready(lit_ready),
+        .ram_free(~la_ram & ~shade_asks & ~grain_asks),
+        .ram_request(lit_asks),
+        .ram_write(lit_writes),
+        .ram_at(lit_at),
+        .ram_data(lit_data),
+        .ram_read_data(ram_rdata),
+        .exponent(lit_exponent),
+        .colour(lit_colour),
+        .operands(lit_operands),
+        .operands_last(lit_operands_last),
+        .operands_valid(lit_operands_valid),
+        .operands_ready(lit_operands_ready),
+        .result(lit_result),
+        .result_last(lit_result_last),
+        .result_valid(lit_result_valid),
+        .result_ready(lit_result_ready)
+    );
+    lit_axis lit (
+        .aclk(clk),
+        .aresetn(rst_n),
+        .s_axis_tdata({lit_colour, lit_exponent[7:0], 6'd0, lit_operands[29:20], 6'd0, lit_operands[19:10], 6'd0,
+                       lit_operands[9:0]}),
+        .s_axis_tuser(1'b0),
+        .s_axis_tlast(lit_operands_last),
+        .s_axis_tvalid(lit_operands_valid),
+        .s_axis_tready(lit_operands_ready),
+        .m_axis_tdata(lit_result),
+        .m_axis_tuser(),
+        .m_axis_tlast(lit_result_last),
+        .m_axis_tvalid(lit_result_valid),
+        .m_axis_tready(lit_result_ready)
+    );
+
     // To the outside.
     wire of_console = mem_valid & (mem_addr[31:28] == 4'd2) & ~console_ready;
     reg  console_ready;
     always @(posedge clk) begin
         console_ready <= rst_n & of_console;
-        shade_write <= of_console & (mem_addr[3:2] == 2'd0);
-        grain_write <= of_console & (mem_addr[3:2] == 2'd3);
-        number_write <= of_console & (mem_addr[3:2] == 2'd1);
-        end_write <= of_console & (mem_addr[3:2] == 2'd2);
+        shade_write <= of_console & (mem_addr[4:2] == 3'd0);
+        number_write <= of_console & (mem_addr[4:2] == 3'd1);
+        end_write <= of_console & (mem_addr[4:2] == 3'd2);
+        grain_write <= of_console & (mem_addr[4:2] == 3'd3);
+        lit_write <= of_console & (mem_addr[4:2] == 3'd4);
         written <= mem_wdata;
     end
 
-    assign mem_ready = ram_ready | shade_ack | grain_ack | shade_ready | grain_ready | console_ready;
+    assign mem_ready = ram_ready | shade_ack | grain_ack | shade_ready | grain_ready | lit_ready |
+                       console_ready;
     assign mem_rdata = shade_ack ? shade_rdata : grain_ack ? grain_rdata : ram_rdata;
 endmodule
 

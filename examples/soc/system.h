@@ -17,6 +17,7 @@ typedef volatile struct {
 } span_engine;
 #define SHADE_SPANS ((span_engine *)0x40000000u)
 #define GRAIN_SPANS ((span_engine *)0x50000000u)
+#define LIT_SPANS ((span_engine *)0x60000000u)
 
 /* Has an engine shade a span, when it is through with the one before. */
 static inline void begin_span(span_engine *engine, unsigned words, const span *span, const uint32_t *operands,
@@ -40,8 +41,8 @@ static inline void run_spans(span_engine *engine, unsigned words, const span *sp
     end_spans(engine);
 }
 
-/* The two pictures, one a device. */
-enum picture { SHADE_PICTURE = 0, GRAIN_PICTURE = 3 };
+/* The three pictures, one a device. */
+enum picture { SHADE_PICTURE = 0, GRAIN_PICTURE = 3, LIT_PICTURE = 4 };
 
 /* A byte of a picture. */
 static inline void show(enum picture picture, uint32_t byte)

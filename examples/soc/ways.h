@@ -1,4 +1,4 @@
-/* The ways to highlights: a pipeline that a span engine feeds, a core behind registers, its model in C, and C by hand. All have to
+/* The ways to colours: a pipeline that a span engine feeds, a core behind registers, its model in C, and C by hand. All have to
  * agree. */
 #ifndef WAYS_H
 #define WAYS_H
@@ -20,8 +20,9 @@ typedef void shader(const span *spans, unsigned count, const uint32_t *operands,
 enum way { BY_SPANS, BY_REGISTERS, BY_HAND, BY_MODEL, WAYS };
 
 typedef struct {
-    unsigned words; /* of operands a pixel */
-    shader *ways[WAYS];
+    unsigned words;     /* of operands a pixel */
+    unsigned tolerance; /* the largest difference of C by hand, in units of a colour; the other ways are equal */
+    shader *ways[WAYS]; /* 0 for a way that the device does not have */
 } device;
 
 /* cosine-power: a word a pixel, cos gamma in u1.20. */
@@ -31,6 +32,15 @@ extern const device shade;
 extern const device grain;
 #define ONE 0x100000u
 #define NEGATIVE 0x80000000u
+
+/* lit, of which there is only a pipeline: a word a pixel, the three numbers of a normal of any length, 10 bits each. */
+extern const device lit;
+
+/* Sets the colours of the surface for lit. */
+void lit_begin(uint32_t red, uint32_t green, uint32_t blue);
+
+/* The operand of lit for a normal. */
+uint32_t lit_normal(double x, double y, double z);
 
 /* Sets a device up. Whether it is there, with the configuration of its header. */
 int shade_begin(double specular);
