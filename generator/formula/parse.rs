@@ -173,6 +173,34 @@ fn number(text: &str) -> usize {
     if power > end + 1 + sign { power } else { end }
 }
 
+/// Returns the number 0.
+fn zero() -> Expression {
+    Expression::new(Kind::Number(Literal::zero()), 0..0)
+}
+
+/// Returns whether a formula is the number 0 as a text states it.
+fn is_zero(number: &Expression) -> bool {
+    matches!(&number.kind, Kind::Number(literal) if literal.is_exact() && literal.nearest() == 0.0)
+}
+
+/// Returns the square of the distance between two lists, or between a list and a number that stands for each of its numbers. The square
+/// is exact for operands, unlike the distance. Fails for lists of different sizes.
+fn square_of_distance(
+    first: &NumberOrList,
+    second: &NumberOrList,
+) -> Result<Arc<Expression>, Fault> {
+    let place = |list: &NumberOrList| list.elements()[0].span.bytes.clone();
+    let span = place(first).start..place(second).end;
+    let differences = list::for_each_element(&[first.clone(), second.clone()], &span, |pair| {
+        let [a, b] = [0, 1].map(|at| Arc::new(pair[at].clone()));
+        Ok(match is_zero(&b) {
+            true => Arc::unwrap_or_clone(a),
+            false => Expression::new(Kind::Binary(Operator::Sub, a, b), span.clone()),
+        })
+    })?;
+    list::list_function("dot", &[differences.clone(), differences], span)?.number()
+}
+
 fn ends_number(token: &str) -> bool {
     let last = token.chars().last();
     last.is_some_and(|last| last.is_alphanumeric() || matches!(last, '_' | ')' | ']' | '.'))
@@ -240,7 +268,7 @@ impl<'t> Parser<'t> {
         };
         if SIGNS_OF_COMPARISONS.contains(&self.peek()) {
             // As in C: `a < b ? x : y`.
-            let condition = self.condition_of(choice.number()?)?;
+            let condition = self.condition_of(choice)?;
             choice = self.cases_in_c(from, &condition)?;
         } else if self.taken(&["if"]) {
             let condition = self.condition()?;
@@ -281,10 +309,6 @@ impl<'t> Parser<'t> {
         })
     }
 
-    fn number(&mut self) -> Result<Expression, Fault> {
-        Ok(Arc::unwrap_or_clone(self.sum()?.number()?))
-    }
-
     fn condition(&mut self) -> Result<JoinedCondition, Fault> {
         if self.depth == DEEPEST {
             return self.fault(format!("the formula is nested more than {DEEPEST} deep"));
@@ -296,7 +320,7 @@ impl<'t> Parser<'t> {
         condition
     }
 
-    fn condition_of(&mut self, first: Arc<Expression>) -> Result<JoinedCondition, Fault> {
+    fn condition_of(&mut self, first: NumberOrList) -> Result<JoinedCondition, Fault> {
         let comparison = self.comparisons(first)?;
         self.joined(comparison)
     }
@@ -347,7 +371,7 @@ impl<'t> Parser<'t> {
             self.expect(")")?;
             return Ok(inner);
         }
-        let first = Arc::new(self.number()?);
+        let first = self.sum()?;
         self.comparisons(first)
     }
 
@@ -379,8 +403,8 @@ impl<'t> Parser<'t> {
         has_comparison
     }
 
-    /// Parses the comparisons that follow a number, for example `< x <= 2`.
-    fn comparisons(&mut self, first: Arc<Expression>) -> Result<JoinedCondition, Fault> {
+    /// Parses the comparisons that follow a number or a list, for example `< x <= 2`.
+    fn comparisons(&mut self, first: NumberOrList) -> Result<JoinedCondition, Fault> {
         let mut first = first;
         let mut all: Option<JoinedCondition> = None;
         loop {
@@ -390,8 +414,8 @@ impl<'t> Parser<'t> {
                 return all.map_or_else(|| self.fault(missing), Ok);
             }
             self.count_joined()?;
-            let second = Arc::new(self.number()?);
-            let comparison = JoinedCondition::Is(self.compared(first, &sign, second.clone()));
+            let second = self.sum()?;
+            let comparison = JoinedCondition::Is(self.compared(first, &sign, second.clone())?);
             all = Some(match all {
                 None => comparison,
                 Some(before) => JoinedCondition::Both(Box::new(before), Box::new(comparison)),
@@ -400,12 +424,26 @@ impl<'t> Parser<'t> {
         }
     }
 
-    fn compared(&self, first: Arc<Expression>, sign: &str, second: Arc<Expression>) -> Comparison {
-        if sign == "==" || sign == "!=" {
-            return self.equality(first, second, sign == "==");
+    /// Returns a comparison by `sign`. Lists are equal if all their numbers are, and a list equals a number if all its numbers do. Fails
+    /// for lists of different sizes, and for lists with another sign than `==` and `!=`.
+    fn compared(
+        &self,
+        first: NumberOrList,
+        sign: &str,
+        second: NumberOrList,
+    ) -> Result<Comparison, Fault> {
+        let is_equality = sign == "==" || sign == "!=";
+        let has_list = [&first, &second].iter().any(|it| matches!(it, NumberOrList::List(_)));
+        if is_equality && has_list {
+            let distance = square_of_distance(&first, &second)?;
+            return Ok(self.equality(distance, Arc::new(zero()), sign == "=="));
+        }
+        let (first, second) = (first.number()?, second.number()?);
+        if is_equality {
+            return Ok(self.equality(first, second, sign == "=="));
         }
         let (left, right) = if sign.starts_with('>') { (first, second) } else { (second, first) };
-        Comparison { left, right, or_equal: sign.len() == 2 }
+        Ok(Comparison { left, right, or_equal: sign.len() == 2 })
     }
 
     /// Returns whether two numbers are equal (`is_equal`) or differ, as a comparison of their distance with 0.
@@ -418,7 +456,6 @@ impl<'t> Parser<'t> {
         let span =
             TextSpan { bytes: first.span.bytes.start..second.span.bytes.end, ..first.span.clone() };
         let part = |kind: Kind| Arc::new(Expression::new(kind, span.clone()));
-        let is_zero = |number: &Expression| matches!(&number.kind, Kind::Number(literal) if literal.is_exact() && literal.nearest() == 0.0);
         let difference = match is_zero(&second) {
             true => first,
             false => part(Kind::Binary(Operator::Sub, first, second)),
@@ -428,7 +465,7 @@ impl<'t> Parser<'t> {
             Kind::Unary(Function::Sqrt | Function::Abs, _) => difference,
             _ => part(Kind::Unary(Function::Abs, difference)),
         };
-        let zero = part(Kind::Number(Literal::zero()));
+        let zero = part(zero().kind);
         match is_equal {
             true => Comparison { left: zero, right: distance, or_equal: true },
             false => Comparison { left: distance, right: zero, or_equal: false },

@@ -107,6 +107,8 @@ fn lists_become_formulas_of_their_numbers() {
         ("sum(v)", vec!["v0 + v1 + (v2 + v3)"]),
         ("mean(n)", vec!["(nx + ny + nz) / 3"]),
         ("length(n.xz)", vec!["sqrt(nx ** 2 + nz ** 2)"]),
+        ("if(n.xy == 0, 1, 2)", vec!["1 if 0 >= abs(nx ** 2 + ny ** 2) else 2"]),
+        ("n.xy != l.xy ? 1 : 2", vec!["1 if abs((nx - lx) ** 2 + (ny - ly) ** 2) > 0 else 2"]),
         ("hypot(n.xz)", vec!["sqrt(nx ** 2 + nz ** 2)"]),
         ("distance(n.xy, l.xy)", vec!["sqrt((nx - lx) ** 2 + (ny - ly) ** 2)"]),
         ("v[2] + n.y", vec!["v2 + ny"]),
