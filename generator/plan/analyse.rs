@@ -493,11 +493,7 @@ impl ErrorAnalysis<'_> {
             Operation::Scale(a) => {
                 let factor = exp2(self.plan.node(*a).format.frac - node.format.frac);
                 let NodeError { ideal, error, .. } = input(*a);
-                let value = NodeError::new(scaled(ideal, factor), scaled(error, factor));
-                match node.deviation() {
-                    0.0 => value,
-                    distance => value.near(distance, own_errors),
-                }
+                NodeError::new(scaled(ideal, factor), scaled(error, factor))
             }
             Operation::Narrow(a, rounding) => {
                 let places = self.plan.node(*a).format.frac - node.format.frac;
@@ -588,6 +584,10 @@ impl ErrorAnalysis<'_> {
         if matches!(node.operation, Operation::Less(..) | Operation::NonZero(_)) {
             return Ok(value);
         }
+        let value = match node.deviation {
+            0.0 => value,
+            distance => value.near(distance, own_errors),
+        };
         let value = value.within(node.limits).limited(self.actual(node, values));
         let value = value.limited(node.actual_limits);
         // The format of a result can represent all values within the allowed error, so its error shows whether the value fits.
@@ -739,7 +739,7 @@ fn stated_value(node: &PlanNode, operands: &[(&str, Enclosure)]) -> Option<NodeE
     Some(match accuracy {
         ValueAccuracy::Nearest => NodeError::new(ideal, Enclosure::between(-half, half)),
         ValueAccuracy::Exact => NodeError::exactly(ideal),
-        ValueAccuracy::FromInputs | ValueAccuracy::NearInputs(_) => return None,
+        ValueAccuracy::FromInputs => return None,
     })
 }
 

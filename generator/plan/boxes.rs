@@ -256,8 +256,8 @@ impl<'p> ResultProof<'p> {
         let _ = write!(digest, "{promise:?}{error:?}{fraction}");
         for (at, node) in self.plan.nodes().iter().enumerate() {
             if self.needed[at] {
-                let PlanNode { operation, format, range, limits, actual_limits, .. } = node;
-                let deviation = node.deviation();
+                let PlanNode { operation, format, range, limits, actual_limits, deviation, .. } =
+                    node;
                 let _ = write!(
                     digest,
                     "{at}{operation:?}{format:?}{range:?}{limits:?}{actual_limits:?}{deviation}"

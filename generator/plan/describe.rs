@@ -25,7 +25,7 @@ impl ExpressionPlan {
             Operation::Choose { condition, cases: [zero, one] } => {
                 format!("{} where {} is 1, else {}", name(one), name(condition), name(zero))
             }
-            Operation::Scale(a) if self.node(id).deviation() > 0.0 => {
+            Operation::Scale(a) if self.node(id).deviation > 0.0 => {
                 format!("{}, whose constants are rounded", name(a))
             }
             Operation::Scale(a) => format!("{} times a power of two", name(a)),

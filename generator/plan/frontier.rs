@@ -83,6 +83,7 @@ fn plain_nodes(plan: &ExpressionPlan) -> Vec<bool> {
             Operation::Normalise { .. } | Operation::Places(_) | Operation::IntegerPart(_)
         );
         let is_rounded = node.source.is_some()
+            || node.deviation > 0.0
             || node.stated.as_ref().is_some_and(|it| it.accuracy == ValueAccuracy::Nearest);
         let of_plain = node.operation.inputs().iter().all(|input| is_plain[input.0]);
         is_plain.push(!has_branches && !is_rounded && of_plain);

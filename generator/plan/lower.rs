@@ -476,7 +476,7 @@ impl<'s> Lowering<'s> {
             let limits = Enclosure::between(limits.low.max(range.low), limits.high.min(range.high));
             // The rounded value can lie beyond the limits, so that only the exact value has them.
             let own = self.plan.node(node).clone();
-            let copy = PlanNode { limits, source: None, stated: None, ..own };
+            let copy = PlanNode { limits, source: None, stated: None, deviation: 0.0, ..own };
             return Ok(self.plan.push_copy(&copy, Operation::Scale(node)));
         }
         let limits = self.range(part)?;

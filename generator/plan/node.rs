@@ -35,6 +35,10 @@ pub struct PlanNode {
     /// The value of the node by a formula of the operands, for all operands for which the node matters. The rewriting supplies it
     /// where the nodes before this one do not show the value; `None` for the others.
     pub stated: Option<StatedValue>,
+    /// The largest distance between the node's value in real-number arithmetic and the operation on the inputs' values in real-number
+    /// arithmetic. The distance is 0 for most nodes. For example, a quotient whose constants were rounded before has about half a unit
+    /// of these constants.
+    pub deviation: f64,
     /// How near the cases of a choice are to each other where the compared numbers are nearly equal; `None` if this is not known, and
     /// for other operations.
     pub agreement: Option<CaseAgreement>,
@@ -64,7 +68,7 @@ pub struct CaseAgreement {
 }
 
 /// How near the hardware's value of a node is to the formula that the node computes.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ValueAccuracy {
     /// The hardware has the value of the formula. For example, a node that corrects an estimate of a quotient has its integer part.
     Exact,
@@ -74,9 +78,6 @@ pub enum ValueAccuracy {
     /// The errors of the inputs decide. The formula gives the ideal value of a choice where the case that the hardware does not
     /// take has no limits.
     FromInputs,
-    /// The operation on the real values of the inputs gives the formula, up to this distance. For example, a quotient whose constants
-    /// were rounded before has about half a unit of these constants.
-    NearInputs(f64),
 }
 
 impl PlanNode {
@@ -84,15 +85,6 @@ impl PlanNode {
     pub(super) fn has_stated_error(&self) -> bool {
         let accuracy = self.stated.as_ref().map(|stated| stated.accuracy);
         matches!(accuracy, Some(ValueAccuracy::Exact | ValueAccuracy::Nearest))
-    }
-
-    /// Returns how far the value of the formula may be from the operation on the real values of the inputs: 0 unless the rewriting
-    /// changed constants before.
-    pub(super) fn deviation(&self) -> f64 {
-        match self.stated.as_ref().map(|stated| stated.accuracy) {
-            Some(ValueAccuracy::NearInputs(distance)) => distance,
-            _ => 0.0,
-        }
     }
 
     /// Returns whether two nodes compute the same function of their inputs, in the same format. All operands count as the same.

@@ -178,7 +178,7 @@ impl ExpressionPlan {
     /// only earlier node with the same bits. Returns `None` if the value is exact or has several inputs.
     pub(super) fn rounding_before(&self, id: NodeId) -> Option<usize> {
         let node = self.node(id);
-        if node.source.is_some() && node.deviation() == 0.0 {
+        if node.source.is_some() && node.deviation == 0.0 {
             return node.source;
         }
         let before = match node.operation {

@@ -619,3 +619,22 @@ fn a_name_that_is_not_unique_and_empty_limits_are_refused() {
     let refusal = empty_limits.finish().expect_err("empty limits");
     assert_eq!(refusal.message, "the node `a` has limits that contain no value");
 }
+
+/// A rounded difference can be a little above 1, where the inverse cosine has no value. The hardware then takes its value at 1.
+#[test]
+fn functions_of_rounded_differences_end_where_they_have_values() {
+    const BITS: i32 = 6;
+    let format = Format::unsigned(0, BITS);
+    for formula in ["acos(cos(x) - y * 0.3) / 2", "acos(cos(y) - x / 7) / 3"] {
+        let statement = ExpressionStatement {
+            operands: vec![operand("x", format), operand("y", format)],
+            results: vec![result("r", formula, BITS as u32)],
+        };
+        let found = find(&statement).unwrap_or_else(|refusal| panic!("{formula}: {refusal:?}"));
+        let names: Vec<&str> = found.plan.nodes().iter().map(|node| node.name.as_str()).collect();
+        let end = ["not_below", "not_above"];
+        assert!(names.iter().any(|name| end.contains(name)), "{formula}: {names:?}");
+        let largest = largest_errors(&statement, &found.plan).expect("values");
+        assert!(largest[0] <= found.bounds[0] + ROUNDING, "{formula}: {largest:?}");
+    }
+}

@@ -232,7 +232,8 @@ impl Lowering<'_> {
 
     /// Adds a copy of a node that states no value, under a name of its own, and returns the copy.
     fn without_statement(&mut self, (name, node): (&str, NodeId)) -> NodeId {
-        let copy = PlanNode { name: name.to_owned(), stated: None, ..self.plan.node(node).clone() };
+        let own = self.plan.node(node).clone();
+        let copy = PlanNode { name: name.to_owned(), stated: None, deviation: 0.0, ..own };
         self.plan.push_copy(&copy, Operation::Scale(node))
     }
 

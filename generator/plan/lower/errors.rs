@@ -93,11 +93,11 @@ impl Lowering<'_> {
         let plan = self.plan.so_far();
         let mut nodes = plan.nodes().iter().zip(plan.needed_by(node));
         nodes.all(|(node, is_needed)| {
-            let is_rounded = |stated: &StatedValue| {
-                let is_nearest = stated.accuracy == ValueAccuracy::Nearest;
-                is_nearest || matches!(stated.accuracy, ValueAccuracy::NearInputs(_))
-            };
-            !is_needed || node.source.is_none() && !node.stated.as_ref().is_some_and(is_rounded)
+            let is_nearest = |stated: &StatedValue| stated.accuracy == ValueAccuracy::Nearest;
+            let is_rounded = node.source.is_some()
+                || node.deviation > 0.0
+                || node.stated.as_ref().is_some_and(is_nearest);
+            !is_needed || !is_rounded
         })
     }
 }

@@ -7,7 +7,7 @@
 use glint_formula::Expression;
 
 use super::Lowering;
-use crate::node::{NodeId, Operation, PlanNode, ValueAccuracy};
+use crate::node::{NodeId, Operation, PlanNode};
 use crate::projection;
 use crate::refusal::PlanRefusal;
 
@@ -28,12 +28,11 @@ impl Lowering<'_> {
                 unreachable!("a projection with other constants is one with any number of bits")
             };
             let near = own.part(&rounded.formula)?;
-            let accuracy = ValueAccuracy::NearInputs(rounded.deviation);
-            let stated = Some(own.stated(part, &own.uses, accuracy));
             let copy = PlanNode {
                 name: "projection".to_owned(),
                 limits,
-                stated,
+                stated: None,
+                deviation: rounded.deviation,
                 agreement: None,
                 source: None,
                 ..own.plan.node(near).clone()

@@ -147,14 +147,9 @@ impl Lowering<'_> {
         {
             return self.number(&value);
         }
-        let operand = self.plan.node(node).format;
         // The node may differ from its exact value by the roundings before it.
         let slack = if self.is_exact(node) { 0.0 } else { self.largest_error(node) };
-        let mut domain = self.raw_domain(node, range, slack);
-        if self.function_range(function, operand, domain).is_none() {
-            // For example, a root below 0. The proof decides whether the node can have such values.
-            domain = self.raw_domain(node, range, 0.0);
-        }
+        let (node, domain) = self.within_domain(node, function, range, slack)?;
         let (first, last) = domain;
         if last <= first {
             return Err(PlanRefusal::new(
@@ -167,6 +162,39 @@ impl Lowering<'_> {
             let frac = frac.max(own.least_table_fraction(0));
             own.approximation(name, node, function, domain, frac)
         })
+    }
+
+    /// Returns the raw domain of a table for `function`, and a node whose values lie in it. The value of `node` lies in `range` in
+    /// real-number arithmetic, and in hardware up to `slack` units beyond. If the function has no value beyond an end of `range`, for
+    /// example below 0 for a root, this end replaces the node's values beyond it. Fails if a node has too many bits.
+    fn within_domain(
+        &mut self,
+        node: NodeId,
+        function: &Expression,
+        range: Enclosure,
+        slack: f64,
+    ) -> Result<(NodeId, (i64, i64)), PlanRefusal> {
+        let operand = self.plan.node(node).format;
+        let [wide, narrow] = [slack, 0.0].map(|slack| self.raw_domain(node, range, slack));
+        let mut domains = [wide, (narrow.0, wide.1), (wide.0, narrow.1)].into_iter();
+        let has_values =
+            |domain: &(i64, i64)| self.function_range(function, operand, *domain).is_some();
+        let domain = domains.find(has_values).unwrap_or(narrow);
+        let (first, last) = domain;
+        let unit = exp2(-operand.frac);
+        let mut within = node;
+        if first > wide.0 {
+            let least = self.plan.constant("least", first.into(), operand.frac)?;
+            within = self.plan.maximum("not_below", within, least)?;
+            // The end is a raw value, and may lie above the smallest real value.
+            self.plan.state_deviation(within, excess(first as f64 * unit, range.low));
+        }
+        if last < wide.1 {
+            let most = self.plan.constant("most", last.into(), operand.frac)?;
+            within = self.plan.minimum("not_above", within, most)?;
+            self.plan.state_deviation(within, excess(range.high, last as f64 * unit));
+        }
+        Ok((within, domain))
     }
 
     /// Returns the smallest number of fraction bits of a table whose value is divided by 2 to the power of `places` before it is a result.
@@ -272,6 +300,11 @@ fn function_of_number(function: &Expression, number: f64) -> Option<Expression> 
     let value = RBig::try_from(number).ok()?;
     let value = shape::number(&value.to_string());
     Some(function.substitute(&Expression::operand("x"), &value, &function.span))
+}
+
+/// Returns an upper limit of a − b, and 0 if a is not above b.
+fn excess(a: f64, b: f64) -> f64 {
+    if a > b { (a - b).next_up() } else { 0.0 }
 }
 
 /// The limits of functions of x, by the format and the raw domain of x ([`function_range`]).

@@ -342,7 +342,8 @@ impl Lowering<'_> {
         // The number of turns is exact, so that the exact rest is a remainder. The rounded rest may be a little beyond its limits.
         let own = self.plan.node(rest).clone();
         let frac = own.format.frac;
-        let limited = PlanNode { limits: values, source: None, stated: None, ..own };
+        let limited =
+            PlanNode { limits: values, source: None, stated: None, deviation: 0.0, ..own };
         let limited = self.plan.push_copy(&limited, Operation::Scale(rest));
         let least = values.low.min(-exp2(-frac));
         let format = holding(Enclosure::between(least, values.high), frac);

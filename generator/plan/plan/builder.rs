@@ -89,6 +89,11 @@ impl PlanBuilder {
         self.plan.nodes[id.0].actual_limits = limits;
     }
 
+    /// States how far the node's value may be from the operation on the values of the inputs, both in real-number arithmetic.
+    pub(crate) fn state_deviation(&mut self, id: NodeId, deviation: f64) {
+        self.plan.nodes[id.0].deviation = deviation;
+    }
+
     /// States how near the cases of a choice are to each other. `None` states nothing.
     pub(crate) fn state_agreement(&mut self, id: NodeId, agreement: Option<CaseAgreement>) {
         self.plan.nodes[id.0].agreement = agreement;
@@ -147,6 +152,7 @@ impl PlanBuilder {
             limits: ANYTHING,
             actual_limits: ANYTHING,
             stated: None,
+            deviation: 0.0,
             agreement: None,
             source: None,
         });
@@ -171,6 +177,7 @@ impl PlanBuilder {
             node.source.is_none()
                 && node.limits == ANYTHING
                 && node.stated.is_none()
+                && node.deviation == 0.0
                 && node.format == format
                 && node.operation.identity().as_ref() == Some(&wanted)
         };

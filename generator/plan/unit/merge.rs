@@ -223,6 +223,7 @@ impl Merger<'_> {
             limits: ANYTHING,
             actual_limits: ANYTHING,
             stated: None,
+            deviation: 0.0,
             agreement: None,
             source: None,
             ..node.clone()
