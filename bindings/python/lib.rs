@@ -495,7 +495,7 @@ fn computed<'py>(
     Ok(computed.into_arrays(py))
 }
 
-/// Name and format of a port.
+/// Returns a dictionary with `name`, `signed`, `width` and `fraction` of a port.
 fn port<'py>(
     py: Python<'py>,
     name: &str,

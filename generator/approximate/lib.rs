@@ -2,9 +2,8 @@
 //!
 //! The domain is divided into [`Segments`]. A table has the polynomial's coefficients for each segment, and the hardware
 //! evaluates the polynomial in integers by Horner's rule. [`find`] chooses the degree, the segments, the coefficients and the bit
-//! widths. [`Piecewise::prove`] then compares the result of every operand with the formula or the curve. For more than
-//! 2^[`MOST_BITS`] operands of a formula, the proof uses intervals; so many operands are an error with samples or with a range
-//! reduction.
+//! widths. [`Piecewise::prove`] then compares the result of every operand with the exact function: a formula, or a curve through
+//! measured points ([`Samples`]). If a formula has more than 2^[`MOST_BITS`] operands, the proof uses intervals of operands.
 
 mod minimax;
 mod reduction;
@@ -36,7 +35,7 @@ pub use segments::{Layout, SegmentOffset, Segments};
 pub use shared::{SharedWidths, find_with_widths, widths_with_prefix};
 pub use writable::{find_images, reachable_image_error};
 
-/// The largest degree is 3.
+/// The most partial sums of a polynomial; the largest degree is 3.
 const MOST_SUMS: usize = 4;
 
 /// The number of intervals in which [`TargetFunction::pole`] looks for a pole.
@@ -264,7 +263,7 @@ impl TargetFunction {
         Numbering { origin: self.operand.min_raw() as i64, bits: whole, overhang: 0 }
     }
 
-    /// The message states the operand at which the formula has the fault, as a real number.
+    /// Returns the refusal of a formula without a value. The message states the operand `raw` as a real number.
     fn refusal(&self, raw: i64, fault: &Fault) -> Refusal {
         let x = self.operand.to_f64(raw.into());
         Refusal {
@@ -367,7 +366,7 @@ impl Piecewise {
         self.reduced(raw).1.result(polynomial)
     }
 
-    /// Returns whether the product of every step fits a net, with the bit that its sum may need more.
+    /// Returns whether the product of every step fits a net, with one more bit for the sum.
     fn has_narrow_products(&self) -> bool {
         self.steps.iter().zip(&self.sums[1..]).all(|(step, sum)| {
             sum.width() + 1 + step.offset + self.segments.extra_bit() < MAX_WIDTH
@@ -402,8 +401,8 @@ impl Piecewise {
         errors.try_reduce(|| 0.0, |a, b| Ok(a.max(b)))
     }
 
-    /// Returns the largest possible error at a raw operand, in units of the result's last bit. Fails as [`Piecewise::prove`]
-    /// does.
+    /// Returns the largest possible error at a raw operand, in units of the result's last bit. Fails if a sum does not fit its
+    /// format, if the error is not below the allowed error, or if the function has no value.
     fn error_at(&self, function: &TargetFunction, raw: i64) -> Result<f64, Refusal> {
         let sums = self.sums_of(raw);
         let result = self.restored(raw, sums[0]);

@@ -1,10 +1,11 @@
 //! Fits polynomials to points so that the largest distance is as small as possible, by exchanging reference points (the Remez
 //! algorithm). For example, the best constant for x² from −1 to 1 is 1/2, at a distance of at most 1/2.
 
-/// The degree is at most 3.
+/// The most coefficients; the degree is at most 3.
 const MOST: usize = 4;
 
-/// The search ends earlier if the largest error equals the error at the reference points, or lies at a reference point.
+/// The most exchanges. The search ends earlier if the largest error equals the error at the reference points, or lies at a
+/// reference point.
 const EXCHANGES: usize = 30;
 
 /// Returns the polynomial of degree `degree`, at most 3, with the smallest largest distance from `values` at the points `at`,

@@ -253,7 +253,7 @@ fn refused<T>(why: UnsuitedReduction, message: &str) -> Result<T, Refusal> {
     Err(Refusal::of_reduction(why, message))
 }
 
-/// `wanted` is the reason for the user.
+/// Returns the refusal of a formula that does not satisfy the identity; `wanted` says why.
 fn unlike<T>(wanted: &str) -> Result<T, Refusal> {
     let message = format!("the formula does not satisfy this identity: {wanted}");
     refused(UnsuitedReduction::NoIdentity, &message)
@@ -263,7 +263,7 @@ fn near(a: f64, b: f64) -> bool {
     (a - b).abs() <= EQUAL * a.abs().max(b.abs()).max(1e-3)
 }
 
-/// The list must not be empty.
+/// Returns whether all values are near the first one, which must exist.
 fn all_near(values: &[f64]) -> bool {
     values.iter().all(|&value| near(value, values[0]))
 }

@@ -6,7 +6,7 @@ use std::ops::Range;
 /// function tells its user which of its keys to change.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Refusal {
-    /// A device chooses the key and the remedy by it.
+    /// The kind, by which a device chooses the key and the remedy.
     pub kind: RefusalKind,
     /// The range of bytes in the formula's text to which the reason applies, if it applies to a particular part.
     pub place: Option<Range<usize>>,
@@ -57,7 +57,7 @@ pub enum UnsuitedReduction {
 }
 
 impl Refusal {
-    /// The refusal concerns no particular part of the formula.
+    /// Makes a refusal that concerns no particular part of the formula.
     pub(super) fn new(kind: RefusalKind, message: impl Into<String>) -> Self {
         Self { kind, place: None, message: message.into() }
     }

@@ -34,10 +34,10 @@ const DEGREES: u32 = 3;
 /// A table has at most 2^16 words.
 const ADDRESS: u32 = 16;
 
-/// About so many operands choose degree, segments and bit widths.
+/// The approximate number of operands with which degree, segments and bit widths are chosen.
 const CHOOSING: usize = 1 << 16;
 
-/// About so many operands widen the chosen bit widths, before the search uses all its operands.
+/// The approximate number of operands with which the chosen bit widths are widened, before the search uses all its operands.
 const WIDENING: usize = 1 << 20;
 
 /// The first and the last raw operand of a domain must differ by less than 2 to this power.
@@ -107,8 +107,8 @@ pub fn reachable_error(function: &TargetFunction, wish: Wish) -> Option<f64> {
 /// Returns the cheapest approximation with a proved bound, for the first numbering of the operands that has one.
 ///
 /// # Errors
-/// Fails if the function has no value at an operand, if a found approximation cannot be proved, or as [`attempt_reduced`] does if
-/// `wish` has an identity.
+/// Fails if the function has no value at an operand, or if a found approximation cannot be proved. With an identity in `wish`,
+/// also fails if the domain has more than 2^26 operands, or if the identity does not hold.
 fn attempt(function: &TargetFunction, wish: Wish) -> Result<Option<Piecewise>, Refusal> {
     if wish.identity != Identity::None {
         return attempt_reduced(function, wish);
@@ -228,10 +228,10 @@ fn most_words(seen: &AllowedResults, degree: u32, least: f64) -> usize {
     (((least - STEP * f64::from(degree)) / word).max(0.0) as usize).min(1 << ADDRESS)
 }
 
-/// Returns divisions of the domain into at most `most` segments, in order of rising numbers of segments. They are fine enough for
-/// polynomials of degree `degree`. The list has the coarsest division of a layout and a number of octaves, and the same with
-/// twice as many segments. The function leaves out numbers of octaves that make no coarser division than fewer octaves. A
-/// division is fine enough if polynomials with unrounded coefficients keep the error.
+/// Returns divisions of the domain into at most `most` segments that are fine enough for polynomials of degree `degree`, in order
+/// of rising numbers of segments. A division is fine enough if polynomials with unrounded coefficients keep the error. For each
+/// layout and number of octaves, the list has the coarsest such division, and the division with twice as many segments. A number
+/// of octaves is left out if fewer octaves give a division at least as coarse.
 fn cuts(seen: &AllowedResults, degree: u32, wish: Wish, most: usize) -> Vec<Segments> {
     let layout = wish.layout;
     let mut search = CutSearch { seen, degree, most, prefix: wish.prefix, worst: None };
@@ -289,7 +289,8 @@ impl CutSearch<'_> {
             && cut.holds_overhang()
     }
 
-    /// Returns the division with the fewest segments for this layout and number of octaves that is fine enough.
+    /// Returns the division with the fewest segments for this layout and number of octaves that is fine enough; `None` without
+    /// one.
     fn coarsest(&mut self, layout: Layout, octaves: u32) -> Option<Segments> {
         let least = u32::from(octaves == 0);
         let prefixes = self.prefix.map_or(least..=ADDRESS, |prefix| prefix..=prefix);

@@ -79,8 +79,9 @@ impl TargetFunction {
 }
 
 impl<'f> AllowedResults<'f> {
-    /// Evaluates the function. Returns `None` if an operand has no allowed result. If the search does not evaluate every
-    /// operand, the allowed error is reduced by the margin `stricter`. Fails as [`TargetFunction::right`] does.
+    /// Evaluates the function. Returns `None` if an operand has no allowed result. If the search does not evaluate every operand,
+    /// the allowed error is reduced by the margin `stricter`. Fails if the function has no value at an operand, or if a result
+    /// needs more than 48 bits.
     pub(super) fn new(
         function: &'f TargetFunction,
         stricter: f64,
@@ -114,9 +115,9 @@ impl<'f> AllowedResults<'f> {
         Ok(Some(Self { function, origin, bits, overhang, stride, right, result, whole: None }))
     }
 
-    /// Computes the allowed values of the polynomial behind a range reduction. Several operands of `whole` may be reduced to the
-    /// same number; a value must then be allowed for all of them. `inner` is the function that the polynomial approximates.
-    /// Returns `None` if a number has no allowed value. Fails as [`TargetFunction::right`] does.
+    /// Computes the allowed values of the polynomial behind a range reduction, which approximates `inner`. Several operands of
+    /// `whole` may be reduced to the same number; a value must then be allowed for all of them. Returns `None` if a number has no
+    /// allowed value. Fails if a function has no value at an operand, or if a result needs more than 48 bits.
     pub(super) fn reduced(
         whole: &'f TargetFunction,
         reduction: &'f Reduction,

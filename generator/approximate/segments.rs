@@ -65,7 +65,7 @@ impl Segments {
         self.bits + self.extra_bit()
     }
 
-    /// With an overhang, numbers and offsets have one bit more.
+    /// Returns the number of additional bits of numbers and offsets: 1 with an overhang, otherwise 0.
     pub fn extra_bit(&self) -> u32 {
         u32::from(self.overhang > 0)
     }

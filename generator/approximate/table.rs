@@ -1,5 +1,5 @@
-//! Finds the table of coefficients for given segments. The search lowers the bit widths one bit at a time. It goes on while it
-//! finds coefficients with an allowed result at every evaluated operand.
+//! Finds the table of coefficients for given segments. The search lowers the bit widths one bit at a time, while it finds
+//! coefficients with an allowed result at every evaluated operand.
 //!
 //! The search rounds the coefficients one after the other, the highest first. After each coefficient, the search subtracts the
 //! part of the function that the hardware computes from the coefficients so far, and fits the rest again. The constant comes
@@ -256,7 +256,7 @@ impl<'s> Table<'s> {
         (widths, words)
     }
 
-    /// The widths with which the search begins. Degree 0 needs no additional fraction bits.
+    /// Returns the widths with which the search begins. Degree 0 needs no additional fraction bits.
     pub(super) fn generous(&self, degree: usize) -> Widths {
         let guard = if degree == 0 { 0 } else { GENEROUS };
         Widths { guard: vec![guard; degree + 1], offset: vec![self.cut.rest(); degree] }
@@ -286,7 +286,7 @@ impl<'s> Table<'s> {
         }
     }
 
-    /// Returns words of these widths with which every evaluated operand has an allowed result.
+    /// Returns words of these widths with which every evaluated operand has an allowed result; `None` if none are found.
     pub(super) fn fitted(&self, widths: &Widths) -> Option<Words> {
         let steps = widths.steps()?;
         let fitted_words = self.pieces.par_iter().map(|piece| match piece {
@@ -417,8 +417,8 @@ impl<'s> Table<'s> {
         cells(words.len().max(least_words), width) + PARTIAL * f64::from(partial)
     }
 
-    /// Returns widths from which the search can begin again so that no coefficient is too wide for a multiplier: `most`, with
-    /// fewer fraction bits for each coefficient that is too wide. Returns `None` if none is.
+    /// Returns widths for another search, in which no coefficient is too wide for a multiplier: `most`, with fewer fraction bits
+    /// for each coefficient that is too wide. Returns `None` if no coefficient is too wide.
     pub(super) fn within_factors(
         &self,
         most: &Widths,

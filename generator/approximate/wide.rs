@@ -1,11 +1,10 @@
 //! Proves a bound on the error of a piecewise polynomial by intervals, for domains with more than 2^26 operands.
 //!
-//! The proof treats the offset of an operand in its segment as a real number t, so that a word of the table is a polynomial
-//! P(t). The hardware drops bits, so its result differs from P(t); the proof bounds this difference for a whole segment. Within
-//! an interval, the distance between the function and P is at most the distance in the middle plus a product: half of the length
-//! times the largest slope of their difference. If this bound is too large, or if the function may have no derivative, the proof
-//! halves the interval. An interval with at most four operands is computed operand by operand. A proof that needs more than 2^20
-//! intervals fails.
+//! The proof treats the offset of an operand in its segment as a real number t, so that a word of the table is a polynomial P(t).
+//! The hardware drops bits, and the proof bounds the difference of its result from P(t) for a whole segment. Within an interval,
+//! the distance between the function and P is at most the distance in the middle, plus half of the length times the largest slope
+//! of their difference. If this bound is too large, or if the function may have no derivative, the proof halves the interval,
+//! down to four operands.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -91,8 +90,8 @@ impl Piecewise {
         (value, slope)
     }
 
-    /// Proves the bound of [`Piecewise::prove`] by intervals of operands. Fails as it does, or if the proof needs more than
-    /// [`MOST`] intervals.
+    /// Proves the bound of [`Piecewise::prove`] by intervals of operands. Fails if a sum does not fit its format, if an error is
+    /// not below the allowed error, if the function has no value, or if the proof needs more than [`MOST`] intervals.
     pub(super) fn prove_by_segments(&self, function: &TargetFunction) -> Result<f64, Refusal> {
         let left = AtomicU64::new(MOST);
         let words = (0..self.words.len()).into_par_iter();
@@ -101,8 +100,8 @@ impl Piecewise {
     }
 
     /// Returns a proved bound on the error over all operands that read the table word `word`, in units of the result's last bit;
-    /// 0 if no operand reads it. `left` is the number of intervals that the proof of all words may still examine. Fails as
-    /// [`Piecewise::prove`] does, for example if an error is not below `function.error`. Fails also if `left` reaches 0.
+    /// 0 if no operand reads it. `left` is the number of intervals that the proof of all words may still examine. Fails if a sum
+    /// does not fit its format, if an error is not below `function.error`, if the function has no value, or if `left` reaches 0.
     fn prove_segment(
         &self,
         function: &TargetFunction,

@@ -49,7 +49,8 @@ pub fn find_images(functions: &[TargetFunction], wish: Wish) -> Result<Vec<Piece
     }
 }
 
-/// Returns the images for polynomials of one degree. Fails as [`find_images`] does.
+/// Returns the images for polynomials of one degree. Fails if a domain has more than 2^26 operands, if a function has no value at
+/// an operand, or if no datapath keeps the error of all functions.
 fn images_of_degree(functions: &[TargetFunction], degree: u32) -> Result<Vec<Piecewise>, Refusal> {
     let mut prefix = None;
     for function in functions {
@@ -93,7 +94,8 @@ fn narrowest(
     widths.ok_or_else(|| unkept(&format!("degree {degree} does not keep the error")))
 }
 
-/// Widens the formats of all images to formats that hold every one of them, with a sign and a spare bit.
+/// Widens the formats of all images to formats that hold every one of them, with a sign and a spare bit. Fails if a product would
+/// then be too wide for a net.
 fn with_same_formats(mut images: Vec<Piecewise>) -> Result<Vec<Piecewise>, Refusal> {
     let first = &images[0];
     let result = hull(images.iter().map(|image| image.result), first.result.frac);
@@ -123,7 +125,7 @@ fn with_same_formats(mut images: Vec<Piecewise>) -> Result<Vec<Piecewise>, Refus
     }
 }
 
-/// Returns the smallest format with `frac` fraction bits that holds all numbers of `formats`, which have as many.
+/// Returns the smallest format that holds all numbers of `formats`, which have `frac` fraction bits.
 fn hull(formats: impl Iterator<Item = Format> + Clone, frac: i32) -> Format {
     let low = formats.clone().map(Format::min_raw).min().unwrap_or(0);
     let high = formats.map(Format::max_raw).max().unwrap_or(0);

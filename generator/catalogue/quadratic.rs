@@ -1,8 +1,10 @@
-//! The hardware description of the device `quadratic`, which computes f = max(0, c + a(n)·(c² − c)) ([symbols](crate#symbols)).
+//! The hardware description of the device `quadratic`, which computes f = max(0, c + a(n)·(c² − c)), with c = cos γ and the
+//! specular exponent n ([symbols](crate#symbols)).
 //!
 //! A table, ROM(n), has the coefficients a(n), which are 0 for n = 0 and n = 1. The source is the patent UA 20998, which seed
-//! 001 cites. UA 20998 connects its blocks without a control block. This description adds two registers, so that no clock
-//! contains more than one multiplier before the outputs. Each kind of block is numbered from 1, as in seed 001.
+//! 001 cites. UA 20998 connects its blocks without a control block. This description adds the registers `difference` and
+//! `intensity`, so that a path between registers, or from a register to an output, has at most one multiplier. Each kind of block
+//! is numbered from 1, as in seed 001.
 
 mod coefficient;
 

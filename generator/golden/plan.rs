@@ -194,7 +194,7 @@ fn microinstruction(
     })
 }
 
-/// Returns a function that computes the polynomial's operand at node `id`.
+/// Returns a function that reads the operand of the polynomial at node `id` from the model's state.
 fn operand_of(model: &Arc<PlanModel>, id: NodeId) -> impl Fn(&State) -> i64 + Send + Sync + use<> {
     let input = model.plan.node(id).operation.inputs()[0];
     let cone = ClockCone::new(model, &[input]);

@@ -20,12 +20,12 @@ glint_config::keys! {
 }
 
 impl Keys {
-    /// The angle is stretched and in right angles. The defaults give `s7.22`.
+    /// Returns the format of a stretched angle, in right angles: `s7.22` by default.
     pub fn angle_format(&self) -> Format {
         Format::signed(self.angle_integer as i32, self.angle_fraction as i32)
     }
 
-    /// The default gives `u0.10`.
+    /// Returns the format of f: `u0.10` by default.
     pub fn f_format(&self) -> Format {
         Format::unsigned(0, self.fraction as i32)
     }

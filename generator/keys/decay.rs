@@ -1,8 +1,8 @@
 //! Declares the configuration keys of the devices `blinn` and `gauss`, and computes their tables of polynomials.
 //!
-//! Both devices compute f = 2^(−n·decay(c)), where c = cos γ and n is the specular exponent. The decay is −log₂ c in `blinn` and
-//! γ²/(2 ln 2) in `gauss`. One table gives the ratio of the decay to the distance 1 − c. In `blinn`, the mantissa m of the
-//! cosine, from 1/2 to 1, takes the place of c. The other table gives 2^−x.
+//! Both devices compute f = 2^(−n·decay(c)), with c = cos γ, the specular exponent n, and the decay −log₂ c in `blinn` and γ²/(2
+//! ln 2) in `gauss`. One table gives the ratio of the decay to the distance 1 − c. In `blinn`, the mantissa m of the cosine, from
+//! 1/2 to 1, takes the place of c. The other table gives 2^−x.
 
 use std::sync::Arc;
 
@@ -172,7 +172,7 @@ fn table(
     })
 }
 
-/// The default of `intensity.rounding` is `nearest`.
+/// Returns the schema of `device`, with the default `nearest` for `intensity.rounding`.
 pub(super) fn schema(device: &'static str, check: fn(&Config, &mut Problems)) -> Schema {
     let mut keys = Keys::keys();
     for key in &mut keys {

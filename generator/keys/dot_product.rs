@@ -44,7 +44,7 @@ impl Keys {
         Format::unsigned(1, self.factor as i32 - 1)
     }
 
-    /// Returns the format of 1/|N|, where N is shifted in the same way: `u0.18` for `factor.bits = 18`.
+    /// Returns the format of 1/|N|, with N shifted to a length between 1 and 2: `u0.18` for `factor.bits = 18`.
     pub fn shortened(&self) -> Format {
         Format::unsigned(0, self.factor as i32)
     }

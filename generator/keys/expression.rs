@@ -168,7 +168,7 @@ fn result_fields() -> Vec<Key> {
     ]
 }
 
-/// The coordinates `x` and `y` of a point.
+/// Returns the default operands, the coordinates `x` and `y` of a point.
 fn example_operands() -> Vec<TableEntry> {
     let fields = [
         ("bits", Value::Integer(12)),
@@ -178,7 +178,7 @@ fn example_operands() -> Vec<TableEntry> {
     vec![TableEntry::new("x", &fields), TableEntry::new("y", &fields)]
 }
 
-/// The distance `r` of the point from the origin.
+/// Returns the default result, the distance `r` of the point from the origin.
 fn example_results() -> Vec<TableEntry> {
     let fields = [
         ("formula", Value::Text("sqrt(x^2 + y^2)".to_owned())),
@@ -232,10 +232,10 @@ pub fn plan(config: &Config) -> Result<ProvedPlan, ConfigError> {
     Ok(plan)
 }
 
-/// Returns the results of each list that must have the order of its values, as ranges of indices.
+/// Returns the lists of results that must have the order of their values, as ranges of indices.
 ///
 /// # Errors
-/// Fails if the result is no list.
+/// Fails if an `ordered` result is a single number.
 fn ordered_lists(
     keys: &Keys,
     statement: &ExpressionStatement,
@@ -256,8 +256,8 @@ fn ordered_lists(
     Ok(lists)
 }
 
-/// Fails for an operand that the plan does not read, because every choice or remainder that reads it was decided: `if(x < 100, y,
-/// x)` with x below 2 is y.
+/// Checks that the plan reads every operand. Fails for an operand if every choice or remainder that reads it was decided:
+/// `if(x < 100, y, x)` with x below 2 is y.
 fn check_operands_have_readers(keys: &Keys, found: &ProvedPlan) -> Result<(), ConfigError> {
     let plan = &found.plan;
     let is_read = |node: usize| {
@@ -314,8 +314,8 @@ pub(super) fn refused(
 /// The longest part of a formula that a remedy repeats, in bytes.
 const LONGEST_LIMITED_PART: usize = 60;
 
-/// Returns a condition for `where` that limits a part of a formula, with the part as the configuration writes it, if it does: `x - y >
-/// 0`. Returns `None` if the part is long.
+/// Returns a condition for `where` that limits a part of a formula, such as `x - y > 0`. If a text of the configuration has the
+/// part, the condition repeats this text. Returns `None` if the part is long.
 fn condition(
     keys: &Keys,
     statement: &ExpressionStatement,
@@ -351,8 +351,8 @@ struct KnownNames {
 }
 
 impl KnownNames {
-    /// Returns the list with this name. If an operand or a part has the name `e`, returns it for this name, which otherwise is the base
-    /// of the natural logarithm.
+    /// Returns the list with the name `name`, or the operand or the part that is named `e`: the parser would otherwise read the
+    /// base of the natural logarithm. Returns `None` for other names.
     fn list_or_constant(&self, name: &str) -> Option<NumberOrList> {
         if let Some((_, list)) = self.lists.iter().find(|(own, _)| own == name) {
             return Some(NumberOrList::List(list.clone()));
@@ -387,8 +387,8 @@ fn part_key(name: &str) -> String {
 /// numbers in place of lists.
 ///
 /// # Errors
-/// Fails if an entry is wrong, if two entries have the same name, if no result depends on an operand, if there are more than
-/// [`MOST_NUMBERS`] operands or results, or if [`error_of_relative`] fails.
+/// Fails if an entry or a relative error is wrong, if two entries have the same name, if no result depends on an operand, or if
+/// there are more than [`MOST_NUMBERS`] operands or results.
 pub(super) fn statement(keys: &Keys) -> Result<ExpressionStatement, ConfigError> {
     let mut known = KnownNames::default();
     let mut operands = Vec::new();
@@ -453,7 +453,7 @@ pub(super) fn statement(keys: &Keys) -> Result<ExpressionStatement, ConfigError>
     Ok(statement)
 }
 
-/// Fails if a table states more than [`MOST_NUMBERS`] numbers.
+/// Checks that a table states at most [`MOST_NUMBERS`] numbers.
 fn check_count(table: &str, count: usize) -> Result<(), ConfigError> {
     if count <= MOST_NUMBERS {
         return Ok(());
@@ -728,7 +728,7 @@ fn limited(formula: &Expression, format: Format) -> Expression {
 }
 
 /// Parses a formula, and replaces named parts by their formulas. `key` is the configuration key for errors. A missing text counts
-/// as an empty one. Fails if the text is not a formula, or as [`resolved`] does.
+/// as an empty one. Fails if the text is not a formula, or if the formula has an unknown name.
 fn formula(
     text: Option<&str>,
     key: &str,
@@ -746,7 +746,7 @@ fn formula(
     })
 }
 
-/// Replaces the names in a list as [`resolved`] does. Parts that several numbers share stay shared. Fails as [`resolved`] does.
+/// Replaces the names in each number of a list. Parts that several numbers share stay shared. Fails if a name is unknown.
 fn resolved_list(
     list: NumberList,
     key: &str,
@@ -803,7 +803,7 @@ fn resolved(
 }
 
 /// Parses a condition, for example `x < y` or `0 < x < y`, into an equivalent comparison, and replaces named parts. Fails if the
-/// text is not a condition, or as [`resolved`] does.
+/// text is not a condition, or if a name is unknown.
 fn promise(
     text: &str,
     key: &str,

@@ -39,7 +39,7 @@ fn check(config: &Config, problems: &mut Problems) {
 pub struct FunctionPlan {
     /// The function with its domain and the allowed error.
     pub function: TargetFunction,
-    /// They approximate the function, with a proved bound of the error.
+    /// The polynomials that approximate the function, with a proved bound of the error.
     pub polynomials: Arc<Piecewise>,
     /// The operations that evaluate the polynomials.
     pub plan: ExpressionPlan,

@@ -1,6 +1,6 @@
 //! Plans writable tables of the device `function`: the polynomials of several functions for one datapath.
 //!
-//! A configuration names the functions that the table must hold. `glint table` later fits others to the same datapath.
+//! A configuration names the functions that the table must hold. `glint table` later fits further functions to the same datapath.
 
 use glint_approximate::{
     Curve, Identity, Piecewise, Refusal, RefusalKind, TargetFunction, Wish, find_images,
@@ -89,7 +89,7 @@ fn image_function(keys: &Keys, image: &TableEntry) -> Result<TargetFunction, Con
     Ok(TargetFunction { curve: Curve::Formula(formula), ..own })
 }
 
-/// Finds one datapath for `function`, which the configuration states, and for all its images. Returns the polynomials of `function`.
+/// Finds one datapath for `function` and for all images of the configuration. Returns the polynomials of `function`.
 ///
 /// # Errors
 /// Fails if no datapath keeps the error of all of them. The error names a key to change.

@@ -2,9 +2,9 @@
 //! says which keys a configuration of the device may set, and which values are valid together. For example, `cosine.fraction =
 //! 20` in a configuration of `rough` gives cosines 20 fraction bits.
 //!
-//! The hardware description and the golden model of a device both read these keys. They also share the tables of polynomials
-//! and the plans that this crate finds for the keys. They share no other code. In each file, `Keys` has the values of a
-//! configuration, and `schema` returns the keys with the check of their combinations.
+//! The hardware description and the golden model of a device both read these keys, and the tables of polynomials and the plans
+//! that this crate finds for them; they share no other code. In each file, `Keys` has the values of a configuration, and `schema`
+//! returns the keys with the check of their combinations.
 
 pub mod blinn;
 pub mod common;

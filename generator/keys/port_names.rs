@@ -95,7 +95,7 @@ pub(super) struct NameFault {
     pub(super) remedy: String,
 }
 
-/// Checks the names of all entries, and fails at the first one that cannot be used. The remedy names another name, if the name
+/// Checks the names of all entries, and fails at the first one that cannot be used. The remedy proposes another name, if the name
 /// has only legal characters.
 pub(super) fn check(entries: &[(NamedTable, &str)]) -> Result<(), NameFault> {
     for (entry, (table, name)) in entries.iter().enumerate() {
@@ -142,7 +142,7 @@ fn obstacle(table: NamedTable, name: &str, others: &[(NamedTable, &str)]) -> Opt
     None
 }
 
-/// Returns a message if one of `others` gives the name to something of its own.
+/// Returns a message if one of `others` gives the name to its own signal, such as a register.
 fn owned_name(name: &str, others: &[(NamedTable, &str)]) -> Option<String> {
     let mut owners = others.iter();
     owners.find_map(|owner| {

@@ -8,9 +8,9 @@ pub const FUNCTION: &str = "function";
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Preset {
-    /// The device `function` or `expression`.
+    /// The device `function`, `expression` or `unit`.
     pub device: &'static str,
-    /// What a user needs the expression for; `None` for a function.
+    /// The purpose of a preset of `expression`; `None` for the others.
     pub purpose: Option<&'static str>,
     /// The keys that the preset states.
     pub values: Vec<(String, Value)>,
@@ -482,7 +482,7 @@ struct UnitFunctionPreset {
 /// The device and the preset of several functions behind one datapath.
 const UNIT: &str = "unit";
 
-/// Returns the names of all presets, first of `function`, then of `expression`.
+/// Returns the names of the presets of `function`, then of `expression`. The preset `unit` is left out.
 pub fn names() -> impl Iterator<Item = &'static str> {
     names_of_functions().chain(names_of_expressions())
 }

@@ -24,12 +24,12 @@ glint_config::keys! {
 }
 
 impl Keys {
-    /// The angle is in right angles. The defaults give `s1.26`.
+    /// Returns the format of an angle, in right angles: `s1.26` by default.
     pub fn angle_format(&self) -> Format {
         Format::signed(1, self.angle_fraction as i32)
     }
 
-    /// The default gives `u0.10`.
+    /// Returns the format of f: `u0.10` by default.
     pub fn f_format(&self) -> Format {
         Format::unsigned(0, self.fraction as i32)
     }

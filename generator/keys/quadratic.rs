@@ -33,7 +33,7 @@ glint_config::keys! {
 }
 
 impl Keys {
-    /// The coefficients of the scheme `Taylor` are integers.
+    /// Returns the number of fraction bits of a(n): 0 for the scheme `Taylor`, whose coefficients are integers.
     pub fn coefficient_fraction(&self) -> u32 {
         if self.scheme == Scheme::Minimax { self.fraction } else { 0 }
     }

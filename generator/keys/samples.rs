@@ -14,8 +14,8 @@ const KEY: &str = "function.samples";
 /// the smallest and the largest raw operand.
 ///
 /// # Errors
-/// Fails if a sample is not a pair of numbers, or if its x is not an operand of the domain. Also fails as [`check_points`]
-/// does.
+/// Fails if a sample is not a pair of numbers, if its x is not an operand of the domain, or if two samples have the same x. Also
+/// fails if an end of the domain has no sample, or if there is a [`GAP`].
 pub(super) fn read(text: &str, fraction: u32, domain: (i64, i64)) -> Result<Samples, ConfigError> {
     let mut points: Vec<(i64, Enclosure)> = Vec::new();
     for point in text.split(' ').filter(|point| !point.is_empty()) {

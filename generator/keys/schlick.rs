@@ -19,7 +19,7 @@ glint_config::keys! {
 }
 
 impl Keys {
-    /// The default gives `u0.10`.
+    /// Returns the format of f: `u0.10` by default.
     pub fn f_format(&self) -> Format {
         Format::unsigned(0, self.fraction as i32)
     }

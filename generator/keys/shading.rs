@@ -177,7 +177,7 @@ impl Keys {
         self.highlight_part().least
     }
 
-    /// The device `function` has no operand `exponent`.
+    /// Returns whether the highlight device has the operand `exponent`, which `function` lacks.
     pub fn has_exponent(&self) -> bool {
         self.highlight != HighlightDevice::Function
     }
@@ -188,7 +188,6 @@ impl Keys {
         SUFFIXES.into_iter().take(self.lights as usize)
     }
 
-    /// See [`parts`].
     fn parts(&self) -> Result<LightParts, ConfigError> {
         let facing = self.cosine_part(self.facing())?;
         let cosine = self.cosine_part(self.cosine)?;

@@ -146,7 +146,7 @@ impl End {
     }
 }
 
-/// The remedy for a domain whose raw operands have too many bits.
+/// Returns the remedy for a domain whose raw operands have too many bits.
 fn too_wide(from: &End, to: &End, fraction: u32) -> String {
     let bits = |end: &End| i128::BITS - end.ceiling.unsigned_abs().leading_zeros();
     let excess = bits(from).max(bits(to)) - (MAX_WIDTH - 2);

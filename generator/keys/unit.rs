@@ -91,7 +91,7 @@ fn check(config: &Config, problems: &mut Problems) {
     }
 }
 
-/// Returns the keys of a function as those of the device `expression`.
+/// Returns the keys of a function as keys of the device `expression`.
 ///
 /// # Errors
 /// Fails if the function has no operands or no results.
@@ -203,7 +203,7 @@ fn written_opcode(functions: &[TableEntry]) -> Result<Option<usize>, ConfigError
     }
 }
 
-/// Returns the function with a field of its first result that takes the place of the fields `dropped`.
+/// Returns the function with `field` in place of the fields `dropped` of its first result.
 fn with_result_field(
     function: &TableEntry,
     dropped: &[&str],
@@ -222,7 +222,7 @@ fn with_result_field(
     changed
 }
 
-/// Returns the function with another formula of its first result.
+/// Returns the function with the formula `text` of its first result.
 fn with_formula(function: &TableEntry, text: &str) -> TableEntry {
     with_result_field(function, &["formula"], ("formula", Value::Text(text.to_owned())))
 }
@@ -340,8 +340,8 @@ fn with_error(function: &TableEntry, error: f64) -> TableEntry {
     with_result_field(function, &["error", "error_relative"], ("error", Value::Number(error)))
 }
 
-/// Plans the unit of `config`, which differs from the configuration of `unit` only in the formula of the function whose table can be
-/// written, and in its allowed error. The datapath is the one of `unit`.
+/// Plans the unit of `config` with the datapath of `unit`. Both configurations may differ only in the formula of the function
+/// whose table can be written, and in its allowed error.
 ///
 /// # Errors
 /// Fails if the unit has no such function, or if its table cannot hold the formula with the allowed error.

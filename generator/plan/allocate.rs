@@ -1,9 +1,8 @@
 //! Distributes the allowed error of an expression among the rounding operations of its plan.
 //!
-//! Each of these operations has guard bits: the number of its fraction bits beyond the finest result. Every operation begins
-//! with few guard bits. The operation with the largest share of the error gets one more bit, until every result is within its
-//! allowed error. If this finds no plan, the module tries the same number of guard bits for every operation. Afterwards it
-//! removes bits that are not needed.
+//! Rounding operations begin with few guard bits: fraction bits beyond the result with the most fraction bits. While a result
+//! exceeds its allowed error, the operation with the largest share of this error gets one more bit. If this finds no plan, all
+//! operations get the same number of guard bits. Finally, bits that the allowed errors do not need are removed.
 
 use super::boxes::{BoxError, ErrorSearches, ResultProof, undivided};
 use super::lower::{FoundPolynomials, Guards, PlanSearch, PlanStyle, WidthTies, lowered};
@@ -14,13 +13,13 @@ use super::statement::{ExpressionStatement, HALF_A_UNIT};
 /// The guard bits with which each operation begins.
 const FIRST_GUARD: i32 = -3;
 
-/// The largest number of guard bits with which all operations begin, if no plan has fewer bits.
+/// The largest number of guard bits with which all operations begin, if formulas have no plan with fewer.
 const MOST_FIRST_GUARD: i32 = 9;
 
 /// The largest number of guard bits of an operation.
 const MOST_GUARD: i32 = 24;
 
-/// The most bits that an operation gets in exchange for a bit of another one.
+/// The most guard bits that one operation gets if another operation loses one.
 const MOST_EXCHANGED: usize = 2;
 
 /// The numbers of divisions of the domain for an estimate of the error, in the order in which they are tried. Few divisions are
@@ -40,11 +39,11 @@ pub(super) struct Allocation {
     pub(super) has_terms: bool,
 }
 
-/// Returns guard bits with which every result keeps its allowed error, and the plan with them. The errors of polynomials are
-/// estimates.
+/// Returns guard bits for a plan in the style `style` with which every result keeps its allowed error, and this plan. Its tables
+/// have no polynomials yet, so that their errors are estimates.
 ///
 /// # Errors
-/// Fails if a formula has no plan in this style, or if no number of bits is enough.
+/// Fails if a formula has no plan in this style, or if no number of bits keeps the errors.
 pub(super) fn allocated(
     search: &PlanSearch<'_>,
     style: PlanStyle,
@@ -54,8 +53,8 @@ pub(super) fn allocated(
     allocated_with(search, &none, few).or_else(|_| allocated_with(search, &none, many))
 }
 
-/// Returns guard bits with which every result keeps its allowed error, if errors are computed with `divisions` divisions of the
-/// domain. `none` has the style of the plan and no guard bits. Fails as [`allocated`] does.
+/// Returns guard bits and their plan for [`allocated`], with errors that are estimated by `divisions` divisions of the domain.
+/// `none` has the style of the plan and no guard bits. Fails if a formula has no plan, or if no number of bits keeps the errors.
 fn allocated_with(
     search: &PlanSearch<'_>,
     none: &Guards,
@@ -102,11 +101,11 @@ fn allocated_with(
     Ok(Allocation { guards, plan, divisions, searches, has_terms })
 }
 
-/// Guard bits with which every result keeps its allowed error, and the plan with them.
+/// Guard bits that keep the allowed errors, and their plan.
 type KeptBits = (Guards, ExpressionPlan);
 
-/// Takes guard bits from some operations, one at a time from all, as long as every result keeps its allowed error. `is_kept` returns the
-/// plan with the given guard bits, or `None` if a result does not keep its error.
+/// Removes guard bits from the operations `sources` of `best`, one from each at a time, while every result keeps its allowed
+/// error. `is_kept` returns the plan with the given guard bits, or `None` if a result exceeds its error.
 fn shrink(
     best: &mut KeptBits,
     sources: &[usize],
@@ -123,8 +122,8 @@ fn shrink(
     }
 }
 
-/// Takes bits from factors that have more bits than a multiplier's input, and gives a few bits to another operation in exchange, where the
-/// plan then takes fewer look-up tables by the estimate.
+/// Saves look-up tables at factors that have more bits than a multiplier's input: the factors lose bits, and in exchange other
+/// operations get a few. An exchange counts only if the estimate of look-up tables becomes smaller.
 fn narrow_factors(
     search: &PlanSearch<'_>,
     best: &mut KeptBits,
@@ -145,8 +144,8 @@ fn narrow_factors(
     }
 }
 
-/// Returns guard bits with one bit less for an operation, and up to [`MOST_EXCHANGED`] bits more for another one, if the plan then takes
-/// fewer look-up tables by the estimate. Returns `None` if no such exchange keeps the errors.
+/// Returns guard bits and their plan, which takes fewer look-up tables by the estimate. The operation `source` has one bit less,
+/// and another operation up to [`MOST_EXCHANGED`] bits more. Returns `None` if no such exchange keeps the errors.
 fn exchanged(
     search: &PlanSearch<'_>,
     best: &KeptBits,
@@ -185,7 +184,8 @@ fn exchanged(
     None
 }
 
-/// Gives all terms the same number of guard bits: the smallest with which every result keeps its allowed error.
+/// Gives the operations `terms`, which drop low bits of products, the same number of guard bits: the smallest that keeps the
+/// errors.
 fn cut_alike(
     best: &mut KeptBits,
     terms: &[usize],
@@ -208,19 +208,20 @@ fn cut_alike(
     }
 }
 
-/// Which rounding operation gets the next bit if the shares of some operations in the error are not known.
+/// The order in which rounding operations get bits, if the analysis finds no limit for the shares of some operations in the
+/// error.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum BitOrder {
-    /// The operation with the largest share. Others get bits when it and all others with a known share have the most bits.
+    /// The operation with the largest known share. Operations with unknown shares get bits when all others have the most bits.
     KnownShares,
     /// An operation with an unknown share, while the known shares together are less than half of the error. For example, the quotient in
     /// `(ln(s / k) + v) / v` needs its bits first.
     UnknownShares,
 }
 
-/// Returns guard bits with which every result keeps its allowed error, and the plan with them. The function begins with few
-/// bits, and adds one at a time to the operation with the largest share of the error. Fails if a formula has no plan, or if no
-/// number of bits is enough.
+/// Returns guard bits with which every result keeps its allowed error, and their plan. The function begins with few bits, and
+/// adds one at a time to the operation that causes most of the error, by `order`. Fails if a formula has no plan, or if no number
+/// of bits keeps the errors.
 fn grown(
     search: &PlanSearch<'_>,
     none: &Guards,
@@ -242,9 +243,9 @@ fn grown(
     Ok((guards, plan))
 }
 
-/// Returns the plan with the fewest guard bits for operations that round nothing in the plan `before`, and adds these bits to `guards`.
-/// A value that became wider can need such an operation. For example, the operand of a table is shortened if it has too many bits. Fails if
-/// no number of bits gives a plan.
+/// Returns a plan for `guards`, although the formulas have none because one more bit made a value too wide. The function gives
+/// more bits, in `guards`, to operations that round nothing in the plan `before`. For example, the operand of a table is
+/// shortened only if it has too many bits. Fails if no number of bits gives a plan.
 fn with_idle_operations(
     search: &PlanSearch<'_>,
     before: &ExpressionPlan,
@@ -270,7 +271,9 @@ fn with_idle_operations(
     }
 }
 
-/// Returns the rounding operations that get and lose guard bits together with `source`, in ascending order, by the ties of the search.
+/// Returns the numbers of the rounding operations that get and lose guard bits together with the operation `source`, in ascending
+/// order. They are all operations with its name, such as `exponent` and `exponent2`, or `source` alone if the search ties no
+/// widths.
 pub(super) fn siblings_of(
     search: &PlanSearch<'_>,
     plan: &ExpressionPlan,
@@ -288,8 +291,9 @@ pub(super) fn siblings_of(
     (0..=most).filter(|other| name_of(*other) == own).collect()
 }
 
-/// Returns the same number of guard bits for all operations, with which every result keeps its allowed error; `None` if no
-/// number is enough. The function finds a plan if [`grown`] gives one operation so many bits that a product is too wide.
+/// Returns the same number of guard bits for all operations, with which every result keeps its allowed error, and their plan.
+/// Returns `None` if no number is enough. This can succeed if [`grown`] gives one operation so many bits that a product is too
+/// wide.
 fn equally_many(
     search: &PlanSearch<'_>,
     none: &Guards,
@@ -306,9 +310,9 @@ fn equally_many(
     None
 }
 
-/// Returns the plan with the fewest guard bits, the same number for all operations, and these bits. With fewer bits there may
-/// be no plan, for example because a divisor is rounded to 0. Fails if no number of bits up to [`MOST_FIRST_GUARD`] gives a
-/// plan.
+/// Returns the plan from which a search begins, and its guard bits: the same number for all operations, and the smallest with
+/// which there is a plan. With fewer bits, for example, a divisor could be rounded to 0. Fails if no number up to
+/// [`MOST_FIRST_GUARD`] gives a plan.
 fn first_plan(
     search: &PlanSearch<'_>,
     none: &Guards,
@@ -360,8 +364,8 @@ pub(super) struct ExcessiveResult {
     worst: BoxError,
 }
 
-/// Returns the result that exceeds its allowed error by the largest factor; `None` if every result keeps its error. The search begins
-/// with `searches`, and replaces them ([`ResultProof::excess`]).
+/// Returns the result of `plan` that exceeds its allowed error by the largest factor; `None` if every result keeps its error. The
+/// function begins with the boxes in `searches`, from similar plans, and replaces them.
 pub(super) fn largest_excess(
     statement: &ExpressionStatement,
     plan: &ExpressionPlan,
@@ -382,9 +386,9 @@ pub(super) fn largest_excess(
 }
 
 impl ExcessiveResult {
-    /// Returns the number of the rounding operation with the largest share of the error. An operation with the largest number
-    /// of guard bits does not count. If the error has a limit, a share without a limit is not known, and `order` says when its
-    /// operation counts. Fails if no operation is left.
+    /// Returns the number of the rounding operation that gets the next guard bit: the operation with the largest share of the
+    /// error. Operations with [`MOST_GUARD`] guard bits do not count. A share without a limit is unknown if the error has a
+    /// limit; `order` decides when its operation counts. Fails if no operation is left.
     pub(super) fn source(
         &self,
         statement: &ExpressionStatement,

@@ -1,12 +1,9 @@
-//! Encloses the error of the nodes of a plan for all operands in a box. A box has an interval of values for each operand.
+//! Encloses the error of the nodes of a plan for all operands in a box, which has an interval of values for each operand.
 //!
-//! Each node gets two intervals. Its *ideal* contains its value in real-number arithmetic, if every choice and every shift is
-//! decided as in the hardware. Its *error* contains the hardware's value minus the ideal value. An operation adds its own
-//! rounding to the errors that follow from the errors of its inputs. For example, a product a · b has the error a · εb + b · εa
-//! + εa · εb.
-//!
-//! The shift that normalises a word depends on the word. The analysis therefore treats each possible shift separately, with the
-//! word limited to the values that have this shift.
+//! The *ideal* of a node contains its value in real-number arithmetic, if every choice and every shift is decided as in the
+//! hardware. The *error* contains the hardware's value minus the ideal value: the error that follows from the inputs, plus the
+//! rounding of the operation. For example, a product a · b has the error a · εb + b · εa + εa · εb. The analysis treats each
+//! possible shift of a normalised word separately, with the word limited to the values that have this shift.
 
 use glint_base::fixed::{Format, Rounding, exp2};
 use glint_formula::Enclosure;
@@ -20,7 +17,7 @@ use super::plan::ExpressionPlan;
 /// The largest number of integer parts that are analysed one by one.
 const MOST_INTEGERS: i64 = 70;
 
-/// The most octaves of a word whose branches reach the end of the plan, if it has several normalised words.
+/// If a plan has several normalised words, the branches of a word with more octaves than this end at its join ([`joins`]).
 const FEW_OCTAVES: u32 = 4;
 
 /// The limits of a node's value and of its error, for all operands within a box.
@@ -61,8 +58,8 @@ impl NodeError {
     /// The value of a node without limits. The value does not matter if a choice takes its other case.
     const UNKNOWN: Self = Self { ideal: ANYTHING, error: ANYTHING, actual: ANYTHING };
 
-    /// Returns the value of a node whose formula has a value that is not farther than `distance` from this one's. With `counts`, the
-    /// error counts, too.
+    /// Returns these limits for an ideal value that is up to `distance` from the present one, because constants of the formula
+    /// were rounded before. The distance adds to the error only if `counts` is true.
     fn near(self, distance: f64, counts: bool) -> Self {
         let around = Enclosure::between(-distance, distance);
         let error = if counts { self.error + around } else { self.error };
@@ -74,7 +71,7 @@ impl NodeError {
         self.ideal.is_finite() && self.error.is_finite()
     }
 
-    /// Returns limits that contain both values.
+    /// Returns the hull of two values, for example of two branches of the analysis.
     fn hull(self, other: Self) -> Self {
         Self {
             ideal: self.ideal.hull(other.ideal),
@@ -83,7 +80,7 @@ impl NodeError {
         }
     }
 
-    /// Returns the value, with its ideal value limited to `limits` too. The caller must know that `limits` contain it.
+    /// Returns narrower limits, for a caller that knows that `limits` contain the ideal value.
     fn within(self, limits: Enclosure) -> Self {
         let low = self.ideal.low.max(limits.low);
         let high = self.ideal.high.min(limits.high);
@@ -94,7 +91,7 @@ impl NodeError {
         Self { ideal, ..self }.limited(ideal + self.error)
     }
 
-    /// Returns the value, with the hardware's value limited to `limits` too. The caller must know that `limits` contain it.
+    /// Returns narrower limits, for a caller that knows that `limits` contain the hardware's value.
     fn limited(self, limits: Enclosure) -> Self {
         let low = self.actual.low.max(limits.low);
         let high = self.actual.high.min(limits.high);
@@ -102,7 +99,7 @@ impl NodeError {
         if low > high { self } else { Self { actual: Enclosure::between(low, high), ..self } }
     }
 
-    /// Returns the value if it is exact, and the same for the whole box; otherwise `None`.
+    /// Returns the ideal value if it has no error and is the same for the whole box; otherwise `None`.
     fn known(self) -> Option<f64> {
         let is_known = self.error == NOTHING && self.ideal.low == self.ideal.high;
         is_known.then_some(self.ideal.low)
@@ -121,9 +118,9 @@ struct Known {
 
 /// The analysis of the errors of a plan.
 ///
-/// Each value of an integer part is a branch of its own, and so is each shift of a normalised word. If a plan has several integer parts,
-/// or several words with many shifts, the branches of one of them end where they meet again ([`joins`]), so that their numbers add up
-/// and do not multiply.
+/// The analysis has a branch for each value of an integer part, and for each shift of a normalised word. With several integer
+/// parts, or several words with many shifts, the numbers of branches would multiply. The branches of one node therefore end at
+/// its join ([`joins`]), so that the numbers only add up.
 #[derive(Clone, Copy)]
 pub(super) struct ErrorAnalysis<'p> {
     pub(super) plan: &'p ExpressionPlan,
@@ -135,9 +132,10 @@ pub(super) struct ErrorAnalysis<'p> {
     pub(super) only: Option<usize>,
 }
 
-/// Returns for each integer part of a plan the first later node through which `result` reads it, if `result` depends on several integer
-/// parts, and the same for normalised words. Returns `None` for the other nodes, and for one that reaches `result` only by several ways.
-/// `needed` must have the nodes on which `result` depends.
+/// Returns the join of each integer part: the first later node on all paths from the integer part to `result`, at which its
+/// branches end. Branches need a join only if `result` depends on several integer parts; normalised words are treated alike. The
+/// entry is `None` for the other nodes, and if the paths meet only in `result`. `needed` must mark the nodes on which `result`
+/// depends.
 pub(super) fn joins(plan: &ExpressionPlan, needed: &[bool], result: NodeId) -> Vec<Option<NodeId>> {
     let count = |is: fn(&Operation) -> bool| -> Vec<usize> {
         (0..plan.nodes().len())
@@ -156,7 +154,7 @@ pub(super) fn joins(plan: &ExpressionPlan, needed: &[bool], result: NodeId) -> V
     if branching.is_empty() {
         return joins;
     }
-    // For each node, the first later node that is on all ways from it to the result.
+    // For each node, the first later node that is on all paths from it to the result.
     let mut next: Vec<Option<usize>> = vec![None; plan.nodes().len()];
     let mut is_on_a_way = vec![false; plan.nodes().len()];
     is_on_a_way[result.0] = true;
@@ -196,14 +194,13 @@ pub(super) fn joins(plan: &ExpressionPlan, needed: &[bool], result: NodeId) -> V
     joins
 }
 
-/// Returns the nodes that normalise the word.
 fn normalised_words(plan: &ExpressionPlan, word: NodeId) -> Vec<NodeId> {
     let normalises = |node: &PlanNode| matches!(node.operation, Operation::Normalise { word: own, .. } if own == word);
     (0..plan.nodes().len()).filter(|at| normalises(&plan.nodes()[*at])).map(NodeId).collect()
 }
 
-/// Returns limits that contain the values of all branches of an analysis, which `run` visits. The branches have the nodes in `known` and
-/// the same further nodes. Returns `None` without a branch.
+/// Returns `known` with the further nodes of an analysis; their limits are the hull of all branches. `run` must visit each
+/// branch. Returns `None` if `run` visits no branch.
 fn joined(known: &Known, run: impl FnOnce(&mut Visit<'_>)) -> Option<Known> {
     let mut all: Option<Known> = None;
     let before = known.values.len();
@@ -224,7 +221,8 @@ fn joined(known: &Known, run: impl FnOnce(&mut Visit<'_>)) -> Option<Known> {
     all
 }
 
-/// Returns the first node that is on the ways of both nodes. `next` has the next node of each node on its way.
+/// Returns the first node at which the paths from `first` and `second` to the result meet, or `None` if they do not meet. `next`
+/// has the next node on each node's path.
 fn common_way(
     next: &[Option<usize>],
     mut first: Option<usize>,
@@ -249,7 +247,7 @@ impl ErrorAnalysis<'_> {
         self.run_from(known, self.plan.nodes().len(), operands, visit);
     }
 
-    /// Analyses the nodes that `known` lacks and whose numbers are below `end`.
+    /// Analyses the nodes that `known` lacks, up to the node before `end`, and calls `visit` for each branch.
     fn run_from(
         &self,
         mut known: Known,
@@ -306,7 +304,7 @@ impl ErrorAnalysis<'_> {
         visit(&known.values, known.undecided.as_ref());
     }
 
-    /// Continues the analysis after a normalised word, once for each shift that can occur.
+    /// Continues the analysis after the node that normalises `word`, once for each shift that the word can have.
     fn each_shift(
         &self,
         word: NodeId,
@@ -407,8 +405,8 @@ impl ErrorAnalysis<'_> {
         self.run_from(branch, end, operands, visit);
     }
 
-    /// Limits a node to hardware values within `limits`, and also the nodes from which it is computed, if limits for them
-    /// follow.
+    /// Narrows the limits of a node to hardware values within `limits`, which a branch assumes. Also narrows inputs where this
+    /// follows: for example, the inputs of a maximum below 2 are below 2.
     fn limit(&self, values: &mut [NodeError], id: NodeId, limits: Enclosure) {
         let NodeError { ideal, error, .. } = values[id.0];
         let within = limits - error;
@@ -439,7 +437,7 @@ impl ErrorAnalysis<'_> {
     }
 
     /// Returns the limits of the value and of the error of a node, computed from the limits of the nodes that the operation
-    /// reads. Fails if the box must be divided first.
+    /// reads. Fails if the box is too large for limits and must be divided.
     fn value(
         &self,
         id: NodeId,
@@ -602,9 +600,9 @@ impl ErrorAnalysis<'_> {
         Ok(value)
     }
 
-    /// Returns limits of the difference of both cases of a choice, where rounding can make the hardware take the other case than the
-    /// formula. The compared numbers are then no farther from each other than the difference of their errors. The limits are infinite
-    /// if the choice states no agreement.
+    /// Returns limits of the difference between the cases of `choice`, for operands for which rounding makes the hardware take
+    /// another case than the formula. The compared numbers then differ at most by their errors. The limits are infinite if the
+    /// choice states no `CaseAgreement`.
     fn distance_of_cases(
         &self,
         choice: &PlanNode,
@@ -623,8 +621,7 @@ impl ErrorAnalysis<'_> {
         if most.is_finite() { Enclosure::between(-most, most) } else { ANYTHING }
     }
 
-    /// Returns limits of the hardware's value of a node that follow from the hardware's values of its inputs alone. The limits
-    /// may be infinite.
+    /// Returns limits of the hardware's value of a node that follow from the hardware's values of its inputs alone.
     fn actual(&self, node: &PlanNode, values: &[NodeError]) -> Enclosure {
         let input = |id: NodeId| values[id.0].actual;
         // If the operands have single values, so has each rounding error, which may be 0 by chance. A share counts the largest
@@ -698,8 +695,8 @@ impl ErrorAnalysis<'_> {
 
 /// Returns the limits of a choice.
 ///
-/// If rounding can make the condition wrong, the hardware may take the other case than the formula. Then the errors of both
-/// cases count, and the difference between both cases, which `most_apart` limits.
+/// If rounding can change the condition, the hardware may take another case than the formula. The error then includes the
+/// difference between the two cases, which `most_apart` limits.
 fn chosen(
     condition: NodeId,
     cases: [NodeId; 2],
@@ -730,8 +727,8 @@ fn chosen(
     NodeError::new(ideal, taken.error + within(taken.ideal - other.ideal))
 }
 
-/// Returns the value and the error of a node whose stated value alone limits its error. Returns `None` if the formula has no finite
-/// value for some of the operands.
+/// Returns the limits of a node that computes its stated formula exactly, or rounded to the nearest value. Returns `None` for a
+/// node of another accuracy, or if the formula has no finite value for some operands.
 fn stated_value(node: &PlanNode, operands: &[(&str, Enclosure)]) -> Option<NodeError> {
     let StatedValue { formula, accuracy } = node.stated.as_ref()?;
     let ideal = formula.values(operands).filter(|value| value.is_finite())?;
@@ -743,8 +740,9 @@ fn stated_value(node: &PlanNode, operands: &[(&str, Enclosure)]) -> Option<NodeE
     })
 }
 
-/// Returns the value of a choice whose other case has no limits, from the stated formula. Returns `None` if the node has no such
-/// formula, if the box does not decide which case the hardware takes, or if this case or the formula has no limits.
+/// Returns the limits of a choice for a box in which the hardware takes a known case. The stated formula of the node gives the
+/// ideal value, for a choice whose other case has no limits. Returns `None` if the node has no such formula, if the case is not
+/// known, or if this case or the formula has no limits.
 fn taken_case(
     node: &PlanNode,
     values: &[NodeError],
@@ -759,15 +757,15 @@ fn taken_case(
     is_known.then(|| NodeError { ideal, error: taken.actual - ideal, actual: taken.actual })
 }
 
-/// Returns the values of a bit that is 1 for the whole box, 0 for the whole box, or undecided.
+/// Returns the interval of a bit: 1 if `is_one`, 0 if `is_zero`, and 0 to 1 if the box decides neither.
 fn bit(is_one: bool, is_zero: bool) -> Enclosure {
     let low = if is_one { 1.0 } else { 0.0 };
     let high = if is_zero { 0.0 } else { 1.0 };
     Enclosure::between(low, high)
 }
 
-/// Returns the limits of a condition, from the limits of the bit in the formula and of the bit in the hardware. If nothing was
-/// rounded before the condition, `is_exact` must be true: then both are the same bit.
+/// Returns the limits of a condition, from the limits of the bit in the formula and of the bit in the hardware. `is_exact` must
+/// be true if nothing was rounded before the condition, so that these bits are equal.
 fn condition(ideal: Enclosure, actual: Enclosure, is_exact: bool) -> NodeError {
     let error = if is_exact { NOTHING } else { actual - ideal };
     NodeError { ideal, error, actual }
@@ -809,8 +807,8 @@ fn absolute(a: NodeError) -> NodeError {
     NodeError::new(Enclosure::between(0.0, largest), a.error.hull(other.error))
 }
 
-/// Returns the limits of the smaller of two values. Its error lies between the errors of the two values, so the limits of the
-/// error are the ends of the smallest interval that contains both errors' intervals.
+/// Returns the limits of the smaller of two values. Its error lies between the errors of the two values, so the hull of these
+/// errors contains it.
 fn minimum(a: NodeError, b: NodeError) -> NodeError {
     let ideal = Enclosure::between(a.ideal.low.min(b.ideal.low), a.ideal.high.min(b.ideal.high));
     NodeError::new(ideal, a.error.hull(b.error))
@@ -821,7 +819,7 @@ fn scaled(a: Enclosure, factor: f64) -> Enclosure {
     Enclosure::between(a.low * factor, a.high * factor)
 }
 
-/// Returns the error of removing the lowest `places` bits of a value. `format` is the format after the rounding.
+/// Returns limits of the error, as a real value, of removing the lowest `places` bits. `format` is the format after the rounding.
 fn rounding_error(places: i32, format: Format, rounding: Rounding) -> Enclosure {
     if places <= 0 {
         return NOTHING;
@@ -833,7 +831,7 @@ fn rounding_error(places: i32, format: Format, rounding: Rounding) -> Enclosure 
     }
 }
 
-/// Returns the smallest and the largest raw value of a format that a value within limits can have.
+/// Returns the smallest and the largest raw value of a format for real values within the limits `value`.
 fn raw_limits(value: Enclosure, format: Format) -> (i128, i128) {
     let unit = exp2(format.frac);
     let (least, most) = format.range();
@@ -866,8 +864,9 @@ fn known_places(node: NodeId, places: NodeError) -> Result<i32, Undecided> {
     }
 }
 
-/// Returns the limits of the value and of the error of a function of one number. The error is the error of the polynomials plus
-/// the effect of the operand's error. Fails if the operand may leave the domain, or if the function has no value for it.
+/// Returns the limits of the value and of the error of a function of one number. The error is the effect of the operand's error,
+/// plus, with `own_errors`, the error of the polynomials. Fails if the operand may leave the domain, or if the function has no
+/// value for it.
 fn approximated(
     id: NodeId,
     approximation: &Approximation,

@@ -1,12 +1,10 @@
 //! Proves a bound of the error of a result, over all operands for which the result is promised.
 //!
-//! A box is a range of raw values for each operand: for example, x from 0 to 255 and y from 16 to 31. Interval arithmetic
-//! bounds the error in a box. The search begins with the box of the whole domain, and always divides the box with the largest
-//! error in two. The search ends when this error is small enough for the caller, when this box is a single combination, or
-//! after a given number of divisions.
-//!
-//! The error in a box has no limit if a part of the formula may exceed its format there, or if a function may have no value
-//! there. Such a box counts as the box with the largest error.
+//! Interval arithmetic bounds the error in a box: a range of raw values for each operand, such as x from 0 to 255 and y from 16
+//! to 31. The search begins with the box of the whole domain, and always divides the box with the largest error in two. The
+//! search ends when this error is small enough for the caller, when this box is a single combination, or after a given number of
+//! divisions. If a part may exceed its format in a box, or a function may have no value there, the error has no limit and counts
+//! as the largest.
 
 use std::cmp::Ordering;
 use std::collections::{BTreeSet, BinaryHeap};
@@ -76,10 +74,11 @@ fn size_of(limits: &OperandBox) -> u128 {
     size
 }
 
-/// A search that begins with many boxes makes at least one division for so many that it may make.
+/// Boxes with which a search begins count as divisions. The search still makes at least the allowed divisions divided by this
+/// number.
 const LEAST_SHARE_OF_DIVISIONS: usize = 4;
 
-/// The most operands of an expression whose domain is divided as often as the caller wishes.
+/// The most operands of an expression for which the number of divisions is not reduced.
 pub(super) const FEW_OPERANDS: usize = 3;
 
 /// The least number of divisions of a domain with many operands.
@@ -106,10 +105,10 @@ impl Write for TextDigest {
     }
 }
 
-/// A search for each result.
 pub(super) type ErrorSearches = Vec<ErrorSearch>;
 
-/// Returns searches that consist of the whole domain of the operands on which a result depends.
+/// Returns the searches with which the planner begins: for each result, the domain of the operands on which it depends, as one
+/// box.
 pub(super) fn undivided(statement: &ExpressionStatement) -> ErrorSearches {
     let mut searches = Vec::new();
     for result in 0..statement.results.len() {
@@ -121,18 +120,18 @@ pub(super) fn undivided(statement: &ExpressionStatement) -> ErrorSearches {
     searches
 }
 
-/// Returns whether the domain of a statement is divided as often as the caller wishes.
+/// Returns whether a statement has so few operands that the number of divisions is not reduced.
 pub(super) fn has_few_operands(statement: &ExpressionStatement) -> bool {
     statement.operands.len() <= FEW_OPERANDS
 }
 
-/// Returns the number of divisions of the domain of `operands` operands that take an acceptable time: `wished` with up to 3 operands,
-/// a 16th of it with 4, and half as many with each further operand.
+/// Returns an affordable number of divisions for a domain of `operands` operands, at least 8: `wished` with up to 3 operands, a
+/// 16th of it with 4, and half as many with each further operand.
 pub(super) fn affordable(operands: usize, wished: usize) -> usize {
     affordable_with(operands.saturating_sub(FEW_OPERANDS), wished)
 }
 
-/// Returns the number of divisions for an expression with `more` operands than [`FEW_OPERANDS`].
+/// Returns the number of divisions, from the number `wished`, for an expression with `more` operands beyond [`FEW_OPERANDS`].
 fn affordable_with(more: usize, wished: usize) -> usize {
     match more {
         0 => wished,
@@ -140,7 +139,8 @@ fn affordable_with(more: usize, wished: usize) -> usize {
     }
 }
 
-/// Returns combinations at the ends of a domain: all operands at the same end, or one operand at the other end.
+/// Returns combinations of operands with which large errors are tried first: all operands at the same end of the domain, or all
+/// but one.
 fn corners(domain: &OperandBox) -> Vec<OperandBox> {
     let end = |(low, high): (i64, i64), is_high: bool| {
         let value = if is_high { high } else { low };
@@ -195,7 +195,7 @@ impl<'p> ResultProof<'p> {
         self.joins.iter().enumerate().any(|(at, join)| join.is_some() && is_integer(at))
     }
 
-    /// Returns the number of divisions that take an acceptable time. Several integer parts count as an operand more.
+    /// Returns an affordable number of divisions, from the number `wished`. Several integer parts count as a fourth operand.
     fn affordable(&self, wished: usize) -> usize {
         let more = self.named.len().saturating_sub(FEW_OPERANDS);
         affordable_with(if self.is_fast() { 0 } else { more.max(1) }, wished)
@@ -211,9 +211,9 @@ impl<'p> ResultProof<'p> {
         open.pop()
     }
 
-    /// Returns an upper limit of the error as a whole number of `unit` units of the result's last bit, as [`Self::worst`] finds it
-    /// with `divisions` divisions. The search ends early if a single combination of operands has as many units. Returns `None` if
-    /// the result is promised for no operands, and infinity if no limit was found.
+    /// Returns an upper limit of the error as a multiple of `unit` units of the result's last bit: with `unit` = 0.25, the limit
+    /// 3 means 0.75 units. Boxes are divided up to `divisions` times, but not if a single combination of operands already reaches
+    /// the limit. Returns `None` if the result is promised for no operands, and infinity if no limit was found.
     pub(super) fn whole_units(&self, unit: f64, divisions: usize) -> Option<f64> {
         let whole = |error: &BoxError| (error.units / unit).ceil();
         let mut open = self.errors_in(&[self.statement.domain_of(&self.named)]);
@@ -225,15 +225,16 @@ impl<'p> ResultProof<'p> {
         open.peek().map(whole)
     }
 
-    /// Returns a box whose error exceeds the allowed error: a single combination of operands if one in the middle of a box that was
-    /// tried does, and otherwise the box with the largest error after `divisions` divisions. Returns `None` if no operands have an
-    /// error that is not allowed, or if the result is promised for no operands.
+    /// Returns a box whose error exceeds the allowed error, or `None` if the error is allowed for all operands for which the
+    /// result is promised. The box is a single combination, in the middle of a box that was tried, if such a combination exceeds
+    /// the error. Otherwise it is the box with the largest error after `divisions` divisions.
     ///
     /// A single combination ends the search early, because no division shows a smaller error for it. The search begins with the
-    /// examples and the boxes in `search`. If the error is allowed, the boxes that show it replace them, because they mostly show
-    /// it for a similar plan, too. Otherwise, a single combination becomes an example if the expression has many operands.
+    /// examples and the boxes in `search`. If the error is allowed, the boxes that show this replace the earlier ones, because
+    /// they mostly show it for similar plans. Otherwise, a single combination becomes an example if the expression has many
+    /// operands.
     ///
-    /// If the result depends on the same nodes as in the last search, the outcome is the same.
+    /// If the result depends on the same nodes as in the last search, the function returns the last outcome.
     pub(super) fn excess(&self, divisions: usize, search: &mut ErrorSearch) -> Option<BoxError> {
         let digest = self.digest(divisions);
         if let Some((last, outcome)) = &search.last
@@ -246,8 +247,8 @@ impl<'p> ResultProof<'p> {
         outcome
     }
 
-    /// Returns a number that differs, in all probability, for other nodes on which the result depends, for another promise or allowed
-    /// error, or for other divisions.
+    /// Returns a digest of all that decides the outcome of [`Self::excess`]: the nodes on which the result depends, its promise
+    /// and allowed error, and `divisions`.
     pub(super) fn digest(&self, divisions: usize) -> u64 {
         let mut digest = TextDigest(DefaultHasher::new());
         divisions.hash(&mut digest.0);
@@ -343,8 +344,8 @@ impl<'p> ResultProof<'p> {
         Some(BoxError { limits, units, undecided: first_undecided })
     }
 
-    /// Analyses the result in a box, and calls `visit` with the values of each branch of the analysis. If `only` has a source,
-    /// no other source has rounding errors.
+    /// Analyses the result in a box, and calls `visit` with the values of each branch of the analysis. If `only` is the number of
+    /// a rounding operation, no other operation has rounding errors.
     fn run(
         &self,
         limits: &OperandBox,
@@ -368,7 +369,7 @@ impl<'p> ResultProof<'p> {
         value.error.low.abs().max(value.error.high.abs()) * exp2(fraction)
     }
 
-    /// Returns the error in a box that remains if only the rounding of `source` counts, in units of the result's last bit.
+    /// Returns the error in a box if only rounding operation number `source` rounds, in units of the result's last bit.
     pub(super) fn share(&self, limits: &OperandBox, source: usize) -> f64 {
         let mut units: f64 = 0.0;
         self.run(limits, Some(source), &mut |value, _| units = units.max(self.units(value)));
@@ -378,7 +379,7 @@ impl<'p> ResultProof<'p> {
 
 /// Facts about a box of operands that decide along which operand the box is divided.
 pub(super) trait BoxScore {
-    /// Returns a number that is smaller the narrower the limits in the box are. The number is infinite without limits.
+    /// Returns a measure of the width of the limits in the box, such as the largest error. It is infinite without limits.
     fn score(&self) -> f64;
 }
 
@@ -394,8 +395,8 @@ fn coarse(value: f64) -> f64 {
     f64::from_bits(value.to_bits() >> DROPPED_BITS << DROPPED_BITS)
 }
 
-/// Divides a box along the operand on which the box's score depends most, and returns the facts about both halves. Returns
-/// `None` for a single combination. A half for which `known` returns `None` is left out.
+/// Divides a box along the operand on which the box's score depends most, and returns the outcomes of `known` for the halves.
+/// Returns `None` for a single combination. A half without an outcome is left out.
 ///
 /// The score depends most on the operand that gives the smallest score when it has only its middle value.
 pub(super) fn best_halves<K: BoxScore>(

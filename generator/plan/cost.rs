@@ -29,7 +29,7 @@ const CELLS_OF_AN_OCTAVE: f64 = 12.0;
 /// delivers a word too late for 150 MHz.
 const MOST_BITS_OF_FAST_TABLE: u64 = 2048;
 
-/// The cost of a block memory in look-up tables. The planner prefers a plan with fewer look-up tables more than this.
+/// The extra cost, in look-up tables, of a table that goes into a block memory.
 const CELLS_IN_PLACE_OF_BLOCK: f64 = 300.0;
 
 /// The look-up tables for each bit of a table's value, before the polynomials are known.
@@ -123,12 +123,10 @@ impl ExpressionPlan {
         }
     }
 
-    /// Returns whether a node is the constant 0.
     fn is_zero(&self, id: NodeId) -> bool {
         matches!(self.node(id).operation, Operation::Constant { raw: 0, .. })
     }
 
-    /// Returns the number of products of all nodes.
     pub(super) fn count_products(&self) -> usize {
         (0..self.nodes().len()).map(|at| self.products(NodeId(at))).sum()
     }

@@ -252,8 +252,9 @@ impl PlanBuilder {
         Ok(reduced)
     }
 
-    /// Adds the product of `x` and the factor of an exponent, and returns its node. `scale` has the factor and the number of
-    /// low bits that the product drops. Returns `x` itself if `scale` is `None`. Fails if a node has too many bits.
+    /// Adds the product that changes the base of an exponent to 2, and returns its node: e^x is 2^(x · log2 e). `scale` has the
+    /// factor and the number of low bits that the product drops. Returns `x` itself if `scale` is `None`. Fails if a node has too
+    /// many bits.
     fn exponent_of_two(
         &mut self,
         x: NodeId,

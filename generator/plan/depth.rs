@@ -1,7 +1,7 @@
 //! Estimates how long the logic of a plan takes between two registers, so that a microprogram can store a value in time.
 //!
-//! The slowest microinstruction of a sequential core is mostly a product: the control memory selects the factors, and the multiplier
-//! computes. Logic in front of a factor would make it slower still. The estimates are nanoseconds on an ECP5 of speed grade 6.
+//! The slowest microinstruction of a sequential core is mostly a product: the control memory selects the factors, and the
+//! multiplier computes. The estimates are nanoseconds on an ECP5 of speed grade 6.
 
 use glint_base::fixed::Rounding;
 
@@ -20,10 +20,11 @@ pub(super) const LONGEST_TO_REGISTER: f64 = 12.5;
 /// The time of a choice, or of a look-up table behind which there is another one.
 const CHOICE: f64 = 2.5;
 
-/// The time of a choice that takes part in a look-up table with its neighbours.
+/// The time of a choice that shares a look-up table with its neighbours.
 const MERGED_CHOICE: f64 = 0.7;
 
-/// Returns the time of each node's own logic. Products and tables have microinstructions of their own, and count as 0.
+/// Returns the time of each node's own logic, in nanoseconds. Products and tables have microinstructions of their own, and count
+/// as 0.
 pub(super) fn own_times(plan: &ExpressionPlan) -> Vec<f64> {
     let mut readers: Vec<Vec<NodeId>> = vec![Vec::new(); plan.nodes().len()];
     for (at, node) in plan.nodes().iter().enumerate() {
@@ -88,15 +89,15 @@ fn time_of(plan: &ExpressionPlan, id: NodeId, readers: &[Vec<NodeId>]) -> f64 {
     }
 }
 
-/// Returns whether a sum needs no adder, because all bits of its first summand have larger weights than the second one, which has no
-/// sign.
+/// Returns whether a sum is a concatenation, which needs no adder: `second` has no sign, and its values are below the last place
+/// of `first`.
 fn are_joined(plan: &ExpressionPlan, first: NodeId, second: NodeId) -> bool {
     let [upper, lower] = [first, second].map(|summand| plan.node(summand).format);
     !lower.signed && lower.int <= -upper.frac
 }
 
-/// Returns whether `id` is the difference c − v of a mirror, a choice between v and c − v, with another mirror or a rounding
-/// behind it. One adder computes all of them.
+/// Returns whether `id` is the difference c − v of a mirror, which chooses between v and c − v, and another mirror or a rounding
+/// follows. One adder then computes all of these.
 fn is_chained_mirror(plan: &ExpressionPlan, id: NodeId, readers: &[Vec<NodeId>]) -> bool {
     let Operation::Subtract(constant, value) = plan.node(id).operation else { return false };
     let is_constant = matches!(plan.node(constant).operation, Operation::Constant { .. });
@@ -115,7 +116,7 @@ fn is_chained_mirror(plan: &ExpressionPlan, id: NodeId, readers: &[Vec<NodeId>])
     is_constant && is_mirror && readers[mirror.0].iter().any(is_rounded)
 }
 
-/// Returns whether a condition depends on the opcode of a unit alone: a bit of it, or of a table that it addresses.
+/// Returns whether a condition is a bit of the opcode of a unit, or a bit of a table with the opcode as its address.
 pub(super) fn selects_by_opcode(plan: &ExpressionPlan, condition: NodeId) -> bool {
     let source = match plan.node(condition).operation {
         Operation::Bit(source, _) => source,
@@ -132,8 +133,8 @@ fn is_opcode(plan: &ExpressionPlan, node: NodeId) -> bool {
     plan.is_shared() && matches!(plan.node(node).operation, Operation::Operand(0))
 }
 
-/// Returns the longest time that the logic in front of a node may take. In a unit, the operand of a table passes the choice between
-/// several operands, and the multiplier also reads it.
+/// Returns the longest time, in nanoseconds, that the logic in front of a node may take. In a unit, a table allows as little as a
+/// product, because its operand passes a choice between operands, and the multiplier also reads it.
 pub(super) fn longest_to(plan: &ExpressionPlan, id: NodeId) -> f64 {
     match plan.node(id).operation {
         Operation::Multiply(..) => LONGEST_TO_FACTOR,

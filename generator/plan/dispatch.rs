@@ -1,11 +1,9 @@
 //! Lets each function of a unit skip the microinstructions that it does not need.
 //!
-//! The functions share one microprogram. A function needs the microinstructions that load the registers on which its results
-//! depend, given its opcode. After each of them the function continues with the next one that it needs. Where functions continue
-//! differently, the microprogram dispatches by the opcode. For example, a reciprocal skips the steps that prepare the quotient of
-//! an arctangent.
-//!
-//! A skipped microinstruction leaves registers as an earlier computation left them. No result of the function depends on these.
+//! A function needs the microinstructions that load the registers on which its results depend, given its opcode. After each of
+//! these, the function continues with the next one that it needs. Where functions continue differently, the shared microprogram
+//! dispatches by the opcode: for example, a reciprocal skips the steps that prepare the quotient of an arctangent. A skipped
+//! microinstruction leaves registers with earlier values, on which no result of the function depends.
 
 use super::node::{NodeId, Operation};
 use super::placement::{PlanSchedule, PlanStep, StepWork};
@@ -39,8 +37,8 @@ pub(super) fn dispatches(
     dispatches
 }
 
-/// Returns for each microinstruction, except the last, the number of the microinstruction that follows it; `None` if it is not
-/// executed. `executed` has an entry for each step of the schedule, which is the microinstruction with the next number.
+/// Returns for each microinstruction, except the last, the number of the microinstruction that follows, or `None` if it is not
+/// executed. Entry i of `executed` belongs to microinstruction i + 1, which is step i of the schedule.
 fn following(executed: &[bool]) -> Vec<Option<usize>> {
     let last = executed.len() + 1;
     let mut following = vec![None; last];
@@ -136,7 +134,7 @@ impl<'p> FunctionNodes<'p> {
         operation.inputs()
     }
 
-    /// Returns whether a step loads a register that is needed.
+    /// Returns whether a step loads a register on which the results of the function depend.
     fn needs_step(&self, step: &PlanStep) -> bool {
         let of_work = match step.work {
             Some(StepWork::Product { held: node, .. } | StepWork::Sum { polynomial: node, .. }) => {
@@ -148,8 +146,8 @@ impl<'p> FunctionNodes<'p> {
         loaded.any(|node| self.is_needed[node.0])
     }
 
-    /// Returns the first executed step that reads a table to which the microinstruction before it does not give the right address:
-    /// it changes the address, or another polynomial addresses the table.
+    /// Returns the first executed step that would read a table too early. The executed step before it changes the table's
+    /// address, or lets another polynomial address the table.
     fn early_read(&self, executed: &[bool]) -> Option<usize> {
         (0..executed.len()).filter(|at| executed[*at]).find(|&at| {
             let before = executed[..at].iter().rposition(|is_executed| *is_executed);
@@ -182,7 +180,6 @@ impl<'p> FunctionNodes<'p> {
 }
 
 impl PlanStep {
-    /// Returns whether the step loads the register with the value of a node.
     fn loads_register(&self, id: NodeId) -> bool {
         let is_worked_out = match self.work {
             Some(StepWork::Product { held, .. }) => held == id,

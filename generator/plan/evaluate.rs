@@ -23,7 +23,7 @@ impl ExpressionPlan {
     /// this node reads.
     ///
     /// # Panics
-    /// Panics as [`ExpressionPlan::values`] does.
+    /// Panics if there are fewer values than operands, or if the node is a function whose polynomials are not known yet.
     pub fn value<F>(&self, id: NodeId, operands: &[i64], known: &F) -> i128
     where
         F: Fn(NodeId) -> i128 + ?Sized,
@@ -32,7 +32,7 @@ impl ExpressionPlan {
         wrapped(self.node(id), self.whole_value(id, operands, known))
     }
 
-    /// Returns the raw value of a node, with bits beyond the node's format.
+    /// Returns the raw value of a node before the bits beyond its format are dropped.
     pub(super) fn whole_value<F>(&self, id: NodeId, operands: &[i64], known: &F) -> i128
     where
         F: Fn(NodeId) -> i128 + ?Sized,

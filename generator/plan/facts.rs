@@ -1,8 +1,8 @@
-//! What conditions on operands say about parts of formulas. For example, `hi > lo` says that `hi - lo` is at least the smallest
-//! difference that the operands can have, so that `1 / (hi - lo)` has a limit.
+//! Derives limits of parts of formulas from conditions on operands. For example, where `hi > lo`, `hi - lo` is at least the
+//! smallest difference of the operands, so that `1 / (hi - lo)` has a limit.
 //!
-//! A fact is a polynomial of operands that is not below a number. A part that is a multiple of this polynomial plus a rest gets
-//! limits from it: `c^2 - a^2` is `(c - a) * (c + a)`, so that it is not below 0 where `c >= a` and both are not negative.
+//! A fact states that a polynomial of operands is not below a number. It limits a part that is a multiple of this polynomial plus
+//! a rest. For example, `c >= a` limits `c^2 - a^2`, which is `(c - a) * (c + a)`, to 0 and above if c and a are not negative.
 
 use std::sync::Arc;
 
@@ -34,7 +34,7 @@ impl Fact {
         Some(Self { polynomial, least })
     }
 
-    /// Returns the facts that a comparison with the outcome `outcome` states, if it combines several comparisons.
+    /// Returns the facts that a comparison with the outcome `outcome` states, one for each comparison that it combines.
     pub(super) fn all_of(
         comparison: &Comparison,
         outcome: bool,
@@ -48,8 +48,8 @@ impl Fact {
     }
 }
 
-/// Returns comparisons with their outcomes; all of them hold where `comparison` has the outcome `outcome`. For example, `min(x, y)
-/// > 0` gives `x > 0` and `y > 0`. A condition of several comparisons is written so.
+/// Divides a comparison into comparisons with outcomes, which all hold where `comparison` has the outcome `outcome`. For example,
+/// `min(x, y) > 0`, the form of a condition of several comparisons, gives `x > 0` and `y > 0`.
 fn single_comparisons(comparison: &Comparison, outcome: bool) -> Vec<(Comparison, bool)> {
     let Comparison { left, right, or_equal } = comparison;
     let beside = |left: &Arc<Expression>, right: &Arc<Expression>| {
@@ -141,7 +141,7 @@ pub(super) fn promises_less(
     })
 }
 
-/// Returns what holds for all operands for which a part with these uses matters.
+/// Returns the facts that hold for all operands for which a part with these uses matters.
 pub(super) fn facts_of(statement: &ExpressionStatement, uses: &PartUses) -> Vec<Fact> {
     let mut facts = Vec::new();
     for (comparison, outcome) in &uses.conditions {
@@ -157,9 +157,9 @@ pub(super) fn facts_of(statement: &ExpressionStatement, uses: &PartUses) -> Vec<
     with_products(with_signs(facts, statement))
 }
 
-/// Adds the facts that follow from two facts about different operands: `x^2 + y^2 >= 1` and `u^2 + v^2 >= 2` give `(x^2 + y^2) * (u^2 +
-/// v^2) >= 2`. This is the square of the length of a product of two complex numbers. Facts about linear polynomials have no products
-/// here, because boxes of operands show their values.
+/// Adds the facts that follow from two facts about different operands: `x^2 + y^2 >= 1` and `u^2 + v^2 >= 2` give
+/// `(x^2 + y^2) * (u^2 + v^2) >= 2`. This is the square of the length of a product of two complex numbers. Linear polynomials are
+/// left out, because boxes of operands limit them.
 fn with_products(facts: Vec<Fact>) -> Vec<Fact> {
     let mut curved = Vec::new();
     for fact in &facts {
@@ -209,7 +209,7 @@ fn is_not_negative(polynomial: &OperandPolynomial, facts: &[Fact]) -> bool {
     states(polynomial) || parts.any(|part| states(&polynomial.minus(&part.polynomial)))
 }
 
-/// A part that is a multiple of a fact's polynomial plus a rest.
+/// A part of a formula, as `factor` · p + `rest`, where p is a polynomial that is at least `least` by a fact.
 #[derive(Clone, Debug)]
 pub(super) struct LimitedPart {
     factor: EnclosedPolynomial,
@@ -232,7 +232,7 @@ impl LimitedPart {
     }
 }
 
-/// Returns whether the conditions of the uses of a part state a fact about the part itself.
+/// Returns whether the conditions of the uses of a part limit the part itself, and not only its operands.
 pub(super) fn has_fact(
     statement: &ExpressionStatement,
     uses: &PartUses,
@@ -241,8 +241,8 @@ pub(super) fn has_fact(
     !limited(statement, &facts_of(statement, uses), part).is_empty()
 }
 
-/// Returns whether boxes of operands show the values of a part, because it is an operand, or a minimum, a maximum or an absolute value
-/// of one operand.
+/// Returns whether a box of operands limits a part without facts, because the part is an operand, or a minimum, a maximum or an
+/// absolute value of one operand.
 fn is_shown_by_boxes(part: &Expression) -> bool {
     let is_variable = matches!(
         part.kind,
@@ -253,7 +253,7 @@ fn is_shown_by_boxes(part: &Expression) -> bool {
     is_variable && part.operands().len() <= 1
 }
 
-/// Returns the limits of a part that follow from facts.
+/// Returns the limits of a part that follow from facts, an entry for each fact about the part.
 pub(super) fn limited(
     statement: &ExpressionStatement,
     facts: &[Fact],

@@ -1,7 +1,7 @@
 //! Finds a plan for an [`ExpressionStatement`], which has the formulas, the domains of the operands and the allowed errors, and
 //! proves a bound on the error of each result.
 //!
-//! Of the plans that it tries, it chooses the one with the fewest estimated look-up tables. If no plan keeps the allowed
+//! The search tries several plans, and chooses the one with the fewest estimated look-up tables. If no plan keeps the allowed
 //! errors, the search fails with a [`PlanRefusal`].
 
 use std::collections::HashSet;
@@ -59,7 +59,7 @@ const FIRST_STYLE: PlanStyle = PlanStyle {
     shares_table: false,
 };
 
-/// A statement with at most so many combinations of operands can have its functions in tables that are found soon.
+/// With at most this many combinations of operands, tables of whole functions are found fast.
 const FEW_COMBINATIONS: u128 = 1 << 12;
 
 /// A table with at least this many operands is searched in one style only.
@@ -71,16 +71,17 @@ const PREFIXES: std::ops::RangeInclusive<u32> = 3..=7;
 /// A function of a unit may take 2 to this power pages of the table.
 const MOST_PAGE_BITS: u32 = 2;
 
-/// The width of a coefficient without guard bits, about which the size of a table is estimated.
+/// The assumed width of a coefficient without guard bits, for an estimate of the size of a table.
 const WIDTH_WITHOUT_GUARD: i32 = 12;
 
 /// The bits of a table that a look-up table stores.
 const BITS_OF_CELL: f64 = 16.0;
 
-/// The look-up tables of a table that a function of a unit has for itself, with its steps of Horner's rule, about.
+/// The approximate look-up tables of a table of one function alone in a unit, with the steps of Horner's rule.
 const CELLS_OF_OWN_TABLE: f64 = 300.0;
 
-/// The most guard bits that the planner adds because polynomials have other errors than estimated. Each addition searches them again.
+/// The most guard bits that the planner adds because polynomials have other errors than estimated. Polynomials are searched again
+/// each time.
 const MOST_CORRECTIONS: usize = 12;
 
 /// The most by which an evaluation of a formula can exceed an error, in units of the last bit.
@@ -89,7 +90,7 @@ const EVALUATION_ERROR: f64 = 1e-6;
 /// A number that no rounding operation has.
 const NO_SOURCE: usize = usize::MAX;
 
-/// The factor by which a plan with reciprocals must have fewer look-up tables: their estimate is not exact.
+/// A plan with reciprocals must have fewer look-up tables than this times the present ones, because the estimate is not exact.
 const CLEARLY_FEWER: f64 = 0.9;
 
 /// The identities by which a table for a short domain serves a longer domain.
@@ -158,7 +159,7 @@ pub fn find(statement: &ExpressionStatement) -> Result<ProvedPlan, PlanRefusal> 
     find_stored(statement, TableMemory::Logic)
 }
 
-/// Returns the plan for a statement, with its tables in the given memory. Fails as [`find`] does.
+/// Returns the plan for a statement, with its tables in the given memory. Fails if no plan keeps the allowed errors.
 pub(super) fn find_stored(
     statement: &ExpressionStatement,
     memory: TableMemory,
@@ -168,8 +169,8 @@ pub(super) fn find_stored(
     find_with(&search)
 }
 
-/// Returns the plan for a statement, in which operations at the same place of several numbers have the same widths. `polynomials` has the
-/// results of earlier searches. Fails as [`find`] does.
+/// Returns the plan for a statement, in which the numbers of a list are computed by operations of the same widths
+/// (`WidthTies::Alike`). `polynomials` has the results of earlier searches. Fails if no plan keeps the allowed errors.
 pub(super) fn find_alike(
     statement: &ExpressionStatement,
     polynomials: &Rc<PolynomialMemo>,
@@ -182,11 +183,11 @@ pub(super) fn find_alike(
     find_with(&search)
 }
 
-/// Returns a plan for each of several statements, with tables that have the same bit widths as far as possible. The plans of a unit
-/// with one datapath can then share the hardware of a table. A failure comes with the number of the statement that has no plan.
+/// Returns a plan for each of several statements, with tables that have the same bit widths as far as possible. The plans of a
+/// unit with one datapath can then share the hardware of a table.
 ///
 /// # Errors
-/// Fails as [`find`] does.
+/// Fails if a statement has no plan that keeps the allowed errors. The failure has the number of the statement.
 pub(super) fn find_set(
     statements: &[ExpressionStatement],
 ) -> Result<Vec<ProvedPlan>, (usize, PlanRefusal)> {
@@ -208,8 +209,8 @@ pub(super) fn find_set(
     Ok(plans)
 }
 
-/// Returns the widths with which the tables of the functions are smallest by the estimate. A function that has no polynomials with
-/// so few segments counts with a table of its own. Returns `None` if no function has such polynomials.
+/// Returns the widths with which the tables of the functions are smallest by the estimate. A function without polynomials of so
+/// few segments counts with a table of its own. Returns `None` if no function has such polynomials.
 fn shared_widths(functions: &[TargetFunction]) -> Option<SharedWidths> {
     let functions: Vec<&TargetFunction> = functions.iter().collect();
     let mut best: Option<(f64, SharedWidths)> = None;
@@ -231,7 +232,6 @@ fn shared_widths(functions: &[TargetFunction]) -> Option<SharedWidths> {
     best.map(|(_, widths)| widths)
 }
 
-/// Returns the plan of a search. Fails as [`find`] does.
 fn find_with(search: &PlanSearch<'_>) -> Result<ProvedPlan, PlanRefusal> {
     let statement = search.statement;
     let PlanCandidate { plan: whole, divisions, .. } = smallest_candidate(search)?;
@@ -403,7 +403,7 @@ fn smallest_candidate(search: &PlanSearch<'_>) -> Result<PlanCandidate, PlanRefu
     }
 }
 
-/// Replaces the smallest plan by one of the given style, if it takes fewer look-up tables than `share` times the present ones.
+/// Replaces the plan `smallest` by a plan in the style `style`, if this takes fewer look-up tables than `share` times `smallest`.
 fn keep_smaller(
     search: &PlanSearch<'_>,
     smallest: &mut Option<(f64, PlanStyle, PlanCandidate)>,
@@ -425,15 +425,15 @@ fn has_long_table(plan: &ExpressionPlan) -> bool {
     })
 }
 
-/// Returns a plan in the given style that keeps the allowed errors, as far as `divisions` divisions of the domain show. Fails
-/// if the style has no such plan.
+/// Returns a plan in the style `style` that has polynomials and keeps the allowed errors, as far as some divisions of the domain
+/// show. Fails if the style has no such plan.
 fn candidate_with(search: &PlanSearch<'_>, style: PlanStyle) -> Result<PlanCandidate, PlanRefusal> {
     let candidate = candidate_below(search, style, None)?;
     Ok(candidate.expect("a plan of any size"))
 }
 
-/// Returns what [`candidate_with`] returns. Returns `None` without a search of polynomials if the plan has more look-up tables than
-/// `most_cells` even without its polynomials, or if their search would take seconds; both only if there is a limit.
+/// Returns the plan of [`candidate_with`]. With a limit `most_cells`, returns `None` if the plan has more look-up tables even
+/// without polynomials, or if the search of its polynomials would take seconds.
 fn candidate_below(
     search: &PlanSearch<'_>,
     style: PlanStyle,
@@ -511,10 +511,9 @@ fn polynomials_by(
     search.polynomials.found(function, |function| cheapest_polynomials(function, search.memory))
 }
 
-/// Returns the polynomials of a function with the lowest estimated cost in a pipeline, among those of degree 1, 2 and 3 and
-/// those with a range reduction. If none of these exists, returns the polynomials that [`glint_approximate::find`] chooses.
-/// Each degree needs a product, a sum, and registers for all values that wait for them. Fails if the function has no
-/// polynomials.
+/// Returns the polynomials of a function with the lowest estimated cost in a pipeline, among degrees 1, 2 and 3 and the range
+/// reductions. If none of these exists, returns the polynomials that [`glint_approximate::find`] chooses. Fails if the function
+/// has no polynomials.
 fn cheapest_polynomials(
     function: &TargetFunction,
     memory: TableMemory,

@@ -18,9 +18,9 @@ pub(super) struct PlanOfParts {
 }
 
 impl PlanOfParts {
-    /// Returns a plan that computes `node` of `plan` from exact parts, and a statement without a condition and with the other entries of
-    /// `result`. Returns `None` if the parts are not fewer than `most`, or if a rounded part has a stated value, which depends on the
-    /// operands.
+    /// Returns a plan that computes `node` of `plan` from exact parts, and a statement of these parts with the allowed error of
+    /// `result`, but without its condition. Returns `None` if the parts are not fewer than `most`, or if a rounded part has a
+    /// stated value, which depends on the operands of `plan`.
     pub(super) fn of(
         plan: &ExpressionPlan,
         node: NodeId,
@@ -73,8 +73,8 @@ impl PlanOfParts {
     }
 }
 
-/// Returns for each node whether it is exact and has no branches of the analysis before it: no shift that depends on a word, and no integer
-/// part.
+/// Returns for each node whether it is exact and depends on no node that branches the analysis: a shift that depends on a word,
+/// or an integer part.
 fn plain_nodes(plan: &ExpressionPlan) -> Vec<bool> {
     let mut is_plain: Vec<bool> = Vec::new();
     for node in plan.nodes() {

@@ -18,7 +18,7 @@ use super::uses::PartUses;
 /// The most cases of choices in a formula whose conditions are read as facts.
 const MOST_CASES: usize = 64;
 
-/// A part of a formula with facts about it, and the name of the operand that replaces it.
+/// A part of a formula about which facts hold, and the name of the operand that replaces it.
 #[derive(Clone, Debug)]
 struct GuardedPart {
     name: String,
@@ -53,7 +53,8 @@ impl GuardedPart {
     }
 }
 
-/// A formula whose value matters only under some conditions, in which an operand replaces each part with a fact about it.
+/// A formula whose value matters only under some conditions. An operand replaces each part about which they state a fact, so that
+/// the evaluation uses the limits of the part.
 #[derive(Clone, Debug)]
 pub struct GuardedFormula {
     formula: Arc<Expression>,
@@ -208,8 +209,8 @@ impl GuardRewriting<'_> {
     }
 }
 
-/// Returns an equal formula of `part`, whose absolute value does not exceed the root of `square`. The enclosure of the new formula has this
-/// limit.
+/// Returns `part`, whose absolute value does not exceed the root of `square`, as a formula that is limited to this root. Its
+/// value is equal, but its enclosure is narrower.
 fn within_root(part: &Arc<Expression>, square: Arc<Expression>) -> Arc<Expression> {
     let new = |kind: Kind| Arc::new(Expression::new(kind, part.span.clone()));
     let most = new(Kind::Unary(Function::Sqrt, square));

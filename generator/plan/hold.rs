@@ -1,8 +1,8 @@
 //! Decides which values of a plan have registers.
 //!
-//! Results, products and polynomials always have one, and so has the word that [`Operation::Normalise`] shifts to its top bit. In
-//! a sequential unit, this word goes to the register of the table's operand instead. In a sequential core, any other value has a
-//! register too if the logic that reads it would otherwise take too long ([`super::depth`]).
+//! Results, products and polynomials always have registers, and so has the word that [`Operation::Normalise`] shifts to its top
+//! bit. In a sequential unit, the register of the table's operand takes this word. In a sequential core, any other value also has
+//! a register if the logic that reads it would otherwise take too long ([`super::depth`]).
 
 use super::depth::{longest_to, own_times, selects_by_opcode};
 use super::node::{NodeId, Operation};
@@ -118,7 +118,6 @@ impl RegisterSearch<'_> {
         self.extend_times(end);
     }
 
-    /// Computes the times of the nodes before `end`.
     fn extend_times(&mut self, end: NodeId) {
         for at in self.times.len()..end.0 {
             let time = match self.held[at] {

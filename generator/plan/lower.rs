@@ -1,9 +1,8 @@
 //! Rewrites the formulas of a statement as a plan, with given numbers of fraction bits.
 //!
-//! If a part of a formula is a function of one number, it becomes a table of polynomials, even if that number is the value of
-//! another part. Exceptions are functions that a few products compute, and functions with a rewriting in the folder `lower`,
-//! such as powers and waves. For example, `sqrt(x^2 + y^2)` is the square root of the one number `x^2 + y^2`. Sums and products
-//! become separate operations.
+//! A part of a formula that is a function of one number becomes a table of polynomials. The number can be the value of another
+//! part: `sqrt(x^2 + y^2)` is the square root of the number `x^2 + y^2`. Sums, products, and functions that a few products
+//! compute become separate operations. The folder `lower` has rewritings of other functions, such as powers and sines.
 
 mod choice;
 mod direction;
@@ -108,8 +107,8 @@ pub(super) struct PlanStyle {
     pub(super) cuts_terms_early: bool,
     /// Whether factors that are wider than a multiplier's input give bits to other operations.
     pub(super) narrows_factors: bool,
-    /// Whether the tables of the plan are pages of a table that several functions share. All normalised words then have the same bits, so
-    /// that they need no choice in front of the table.
+    /// Whether the tables of the plan are pages of a table that several functions share. All normalised words then have the same
+    /// bits, so that no choice is needed in front of the table.
     pub(super) shares_table: bool,
 }
 
@@ -156,7 +155,8 @@ pub(super) struct PolynomialMemo {
 }
 
 impl PolynomialMemo {
-    /// Returns what `search` returned for this function before, or returns now. Fails if `search` does.
+    /// Returns the result of `search` for this function. Calls `search` only for a function without a known result. Fails if
+    /// `search` does.
     pub(super) fn found(
         &self,
         function: &TargetFunction,
@@ -186,8 +186,8 @@ struct KnownPart {
 struct FixedGuard {
     /// The guard bits that each rounding has beyond the finest result.
     guard: i32,
-    /// The number of integer bits of the estimate, for factors whose relative error counts. A number that is as large as the estimate
-    /// does without these bits.
+    /// The integer bits of the estimate. A factor gets as many further fraction bits, because its relative error counts; a number
+    /// that is as large as the estimate does not.
     value_bits: i32,
 }
 
@@ -218,7 +218,8 @@ pub(super) struct Lowering<'s> {
     finest: i32,
 }
 
-/// A statement for which a plan is searched, with the intervals of its parts, which do not depend on the widths in a plan.
+/// A statement for which a plan is searched. The memos hold results that do not depend on the widths, so that all attempts share
+/// them.
 pub(super) struct PlanSearch<'s> {
     pub(super) statement: &'s ExpressionStatement,
     pub(super) tables: TableRule,
@@ -263,7 +264,7 @@ pub(super) enum TableRule {
 }
 
 impl<'s> PlanSearch<'s> {
-    /// Operations with the same name have the same widths if there are many operands.
+    /// Makes a search in which operations with the same name have the same widths if there are more than 3 operands.
     pub(super) fn new(statement: &'s ExpressionStatement, tables: TableRule) -> Self {
         let ties = match has_few_operands(statement) {
             true => WidthTies::None,
@@ -285,8 +286,8 @@ pub(super) struct LoweredStatement {
     pub(super) terms: Vec<usize>,
 }
 
-/// Returns the plan of a statement. Rounding operation number i gets the guard bits
-/// `guards.bits[i]`, or `first_guard` if the list is shorter.
+/// Returns the plan of a statement. Rounding operation number i gets the guard bits `guards.bits[i]`, or `first_guard` if the
+/// list is shorter. Only the functions in `found` get polynomials; the errors of other tables are estimates.
 ///
 /// # Errors
 /// Fails if no rule computes a part of a formula, or if a part has too many bits or no finite values.
@@ -337,24 +338,24 @@ pub(super) fn lowered(
 }
 
 impl<'s> Lowering<'s> {
-    /// Returns an interval that contains the values of a part, for all operands for which its value matters. Fails if the values
-    /// have no finite limits.
+    /// Returns an interval that contains the values of a part, for all operands for which a result depends on it. Fails if the
+    /// values have no finite limits.
     fn range(&self, part: &Expression) -> Result<Enclosure, PlanRefusal> {
         let uses = self.uses_of(part);
         let range = self.memo.ranges.range_of(self.statement, &uses, part);
         range.map_err(|error| error.refusal(self.statement, part))
     }
 
-    /// Returns an interval that contains the values of a part, for all operands for which the part that is being rewritten matters.
-    /// Other readers of the part do not count, unlike in [`Self::range`]. Fails if the values have no finite limits.
+    /// Returns the interval of a part for the part that is being rewritten alone, while [`Self::range`] counts all readers. Fails
+    /// if the values have no finite limits.
     fn range_here(&self, part: &Expression) -> Result<Enclosure, PlanRefusal> {
         let range = self.memo.ranges.range_of(self.statement, &self.uses, part);
         range.map_err(|error| error.refusal(self.statement, part))
     }
 
-    /// Returns the uses of `part` as a part of the one that is being rewritten. Other results whose formulas
-    /// read `part` in the same cases of choices count too, so that they can share its node, unless the part then loses limits that the
-    /// condition of the present result states.
+    /// Returns the uses of `part` within the part that is being rewritten. Results that read `part` in the same cases of choices
+    /// count as readers, so that they can share its node. They do not count if `part` would then lose limits that the condition
+    /// of the present result states.
     fn uses_of(&self, part: &Expression) -> PartUses {
         self.memo.uses.value(part, &self.uses, || self.new_uses_of(part))
     }
@@ -371,7 +372,8 @@ impl<'s> Lowering<'s> {
         uses
     }
 
-    /// Returns what `make` returns, for parts whose value matters only where the comparison has the outcome `outcome`.
+    /// Calls `make`, which rewrites parts that matter only where the comparison has the outcome `outcome`, and returns its
+    /// result.
     fn under<T>(
         &mut self,
         comparison: &Comparison,
@@ -406,8 +408,8 @@ impl<'s> Lowering<'s> {
         Ok(node)
     }
 
-    /// Returns the node of a part of a formula. Adds the node and all nodes that it reads if the part has no node. Fails if a
-    /// part has too many bits, no finite values, or no rule. The refusal has the location of the part.
+    /// Returns the node of a part of a formula. Adds the node and all nodes that it reads if the part has no node. Fails if the
+    /// plan cannot compute a part. The refusal has the location of the part.
     fn part(&mut self, part: &Expression) -> Result<NodeId, PlanRefusal> {
         let uses = self.uses_of(part);
         let has_fact = || has_fact(self.statement, &uses, part);
@@ -435,8 +437,8 @@ impl<'s> Lowering<'s> {
         Ok(node)
     }
 
-    /// Returns the known node of a part that has the right value for the present uses, and that has limits or none. The present uses
-    /// give no narrower limits.
+    /// Returns the known node of `part` that has the right value for the present uses. With `is_limited`, it must have limits
+    /// from conditions, and the present uses must give no narrower limits; otherwise it has no such limits.
     fn known_part(&self, part: &Expression, is_limited: bool) -> Option<&KnownPart> {
         self.known.iter().find(|known| {
             known.is_limited == is_limited
@@ -446,7 +448,8 @@ impl<'s> Lowering<'s> {
         })
     }
 
-    /// Returns whether the interval of a known part is the same for its uses and for the present ones, or one of them is not known.
+    /// Returns whether the interval of a known part is the same for its uses and for the present uses, or one of these is not
+    /// known.
     fn has_same_range(&self, known: &KnownPart) -> bool {
         if known.uses.conditions == self.uses.conditions {
             return true;
@@ -463,8 +466,8 @@ impl<'s> Lowering<'s> {
         self.statement.enclosed_operands(&self.statement.domain())
     }
 
-    /// Returns a node with the value of `node`, which is the node of `part`, within the limits that follow from the conditions of
-    /// its uses, or from a maximum in the part. Returns a copy of `node` if it is rounded. Fails if the part has no finite values.
+    /// Returns a node for `part` with the value of `node` and narrower limits. They follow from the conditions of the uses of
+    /// `part`, or from a maximum in it. Copies `node` if it is rounded. Fails if the part has no finite values.
     fn limited_by_facts(&mut self, part: &Expression, node: NodeId) -> Result<NodeId, PlanRefusal> {
         if !self.is_exact(node) {
             let limits = order::limits(part, &self.whole_domain());
@@ -496,7 +499,7 @@ impl<'s> Lowering<'s> {
         self.uses.conditions.is_empty() && promises.all(|promise| Some(promise) == first)
     }
 
-    /// Returns the stated value of a part whose value matters for `uses` alone.
+    /// Returns the stated value of a node that computes `part` for `uses` alone.
     fn stated(&self, part: &Expression, uses: &PartUses, accuracy: ValueAccuracy) -> StatedValue {
         let formula = Arc::new(GuardedFormula::new(self.statement, uses, part));
         StatedValue { formula, accuracy }
@@ -556,9 +559,9 @@ impl<'s> Lowering<'s> {
         }
     }
 
-    /// Returns the node of a function for which a rewriting exists: a scaled direction, a power, a sine or a cosine, a
-    /// logarithm, or an exponential function. `function` is the part `part` in which `x` replaces `core`. Returns `None` for
-    /// any other function. Fails if a part has too many bits, no finite values, or no rule.
+    /// Returns the node of a function for which a rewriting exists: a scaled direction, a power, a sine or a cosine, a logarithm,
+    /// or an exponential function. `function` is the part `part` in which `x` replaces `core`. Returns `None` for any other
+    /// function. Fails if the plan cannot compute a part.
     fn rewritten(
         &mut self,
         part: &Expression,
@@ -598,8 +601,7 @@ impl<'s> Lowering<'s> {
         })
     }
 
-    /// Returns the node of an operation whose inputs are parts of the formula. Fails if a part has too many bits, no finite
-    /// values, or no rule.
+    /// Returns the node of an operation whose inputs are parts of the formula. Fails if the plan cannot compute a part.
     fn operation(&mut self, part: &Expression) -> Result<NodeId, PlanRefusal> {
         match &part.kind {
             Kind::Operand(name) => Err(PlanRefusal::new(
@@ -742,8 +744,8 @@ impl<'s> Lowering<'s> {
         }
     }
 
-    /// Returns the node of a term of a sum, or of a number that is compared. If the term is a product of rounded numbers, its low bits are
-    /// dropped: they would make the sum and all that follows wider. Fails if a part has too many bits, no finite values, or no rule.
+    /// Returns the node of a term of a sum, or of a number that is compared. If the term is a product of rounded numbers, its low
+    /// bits are dropped: they would make the sum and all that follows wider. Fails if the plan cannot compute a part.
     fn term(&mut self, part: &Expression) -> Result<NodeId, PlanRefusal> {
         let node = self.part(part)?;
         self.short_term(node)
@@ -765,8 +767,8 @@ impl<'s> Lowering<'s> {
         })
     }
 
-    /// Returns the node of a factor of a product, shortened if it has more bits than a multiplier takes. Fails if a part has
-    /// too many bits, no finite values, or no rule.
+    /// Returns the node of a factor of a product, shortened if it has more bits than a multiplier takes. Fails if the plan cannot
+    /// compute a part.
     fn factor(&mut self, part: &Expression) -> Result<NodeId, PlanRefusal> {
         let node = self.part(part)?;
         let format = self.plan.node(node).format;
@@ -780,7 +782,6 @@ impl<'s> Lowering<'s> {
     }
 }
 
-/// Returns 1 / `divisor`.
 fn reciprocal_of(divisor: &Expression) -> Expression {
     let one = Arc::new(number("1"));
     let kind = Kind::Binary(Operator::Div, one, Arc::new(divisor.clone()));

@@ -1,10 +1,9 @@
 //! Finds chains of mirrored values, whose hardware is a single adder. For example, three conditions mirror an angle from one of
 //! eight octants into the first octant.
 //!
-//! A mirror is a choice between a value v and the difference c − v from a constant c. A chain of up to three such choices, with
-//! a sum and the rounding after it, has the value ±v + base. The sign is negative if an odd number of the conditions is 1, and each
-//! combination of conditions has a constant base. One adder therefore computes the whole chain, although the plan has a
-//! difference and a choice for each mirror.
+//! A mirror is a choice between a value v and the difference c − v from a constant c. A chain of up to three such choices, with a
+//! sum and the rounding after it, has the value ±v + base. The sign is negative if an odd number of the conditions is 1, and each
+//! combination of conditions has a constant base.
 
 use glint_base::fixed::{Format, Rounding};
 

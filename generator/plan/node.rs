@@ -42,15 +42,14 @@ pub struct PlanNode {
     /// How near the cases of a choice are to each other where the compared numbers are nearly equal; `None` if this is not known, and
     /// for other operations.
     pub agreement: Option<CaseAgreement>,
-    /// The index of the rounding operation in the list of numbers of fraction bits that the planner chooses. `None` for an
-    /// exact operation.
+    /// The number of the rounding operation, for which the planner chooses the fraction bits; `None` for an exact operation.
     pub source: Option<usize>,
 }
 
 /// The value of a node, stated by the formula that it computes.
 #[derive(Clone, Debug)]
 pub struct StatedValue {
-    /// The formula, with what holds wherever its value matters.
+    /// The formula, with the conditions under which its value matters.
     pub formula: Arc<GuardedFormula>,
     /// How near the hardware's value is to the formula.
     pub accuracy: ValueAccuracy,
@@ -70,13 +69,14 @@ pub struct CaseAgreement {
 /// How near the hardware's value of a node is to the formula that the node computes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ValueAccuracy {
-    /// The hardware has the value of the formula. For example, a node that corrects an estimate of a quotient has its integer part.
+    /// The hardware has the value of the formula. For example, a node that corrects an estimate of a quotient has the quotient's
+    /// integer part.
     Exact,
-    /// The hardware has the value of the formula, rounded to the nearest value with the fraction bits of the node. Of two values
-    /// that are equally near, it has the larger one.
+    /// The hardware has the value of the formula, rounded to the nearest value with the fraction bits of the node. A value in the
+    /// middle of two is rounded up.
     Nearest,
-    /// The errors of the inputs decide. The formula gives the ideal value of a choice where the case that the hardware does not
-    /// take has no limits.
+    /// The accuracy follows from the errors of the inputs. The formula only gives the ideal value of a choice if the case that
+    /// the hardware does not take has no limits.
     FromInputs,
 }
 

@@ -1,9 +1,8 @@
-//! Limits of parts of formulas in which the same part occurs twice, so that interval arithmetic, which counts both as independent,
-//! shows no limit.
+//! Finds limits that interval arithmetic misses, because it treats two occurrences of the same part of a formula as independent.
 //!
-//! A number minus a maximum that includes it is never above 0: `v0 - max(v0, v1)` ≤ 0. At least one of these
-//! differences is 0, so that a sum of functions of all of them has a lower limit: `exp(v0 - m) + exp(v1 - m)` ≥ 1, with m the
-//! maximum. A mixture `x + (y - x) * t` with t from 0 to 1 lies between x and y.
+//! A number minus a maximum that includes it is never above 0: with m = `max(v0, v1)`, `v0 - m` ≤ 0. One of `v0 - m` and
+//! `v1 - m` is 0, so `exp(v0 - m) + exp(v1 - m)` ≥ 1. A mixture `x + (y - x) * t` of x, y ≥ 0 with t from 0 to 1 is not below
+//! the smaller of x and y.
 
 use std::sync::Arc;
 
@@ -46,14 +45,13 @@ pub(super) fn limits(part: &Expression, operands: &[(&str, Enclosure)]) -> Enclo
     limits
 }
 
-/// Returns whether [`limits`] states a limit.
 pub(super) fn has_limits(part: &Expression, operands: &[(&str, Enclosure)]) -> bool {
     let limits = limits(part, operands);
     limits.low.is_finite() || limits.high.is_finite()
 }
 
-/// Returns an equal formula whose enclosure keeps the limits: the part is compared with them. The operands in `part` must be those
-/// of the statement. Returns `None` without limits.
+/// Returns the formula `rewritten`, which equals `part`, with a minimum or a maximum that keeps its enclosure within the limits
+/// of `part`. The operands in `part` must be the operands of the statement. Returns `None` without limits.
 pub(super) fn clamped(
     part: &Expression,
     rewritten: &Arc<Expression>,

@@ -1,10 +1,10 @@
 //! Finds plans whose results have the order of the values that they approximate: the largest of the results of a softmax is then
 //! a result of the largest number.
 //!
-//! The numbers of such a list have one formula for different operands, `exp(v0 - m) / s` and `exp(v1 - m) / s`, and common parts, here m and
-//! s. If the formula rises with its own operand while the common parts stay as they are, the order of the values is the order of these
-//! operands. If the hardware of each number consists of the same operations, which rise in the same way, the results have this order
-//! too, whatever the errors of the common parts are.
+//! The numbers of such a list have one formula with different operands, such as `exp(v0 - m) / s` and `exp(v1 - m) / s` with the
+//! common parts m and s. If the formula rises with a number's own operand while the common parts stay constant, the values have
+//! the order of these operands. If the same operations compute each number, and each operation keeps this order, the results have
+//! it whatever the errors of the common parts are.
 
 mod alike;
 mod formulas;
@@ -77,8 +77,8 @@ const TIGHTER: f64 = 0.8;
 /// for the tables.
 ///
 /// # Errors
-/// Fails as [`super::find()`] does. Fails if the formulas of a list are not alike or do not rise or fall with their own operands, or if no
-/// plan has this order.
+/// Fails if no plan keeps the allowed errors, or if no plan has this order. Also fails if the formulas of a list are not alike,
+/// or do not rise or fall with their own operands.
 pub fn find_ordered(
     statement: &ExpressionStatement,
     lists: &[Range<usize>],
@@ -113,7 +113,7 @@ pub fn find_ordered(
     Err(refusal.expect("a fault of each attempt"))
 }
 
-/// Fails if a result of the list wraps: a value beyond the format then becomes the smallest result.
+/// Checks that no result of the list wraps. Fails if one does: a value beyond the format would become the smallest result.
 fn refuse_wrapping(
     statement: &ExpressionStatement,
     list: &Range<usize>,

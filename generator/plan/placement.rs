@@ -68,9 +68,9 @@ impl PlanSchedule {
         sharers
     }
 
-    /// Returns the polynomial whose operand the table of `owner` gets in microinstruction number `at`. A sum needs the offset of its
-    /// operand at once. Otherwise it is the next polynomial that reads a word, because a table has the word of an address one clock
-    /// later. Microinstruction number 0 waits for `start`, and number k executes `steps[k - 1]`.
+    /// Returns the polynomial whose operand addresses the table of `owner` in microinstruction number `at`. A partial sum of this
+    /// microinstruction needs the offset of its own operand. Otherwise the next polynomial that reads the table gives the
+    /// address, because the word follows one clock later. Number 0 waits for `start`, and number k executes `steps[k - 1]`.
     pub fn addressing(&self, owner: NodeId, at: usize) -> Option<NodeId> {
         let is_own = |polynomial: &NodeId| self.table_owners[polynomial.0] == owner;
         let present = at.checked_sub(1).and_then(|step| self.steps.get(step)?.polynomial_summed());
@@ -100,7 +100,6 @@ impl PlanStep {
         read
     }
 
-    /// Returns the polynomial whose partial sum the step computes.
     fn polynomial_summed(&self) -> Option<NodeId> {
         match self.work {
             Some(StepWork::Sum { polynomial, .. }) => Some(polynomial),
@@ -246,12 +245,13 @@ impl<'p> StepPlacement<'p> {
         inputs.into_iter().map(|input| self.ready[input.0]).max().unwrap_or(0)
     }
 
-    /// Returns the microinstruction for registers whose values are there from microinstruction `ready` on.
+    /// Returns the microinstruction that loads a register with a value of inputs that can be read from microinstruction `ready`
+    /// on.
     fn free(&self, ready: usize) -> usize {
         if self.is_pipelined { self.schedule.steps.len() } else { ready }
     }
 
-    /// Returns the microinstruction for a product whose factors are there from microinstruction `ready` on.
+    /// Returns the microinstruction for a product with factors that can be read from microinstruction `ready` on.
     fn free_work(&mut self, ready: usize) -> usize {
         let at = self.free(ready).max(self.next_work);
         self.next_work = at + 1;
@@ -272,7 +272,6 @@ impl<'p> StepPlacement<'p> {
         self.loaded(node, at);
     }
 
-    /// Notes that microinstruction `at` loads the register of a node.
     fn loaded(&mut self, node: NodeId, at: usize) {
         self.is_placed[node.0] = true;
         self.ready[node.0] = at + 1;

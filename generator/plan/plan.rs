@@ -1,4 +1,4 @@
-//! Defines the plan of an expression. A [`PlanBuilder`] makes it; afterwards it is only read.
+//! Defines the plan of an expression. A [`PlanBuilder`] makes a plan, and nothing changes it afterwards.
 
 mod builder;
 mod consistency;
@@ -90,8 +90,8 @@ impl ExpressionPlan {
 
     /// Returns for each node whether the hardware of a result reads it. Operands count as read, because they are ports.
     ///
-    /// A node can have no reader, although its result is a part of the formula. For example, the table of a function that covers
-    /// one octave has the function's values, and nothing shifts them back.
+    /// A node can be without a reader. For example, nothing reads the places of a shift if the function covers one octave and
+    /// needs no shift back.
     pub fn read_nodes(&self) -> Vec<bool> {
         let mut is_read = vec![false; self.nodes.len()];
         for result in &self.results {
@@ -174,8 +174,9 @@ impl ExpressionPlan {
         are_unsigned && is_as_wide && raw == own.max_raw()
     }
 
-    /// Returns the number of the rounding operation that gives a value its fraction bits: the number of the node itself, or of the
-    /// only earlier node with the same bits. Returns `None` if the value is exact or has several inputs.
+    /// Returns the number of the rounding operation that gives the node `id` its fraction bits, so that the planner can make a
+    /// factor narrower. The operation is the node itself, or an earlier node whose bits the node only scales or limits. Returns
+    /// `None` if the value is exact or has several inputs.
     pub(super) fn rounding_before(&self, id: NodeId) -> Option<usize> {
         let node = self.node(id);
         if node.source.is_some() && node.deviation == 0.0 {

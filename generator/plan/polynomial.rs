@@ -165,7 +165,7 @@ impl OperandPolynomial {
         self.terms.keys().all(Exponents::is_empty)
     }
 
-    /// Returns the number whose absolute value the polynomial is; `None` for another polynomial.
+    /// Returns x if the polynomial is the absolute value of x; `None` for another polynomial.
     pub(super) fn size_of_number(&self) -> Option<&Expression> {
         let mut terms = self.terms.iter();
         let (exponents, coefficient) = terms.next()?;
@@ -245,7 +245,8 @@ impl OperandPolynomial {
         Some((highest.0.clone(), highest.1.clone()))
     }
 
-    /// Returns a number that divides every value of the polynomial, for operands of the statement.
+    /// Returns a number that divides every value of the polynomial for operands of the statement: a value above 0 is at least
+    /// this number.
     pub(super) fn step(&self, statement: &ExpressionStatement) -> RBig {
         let mut step = RBig::ZERO;
         for (exponents, coefficient) in &self.terms {

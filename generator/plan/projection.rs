@@ -1,5 +1,5 @@
-//! Limits of a quotient by the length of a vector. Interval arithmetic does not show them, because the same numbers are in the dividend
-//! and in the divisor.
+//! Finds limits of a quotient by the length of a vector. Interval arithmetic misses them, because the same numbers are in the
+//! dividend and in the divisor.
 //!
 //! The dividend c₁·v₁ + c₂·v₂ + … has products with the numbers of the vector, and the divisor is the vector's length, √(v₁² + v₂² + …).
 //! By the inequality of Cauchy and Schwarz, the absolute value of the quotient is at most √(c₁² + c₂² + …). For example,
@@ -36,7 +36,7 @@ pub(super) fn is_projection(kind: &Kind) -> bool {
     square_of_limit(kind).is_some()
 }
 
-/// Returns the square of a number that the absolute value of a quotient does not exceed. Returns `None` for a formula of another kind. For
+/// Returns the square of an upper limit of a quotient's absolute value. Returns `None` for a formula of another kind. For
 /// example, `(x * p + y * q) / sqrt(x^2 + y^2)` gives `p * p + q * q`, and 1 if the divisor is
 /// `sqrt(x^2 + y^2) * sqrt(p^2 + q^2)`.
 pub(super) fn square_of_limit(kind: &Kind) -> Option<Arc<Expression>> {
@@ -65,9 +65,9 @@ pub(super) fn square_of_limit(kind: &Kind) -> Option<Arc<Expression>> {
     }
 }
 
-/// Returns a product of a quotient and a number as a single quotient, if the divisor is the square of a length that limits the single
-/// quotient and not the other one. Returns `None` for any other formula. For example, `(x * p + y * q) / (x^2 + y^2) * x` gives
-/// `(x * p + y * q) * x / (x^2 + y^2)`.
+/// Returns a product of a quotient and a number as a single quotient, if the divisor is the square of a length that limits only
+/// the single quotient. For example, `(x * p + y * q) / (x^2 + y^2) * x` gives `(x * p + y * q) * x / (x^2 + y^2)`. Returns
+/// `None` for any other formula.
 pub(super) fn multiplied_quotient(kind: &Kind) -> Option<Expression> {
     let Kind::Binary(Operator::Mul, a, b) = kind else { return None };
     for (quotient, factor) in [(a, b), (b, a)] {
@@ -88,9 +88,9 @@ pub(super) struct RoundedProjection {
     pub(super) deviation: f64,
 }
 
-/// Rounds the constants that are factors in the dividend of a quotient by the length of a vector to `frac` fraction bits, or to as many as
-/// factors of 18 bits can have. The part may also be a minimum or a maximum of such a quotient and a constant: the values are then not
-/// farther from each other. Returns `None` for any other formula, and if all constants are exact with few bits.
+/// Rounds constant factors in the dividend of a quotient by the length of a vector to `frac` fraction bits, or as many as factors
+/// of 18 bits can have. The part may also be a minimum or a maximum of such a quotient and a constant, which changes by no more.
+/// Returns `None` for any other formula, and if all constants are exact with few bits.
 pub(super) fn rounded(part: &Expression, frac: i32) -> Option<RoundedProjection> {
     match &part.kind {
         Kind::Binary(operator @ (Operator::Min | Operator::Max), a, b)
@@ -187,9 +187,9 @@ fn parts_of_quotient(part: &Expression) -> Option<(Arc<Expression>, Arc<Expressi
     }
 }
 
-/// Returns the square of a number that the absolute value of a quotient does not exceed, if the divisor is the square of a length, and the
-/// dividend is a product of two sums that are limited by this length. Returns `None` for any other quotient. For example,
-/// `x * (x * p + y * q) / (x^2 + y^2)` gives `1 * (p * p + q * q)`.
+/// Returns the square of an upper limit of a quotient's absolute value. The divisor must be the square of a length, and the
+/// dividend a product of two sums that this length limits: `x * (x * p + y * q) / (x^2 + y^2)` gives `1 * (p * p + q * q)`.
+/// Returns `None` for any other quotient.
 fn limit_by_square(dividend: &Expression, divisor: &Arc<Expression>) -> Option<Arc<Expression>> {
     let numbers = numbers_of(divisor).filter(|numbers| !numbers.is_empty())?;
     let Kind::Binary(Operator::Mul, first, second) = &dividend.kind else { return None };
@@ -198,7 +198,7 @@ fn limit_by_square(dividend: &Expression, divisor: &Arc<Expression>) -> Option<A
     Some(binary(Operator::Mul, &first, &second))
 }
 
-/// Returns the square of a number that the absolute value of `part`, divided by the length of a vector with these numbers, does not exceed.
+/// Returns the square of an upper limit of the absolute value of `part`, divided by the length of a vector with these numbers.
 /// Returns `None` unless the part is a sum of products with these numbers, or such a sum times a constant.
 fn square_by_numbers(
     numbers: &[Arc<Expression>],

@@ -24,9 +24,9 @@ const DIVISIONS_OF_AN_END: usize = 300;
 pub(super) const LIMIT_THE_OPERANDS: &str =
     "limit the operands with `where`, or with `from` and `to`";
 
-/// Returns the part that a condition could limit, so that a part without a value for these operands has one: in the innermost such
-/// part, the divisor or the operand of a logarithm must be above 0, or the operand of a root not below 0. For example, `1 / (x - y)`
-/// gives `x - y`. Returns `None` if no such part is found, or if it is a constant.
+/// Returns the part that a condition could limit so that `part` has a value for these operands: `1 / (x - y)` gives `x - y`. A
+/// divisor or the operand of a logarithm must be above 0, and the operand of a root not below 0. Returns `None` if no such part
+/// is found, or if it is a constant.
 fn limited_part(part: &Expression, operands: &[(&str, Enclosure)]) -> Option<PartToLimit> {
     for inner in part.parts() {
         if inner.enclose(operands).map_or(true, |value| !value.is_finite()) {
@@ -125,10 +125,10 @@ impl Ord for BoxEnd {
 pub(super) struct RangeMemo(FormulaMemo<PartUses, Result<Enclosure, NoRange>>);
 
 impl RangeMemo {
-    /// Returns what [`range_of`] returns. All calls must have the same statement.
+    /// Returns the interval of [`range_of`], which it computes only once. All calls must have the same statement.
     ///
     /// # Errors
-    /// Fails as [`range_of`] does.
+    /// Fails if the values have no finite limits, or if no operands satisfy the condition of the promise.
     pub(super) fn range_of(
         &self,
         statement: &ExpressionStatement,
@@ -139,7 +139,7 @@ impl RangeMemo {
     }
 }
 
-/// Returns an interval that contains the values of `formula`, for all operands for which its value matters.
+/// Returns an interval that contains the values of `formula`, for all operands for which the value matters by `uses`.
 ///
 /// The domain is divided where the part has no finite limits, and then where its largest and its smallest values are.
 ///
@@ -198,7 +198,7 @@ fn range_of(
     Ok(Enclosure::between(-low, high))
 }
 
-/// Returns the names of the operands on which a formula depends, or a condition of its uses.
+/// Returns the names of the operands on which a formula, or a condition of its uses, depends.
 fn operands_that_matter<'f>(
     statement: &'f ExpressionStatement,
     uses: &'f PartUses,
@@ -234,8 +234,8 @@ pub fn least_size(statement: &ExpressionStatement, result: usize) -> Result<f64,
     values.map(|values| values.low.max(0.0)).map_err(|refusal| refusal.of_result(result))
 }
 
-/// Returns an upper limit of the values in all of the boxes, after `divisions` divisions of the box with the largest limit. `end_in` returns the upper limit in a box, or `None` if nothing is
-/// promised there.
+/// Returns an upper limit of the values in all boxes, after up to `divisions` divisions of the box with the largest limit.
+/// `end_in` returns the upper limit in a box, or `None` if nothing is promised in the box.
 fn largest(
     divisions: usize,
     boxes: impl Iterator<Item = BoxEnd>,

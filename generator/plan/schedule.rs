@@ -1,10 +1,10 @@
 //! Turns a plan into a microprogram for one multiplier, with registers for the values that later microinstructions read.
 //!
-//! Each product, each step of Horner's rule and each normalised word has a register for its value. So has a result that other
-//! operations read, and in a sequential core a value whose logic would otherwise take too long ([`super::hold`]). All other
-//! operations are combinational logic between these registers.
+//! Each product, each step of Horner's rule, each normalised word, and each result that other operations read has a register. In
+//! a sequential core, so has a value whose logic would otherwise take too long ([`super::hold`]). All other operations are
+//! combinational logic between these registers.
 //!
-//! A microinstruction computes at most one product. In a sequential core it also loads all registers whose values are there. In a
+//! A microinstruction computes at most one product, and in a sequential core also loads all registers with known values. In a
 //! sequential unit, each function skips the microinstructions that it does not need ([`super::dispatch`]).
 
 use super::dispatch::dispatches;
@@ -17,9 +17,10 @@ use super::plan::ExpressionPlan;
 pub const SMALLEST_BLOCK: u64 = 2048;
 
 impl ExpressionPlan {
-    /// Returns the microprogram of the plan, with the nodes that have registers. It computes no node that no result reads
-    /// ([`ExpressionPlan::read_nodes`]). A sequential core has further registers where logic would take too long. A pipeline has none
-    /// of these, because its own schedule places the registers, and loads each register in a microinstruction of its own.
+    /// Returns the microprogram of the plan, with the nodes that have registers. The microprogram computes only nodes that a
+    /// result reads ([`ExpressionPlan::read_nodes`]). A sequential core has further registers where logic would take too long. A
+    /// pipeline has none of these, because its own schedule places the registers, and loads each register in a microinstruction
+    /// of its own.
     ///
     /// # Panics
     /// Panics if the plan has a function whose polynomials are not known yet.
@@ -140,10 +141,9 @@ impl ExpressionPlan {
 
     /// Returns the node whose register stores the value of `node`: `node` itself, or a later node that only scales or shortens it.
     ///
-    /// The search begins at `node`, and goes on to the reader of the present node while there is only one. The search passes
-    /// `Scale` nodes, and ends at the first `Narrow` or `Middle` node, which it returns. Before any other reader, and at a
-    /// result of the plan, it returns the present node. A reader `Places` does not count. For example, for a product that a
-    /// `Scale` and then a `Narrow` node follow, it returns the `Narrow` node.
+    /// The function goes from reader to reader while there is only one. It passes `Scale` nodes, and returns the first `Narrow`
+    /// or `Middle` node: for a product that a `Scale` and then a `Narrow` node follow, the `Narrow` node. Before any other
+    /// reader, and at a result of the plan, it returns the node that it has reached. A reader `Places` does not count.
     fn held_for(&self, node: NodeId) -> NodeId {
         let mut held = node;
         loop {

@@ -96,8 +96,8 @@ impl ExpressionStatement {
         values
     }
 
-    /// Returns the values of the operands with the names `named` in intervals of raw values, as text. For example, `x from 0 to 0.5 and
-    /// y = 1`.
+    /// Returns the values of the operands `named` as text for a message, from intervals of raw values. For example,
+    /// `x from 0 to 0.5 and y = 1`.
     pub(super) fn place(&self, limits: &[(i64, i64)], named: &BTreeSet<&str>) -> String {
         let mut place = Vec::new();
         for (name, value) in self.enclosed_operands(limits) {
@@ -118,7 +118,7 @@ impl ExpressionStatement {
         self.operands.iter().map(|operand| operand.domain).collect()
     }
 
-    /// Returns the names of the operands on which the result with the index `result` depends, or the condition of its promise.
+    /// Returns the names of the operands on which result number `result`, or the condition of its promise, depends.
     pub(super) fn operands_of(&self, result: usize) -> BTreeSet<&str> {
         let StatedResult { formula, promise, .. } = &self.results[result];
         let mut named = BTreeSet::from_iter(formula.operands());
@@ -129,7 +129,8 @@ impl ExpressionStatement {
         named
     }
 
-    /// Returns the domain of all operands, in which each operand whose name is not in `named` has only its first value.
+    /// Returns the domain of each operand, but only its first value for an operand that is not in `named`, because the value does
+    /// not matter.
     pub(super) fn domain_of(&self, named: &BTreeSet<&str>) -> Vec<(i64, i64)> {
         let limits = |operand: &StatedOperand| {
             let (first, last) = operand.domain;

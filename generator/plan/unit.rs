@@ -74,14 +74,15 @@ pub struct UnitPlan {
     nodes: Vec<MergedFunction>,
 }
 
-/// Finds a plan for each function, merges the plans, and proves that the merged plan has their results. A failure comes with the number of the
-/// function that it concerns.
+/// Finds a plan for each function, merges the plans, and proves that the merged plan has their results. A failure has the number
+/// of the function that it concerns.
 ///
 /// With `shares_tables`, one table serves all functions, also if a function reads it several times. Only a sequential core can share
 /// such a table: a pipeline reads the tables of several points in the same clock.
 ///
 /// # Errors
-/// Fails if a formula has no plan, if no plan keeps the allowed errors, or if an operation of the merged plan has too many bits.
+/// Fails if a formula has no plan that keeps the allowed errors, if all functions compute the same results, or if an operation of
+/// the merged plan has too many bits.
 ///
 /// # Panics
 /// Panics if there are no functions, or more than [`MOST_FUNCTIONS`].
@@ -93,7 +94,8 @@ pub fn find_unit(
     UnitPlan::of_functions(planned_functions(stated)?, shares_tables)
 }
 
-/// Plans the functions with fixed tables together, and each function whose table can be written alone.
+/// Finds the plans of the functions: together for fixed tables, which get common widths, and from known polynomials for a table
+/// that can be written. Fails if a function has no plan.
 fn planned_functions(stated: &[StatedFunction]) -> Result<Vec<UnitFunction>, (usize, PlanRefusal)> {
     let (mut numbers, mut statements) = (Vec::new(), Vec::new());
     for (number, function) in stated.iter().enumerate() {
@@ -119,8 +121,9 @@ fn planned_functions(stated: &[StatedFunction]) -> Result<Vec<UnitFunction>, (us
 }
 
 impl UnitPlan {
-    /// Merges the plans of the functions, and proves that the merged plan has their results. Where the proof stays open, the results are
-    /// compared for [`COMPARED`] operands. Fails as [`find_unit`] does.
+    /// Merges the plans of the functions, and proves that the merged plan has their results. Where the proof stays open, the
+    /// results are compared for [`COMPARED`] operands. Fails if all functions compute the same results, if a compared result
+    /// differs, or if an operation has too many bits.
     fn of_functions(
         functions: Vec<UnitFunction>,
         shares_tables: bool,
@@ -147,8 +150,8 @@ impl UnitPlan {
         Ok(unit)
     }
 
-    /// Leaves out the name of a function at the beginning of the name of a node that several functions read, unless nets of the hardware could
-    /// then have the same name. Fails if a name is not unique.
+    /// Removes the function's name from the names of nodes that several functions read: `rcp_number` becomes `number`. A name
+    /// stays if nets of the hardware could then have the same name. Fails if a name is not unique.
     fn rename_shared_nodes(&mut self) -> Result<(), PlanRefusal> {
         let mut readers = vec![0; self.plan.nodes().len()];
         for (opcode, nodes) in self.nodes.iter().enumerate() {
@@ -176,10 +179,10 @@ impl UnitPlan {
         Ok(())
     }
 
-    /// Returns the unit with another plan of one function, such as one whose table has other words.
+    /// Returns the unit with the plan `planned` of one function, such as a plan with other words in its table.
     ///
     /// # Errors
-    /// Fails as [`find_unit`] does.
+    /// Fails if an operation of the merged plan has too many bits, or if a compared result differs.
     pub fn with_function(
         &self,
         opcode: usize,
@@ -192,7 +195,6 @@ impl UnitPlan {
     }
 }
 
-/// Returns a name without the number at its end.
 fn without_number(name: &str) -> &str {
     name.trim_end_matches(|it: char| it.is_ascii_digit())
 }
@@ -317,7 +319,7 @@ fn operand_ports(functions: &[UnitFunction]) -> Vec<StatedOperand> {
     ports
 }
 
-/// Returns the number of bits of an opcode for so many functions.
+/// Returns the number of bits of an opcode for this number of functions.
 pub(super) fn opcode_bits(functions: usize) -> u32 {
     (usize::BITS - (functions - 1).leading_zeros()).max(1)
 }
@@ -333,7 +335,7 @@ fn port(name: &str, width: u32) -> StatedOperand {
 }
 
 /// Returns a word for each result, as wide as the widest result of a function at this place. The word is signed if the results of
-/// all functions at this place are.
+/// all functions at this place are signed.
 fn result_ports(functions: &[UnitFunction]) -> Vec<(&'static str, Format)> {
     let mut ports = Vec::new();
     for (number, name) in RESULT_NAMES.into_iter().enumerate() {

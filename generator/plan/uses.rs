@@ -1,5 +1,5 @@
-//! Defines the operands for which the value of a part of a formula matters: those for which some results are promised, and for
-//! which no choice takes its other case.
+//! Describes for which operands the value of a part of a formula matters: a result that reads the part is promised, and no choice
+//! takes another case.
 
 use std::collections::HashSet;
 use std::ptr;
@@ -17,7 +17,7 @@ pub(super) struct PartUses {
 }
 
 impl PartUses {
-    /// Returns whether a node that has the right value for these uses has it for `other`, too.
+    /// Returns whether a node with the right value for these uses also has the right value for `other`.
     pub(super) fn contain(&self, other: &Self) -> bool {
         let mut readers = self.readers.iter().zip(&other.readers);
         readers.all(|(own, other)| *own || !other)
@@ -41,9 +41,9 @@ pub(super) fn reads_under(
     reads_unseen(&mut HashSet::new(), formula, part, conditions)
 }
 
-/// Returns what [`reads_under`] does, but searches no subformula twice, because several operations may share it. `seen` has the
-/// address of each searched subformula, with the number of conditions that were left. If one comes again, the result is false: a
-/// search that finds `part` ends at once, so the earlier one found nothing.
+/// Returns the outcome of [`reads_under`], but searches no subformula twice, because several operations may share it. `seen` has
+/// the address of each searched subformula, with the number of conditions that were left. If one comes again, the result is
+/// false: a search that finds `part` ends at once, so the earlier one found nothing.
 fn reads_unseen(
     seen: &mut HashSet<(*const Expression, usize)>,
     formula: &Expression,

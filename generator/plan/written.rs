@@ -45,7 +45,7 @@ pub fn target_function(statement: &ExpressionStatement) -> Result<TargetFunction
 }
 
 impl ProvedPlan {
-    /// Plans a statement with polynomials that are found and proved already, for the function [`target_function`].
+    /// Returns the plan of a statement whose function ([`target_function`]) has polynomials that are found and proved already.
     ///
     /// # Errors
     /// Fails if the operand or the result has too many bits.

@@ -71,7 +71,8 @@ pub struct PointSource<'a> {
 }
 
 impl<'a> PointSource<'a> {
-    /// Searches for the operands with the largest `f`, if the device is a highlight.
+    /// Makes a source of random points for `contract`. For a highlight it first searches for the operands with the largest `f`,
+    /// toward which the draws later move operands.
     pub fn new(contract: &'a dyn Contract) -> Self {
         let highlight = contract.highlight();
         let operands = contract.operands().to_vec();

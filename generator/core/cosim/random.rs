@@ -46,7 +46,7 @@ impl Random {
         bits
     }
 
-    /// Returns the bits of the number that the `draws`-th draw from here on will give.
+    /// Returns the 64 random bits of a later draw without advancing the generator: `draws` = 1 denotes the next draw.
     #[inline]
     fn ahead(&self, draws: u64) -> u64 {
         let mut z = self.0.wrapping_add(STEP.wrapping_mul(draws));

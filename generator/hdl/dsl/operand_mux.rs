@@ -99,8 +99,10 @@ impl Designer {
         }
     }
 
-    /// Multiplies `other` by the bits of `signed` below its sign. Also returns the amount to subtract if the sign is set.
-    /// `ordered` puts the factors into the order of the multiplier.
+    /// Multiplies `other` by the bits of `signed` below its sign bit, as an unsigned number. Also returns the excess that the
+    /// caller must subtract; `None` if no product needs it. For example, the low bits of the 4-bit number −3 give 5 = −3 + 8, so
+    /// the product is too large by 8 · `other`. `ordered` gets these low bits, and returns them and `other` in the order of the
+    /// muxes in the call of [`Designer::shared_mul`].
     #[track_caller]
     fn unsigned_core<'d>(
         &'d self,

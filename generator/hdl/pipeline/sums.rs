@@ -1,9 +1,9 @@
 //! Rewrites sums and differences so that they take fewer look-up tables. For example, `a + ~b + 1` becomes `a - b`.
 //!
 //! If an operand of a sum has zeros in its lowest bits, the lowest bits of the other operand bypass the adder. A choice between a
-//! value and a constant moves behind a subtraction from a constant, where a register can make the choice by its reset. For
-//! example, `7 - (s ? 5 : x)` becomes `s ? 2 : 7 - x`. A choice moves behind a sum with a constant only if its value is such a
-//! choice too.
+//! value and a constant moves behind a subtraction from a constant: `7 - (s ? 5 : x)` becomes `s ? 2 : 7 - x`, and a register can
+//! make the choice by its reset. Behind a sum with a constant, only a choice that contains another one moves, such as
+//! `(s ? 5 : (t ? 9 : x)) + 3`.
 
 use super::graph::{Cell, Graph, Label, NodeId, NodeOp};
 use crate::netlist::interval::of_cell;

@@ -1,4 +1,4 @@
-//! Operands and results of the device `expression` that are lists of numbers.
+//! Reads operands and results of the device `expression` that are lists of numbers.
 //!
 //! An entry with the field `size` or `axes` is a list. Each of its numbers is a port: `n = { axes = "xyz", … }` has the ports `nx`, `ny`
 //! and `nz`, and `v = { size = 2, … }` has the ports `v_0` and `v_1`.
@@ -31,6 +31,8 @@ pub(super) struct OperandPorts {
 }
 
 impl OperandPorts {
+    /// Returns the ports of the operand that `record` states.
+    ///
     /// # Errors
     /// Fails if the axes are no different letters, or if their number is not `size`.
     pub(super) fn of(record: &TableEntry) -> Result<Self, ConfigError> {
@@ -64,7 +66,7 @@ impl OperandPorts {
         numbers.iter().map(|number| doc_of_number(doc, number, self.is_list)).collect()
     }
 
-    /// Returns the list that the operand's name stands for in a formula; `None` for a number.
+    /// Returns the list that a formula means by the operand's name; `None` for a number.
     pub(super) fn list(&self) -> Option<NumberList> {
         let elements = self.names.iter().map(|name| Arc::new(Expression::operand(name))).collect();
         let span = (0..0).into();
@@ -90,8 +92,8 @@ fn axes_of(record: &TableEntry, key: &str) -> Result<Option<String>, ConfigError
     Err(ConfigError::new(key, refusal, remedy))
 }
 
-/// Returns the names of the results of an entry. Without axes of its own, a list has the axes of the lists in its formula. Fails if the
-/// entry has axes and is no list of as many numbers.
+/// Returns the names of the results of an entry. Without axes of its own, a list has the axes of the lists in its formula. Fails
+/// if the axes or the size of the entry do not suit the formula.
 pub(super) fn result_names(
     record: &TableEntry,
     formula: &NumberOrList,

@@ -75,8 +75,8 @@ impl Lowering<'_> {
         if holds || fails { Some(holds) } else { None }
     }
 
-    /// Returns the case of a choice that has the value of the other case wherever the choice takes that one, so that no choice is needed.
-    /// For example, `if(u > 0, u / (1 + u), 0)` is `u / (1 + u)` if u is never below 0. Returns `None` if there is no such case.
+    /// Returns a case of a choice that has the right value for all operands, so that no choice is needed. For example,
+    /// `if(u > 0, u / (1 + u), 0)` is `u / (1 + u)` if u is never below 0. Returns `None` without such a case.
     fn case_with_all_values<'e>(
         &self,
         comparison: &Comparison,
@@ -152,10 +152,12 @@ impl Lowering<'_> {
         self.chosen(&compared, [yes, no])
     }
 
-    /// Returns the nodes of both sides of a comparison. If one side is an exact node and the other one is a constant that is not exact in
-    /// binary, the nearest multiple of the node's last place below the constant takes its place. For example, `x > 0.1` with 4 fraction
-    /// bits of x becomes `x > 1/16`, and `0.1 > x` becomes `1/16 >= x`. If both sides can be multiplied by a number so that they are
-    /// exact, they are: `x / 3 > y` becomes `x > 3 * y`. The same holds for squares: `sqrt(x) > 0.5` becomes `x > 0.25`. Fails if a part has too many bits.
+    /// Returns the nodes of both sides of a comparison. Where possible, the comparison is rewritten so that its sides are exact:
+    /// - `x > 0.1` with 4 fraction bits of x becomes `x > 1/16`, and `0.1 > x` becomes `1/16 >= x`: an exact node is compared
+    ///   with a multiple of its last place, the nearest one below the constant;
+    /// - `x / 3 > y` becomes `x > 3 * y`, and `sqrt(x) > 0.5` becomes `x > 0.25`.
+    ///
+    /// Fails if a part has too many bits.
     pub(super) fn compared(
         &mut self,
         comparison: &Comparison,
@@ -201,9 +203,9 @@ impl Lowering<'_> {
         Ok(ComparedNodes { nodes, or_equal: comparison.or_equal, is_exact })
     }
 
-    /// Returns a formula that equals `case` wherever the comparison has the outcome `outcome`, and that has a value where rounding makes
-    /// the hardware take this case for another outcome. For example, `if(x < 0, 0, sqrt(x))` has the case `sqrt(max(x, 0))`. The
-    /// function returns `case` itself if it has values for all operands, or if no side of the comparison limits it.
+    /// Returns a formula that equals `case` wherever the comparison has the outcome `outcome`, and that has a value where
+    /// rounding makes the hardware take this case for another outcome. For example, `if(x < 0, 0, sqrt(x))` has the case
+    /// `sqrt(max(x, 0))`. Returns `case` itself if it has values for all operands, or if no side of the comparison limits it.
     fn case_for_all(
         &self,
         case: &Expression,

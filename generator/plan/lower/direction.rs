@@ -38,9 +38,9 @@ impl Scaling {
 }
 
 impl Lowering<'_> {
-    /// Returns the node of a direction times a constant. `core` must be the direction, and `function` the whole formula in
-    /// which x replaces `core`. The constant then becomes a part of the table. Returns `None` for any other formula. Fails if a
-    /// part has too many bits, no finite values, or no rule.
+    /// Returns the node of a direction times a constant. `core` must be the direction, and `function` the whole formula in which
+    /// x replaces `core`. The constant then becomes a part of the table. Returns `None` for any other formula. Fails if the plan
+    /// cannot compute a part.
     pub(super) fn scaled_direction(
         &mut self,
         core: &Expression,
@@ -64,8 +64,8 @@ impl Lowering<'_> {
         self.direction(y, x, &scaling).map(Some)
     }
 
-    /// Returns the node of the direction of the point (x, y), an angle in radians times the constant in `scaling`. Fails if a
-    /// part has too many bits, no finite values, or no rule.
+    /// Returns the node of the direction of the point (x, y), an angle in radians times the constant in `scaling`. Fails if the
+    /// plan cannot compute a part.
     pub(super) fn direction(
         &mut self,
         y: &Expression,
@@ -135,9 +135,9 @@ impl Lowering<'_> {
         Ok(whole)
     }
 
-    /// Returns a lower limit of `larger`, the node of the larger coordinate of the point (x, y), where conditions limit the length of the
-    /// point and a coordinate is itself computed from operands. The limit is 0 without such a condition, for rounded coordinates, and for
-    /// operands, whose boxes show the length.
+    /// Returns a lower limit of the larger coordinate of the point (x, y), which has the node `larger`, from a condition on the
+    /// length of the point. The limit is 0 without such a condition, for rounded coordinates, and if both coordinates are
+    /// operands, because boxes then limit them.
     fn least_of_larger(
         &self,
         y: &Expression,
@@ -162,8 +162,9 @@ impl Lowering<'_> {
         Ok(least.max(0.0).sqrt().next_down().max(0.0))
     }
 
-    /// Returns the agreement of two angles of the point (x, y) that differ by at most `slope`, a number, times the distance of the compared
-    /// coordinates, divided by the larger coordinate. Returns `None` if the constant in `scaling` has no value.
+    /// Returns how near the angles on both sides of a diagonal or an axis are. They differ by at most `slope`, a number, times
+    /// the distance of the compared coordinates, divided by the larger coordinate of the point (x, y). Returns `None` if the
+    /// constant in `scaling` has no value.
     fn agreement(
         &self,
         y: &Expression,

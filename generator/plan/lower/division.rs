@@ -30,7 +30,7 @@ const MOST_QUOTIENT_BITS: u32 = 22;
 /// The guard bits that the estimate has at least, and the most that are tried.
 const GUARD_BITS: std::ops::RangeInclusive<i32> = 4..=8;
 
-/// The operations that compute a quotient only of exact numbers: a remedy for other numbers.
+/// The remedy for an integer quotient of rounded numbers.
 const EXACT_NUMBERS: &str =
     "divide operands, or sums, differences and products of operands, with constants such as 0.75";
 
@@ -46,8 +46,8 @@ impl Lowering<'_> {
         [&quotient.dividend, &quotient.divisor].into_iter().all(has_no_function)
     }
 
-    /// Returns the node of the remainder of a quotient p / q by the constant `modulus`, which is the remainder of p by q · `modulus`,
-    /// divided by q. `part` is the whole part. Fails if a part has too many bits, no finite values, or no rule.
+    /// Returns the node of the remainder of a quotient p / q by the constant `modulus`, which is the remainder of p by q ·
+    /// `modulus`, divided by q. `part` is the remainder as a formula. Fails if the plan cannot compute a part.
     pub(super) fn remainder_of_quotient(
         &mut self,
         quotient: &QuotientParts,
@@ -70,8 +70,9 @@ impl Lowering<'_> {
         }
     }
 
-    /// Returns the nodes of the greatest multiple of 2^`exponent` that is not above `a`, and of the remainder. Both are exact. For
-    /// example, 5.75 with the exponent 1 gives 4 and 1.75. Fails if a part has too many bits, no finite values, or no rule.
+    /// Returns the nodes of the greatest multiple of 2^`exponent` that is not above `a`, and of the remainder. Both are exact.
+    /// For example, 5.75 with the exponent 1 gives 4 and 1.75. Fails if `a` is rounded, or if a part has too many bits, no finite
+    /// values, or no rule.
     pub(super) fn division(
         &mut self,
         a: &Expression,
@@ -119,7 +120,7 @@ impl Lowering<'_> {
         Some(Comparison { left, right: Arc::new(dividend), or_equal })
     }
 
-    /// Returns an equal quotient with a divisor above 0. If the divisor may be below 0, the dividend takes its sign: x / y is
+    /// Returns an equal quotient with a divisor above 0. If the divisor may be below 0, its sign goes to the dividend: x / y is
     /// `if(y < 0, -x, x) / abs(y)`. Returns `None` if the divisor may be 0 where the quotient matters.
     pub(super) fn with_positive_divisor(&self, quotient: QuotientParts) -> Option<QuotientParts> {
         let QuotientParts { dividend, divisor } = quotient;
@@ -137,9 +138,9 @@ impl Lowering<'_> {
         Some(QuotientParts { dividend: signed, divisor: size })
     }
 
-    /// Returns the nodes of floor(a / b) and of the remainder a − b · floor(a / b), for a divisor that is not 0. Both are exact. The
-    /// location `span` is the one of the whole part. For example, 7 and 2 give 3 and 1, −7 and 2 give −4 and 1, and 7 and −2 give
-    /// −4 and −1.
+    /// Returns the nodes of floor(a / b) and of the remainder a − b · floor(a / b), for a divisor that is not 0. Both are exact.
+    /// `span` is the location of the formula. For example, 7 and 2 give 3 and 1, −7 and 2 give −4 and 1, and 7 and −2 give −4 and
+    /// −1.
     ///
     /// # Errors
     /// Fails if a or b is rounded, if the divisor may be 0, or if a node has too many bits.
@@ -152,8 +153,8 @@ impl Lowering<'_> {
         self.whole_quotient_within(a, b, span, None)
     }
 
-    /// Returns what [`Self::whole_quotient`] returns. `values` has limits of the quotient, or `None` if they follow from the formulas.
-    /// Fails as [`Self::whole_quotient`] does.
+    /// Returns the nodes of [`Self::whole_quotient`]. `values` has limits of the quotient, or is `None` if they follow from the
+    /// formulas. Fails if a or b is rounded, if the divisor may be 0, or if a node has too many bits.
     fn whole_quotient_within(
         &mut self,
         a: &Expression,
@@ -211,8 +212,8 @@ impl Lowering<'_> {
         Ok(nodes)
     }
 
-    /// Returns the nodes of the integer part of a quotient with a divisor above 0, and of the remainder with the sign of the divisor
-    /// `signed`, from which [`Self::with_positive_divisor`] made the quotient. Fails if a node has too many bits.
+    /// Returns the nodes of the integer part and of the remainder of a quotient that [`Self::with_positive_divisor`] made from a
+    /// quotient by `signed`. The remainder has the sign of `signed`. Fails if a node has too many bits.
     fn quotient_of_positive(
         &mut self,
         quotient: QuotientParts,
@@ -230,15 +231,16 @@ impl Lowering<'_> {
             .map(|it| self.without_statement(it)))
     }
 
-    /// Adds a copy of a node that states no value, under a name of its own, and returns the copy.
+    /// Adds a copy of a node under a name of its own, and returns the copy, which states no value, so that it can state another
+    /// one.
     fn without_statement(&mut self, (name, node): (&str, NodeId)) -> NodeId {
         let own = self.plan.node(node).clone();
         let copy = PlanNode { name: name.to_owned(), stated: None, deviation: 0.0, ..own };
         self.plan.push_copy(&copy, Operation::Scale(node))
     }
 
-    /// Adds the results that read one of the parts for all operands, and that have the same condition as a result of the present
-    /// uses, to these uses, so that all of them share the nodes. In a case of a choice, the uses stay.
+    /// Adds results as readers to the present uses, so that they share the nodes: results that read one of `parts` for all
+    /// operands, under the condition of the present result. In a case of a choice, the uses stay.
     pub(super) fn add_readers_of(&mut self, parts: &[&Expression]) {
         if !self.uses.conditions.is_empty() {
             return;
@@ -298,8 +300,8 @@ impl Lowering<'_> {
     }
 
     /// Returns the nodes of the integer part of the quotient a / b, and of its remainder, for a quotient of many bits. The
-    /// dividend is divided by 2^16 times the divisor, and the remainder of that by the divisor, as in a division by hand whose digits
-    /// have 16 bits. The products have fewer bits than with one estimate. Fails if a node has too many bits.
+    /// dividend is divided by 2^16 times the divisor, and the remainder of this by the divisor, as in a division by hand with
+    /// digits of 16 bits. The products have fewer bits than with one estimate. Fails if a node has too many bits.
     fn quotient_by_digits(
         &mut self,
         a: &Expression,
@@ -325,8 +327,8 @@ impl Lowering<'_> {
             .map(|it| self.without_statement(it)))
     }
 
-    /// Returns the nodes of the integer part of the quotient a / b, and of its remainder. `values` has the limits of the quotient.
-    /// Fails if a node has too many bits.
+    /// Returns the nodes of the integer part of the quotient a / b, and of its remainder, by an estimate and its correction.
+    /// `values` has the limits of the quotient. Fails if a node has too many bits.
     fn corrected_quotient(
         &mut self,
         a: &Expression,
@@ -412,8 +414,8 @@ impl Lowering<'_> {
         self.plan.narrow(&format!("{name}_within"), difference, format, Rounding::Truncate)
     }
 
-    /// Returns the node of an estimate of the quotient a / b with an error of at most a quarter. Fails if no number of guard bits
-    /// shows this, or if a node has too many bits.
+    /// Returns the node of an estimate of the quotient a / b, which lies within `values`, with an error of at most a quarter.
+    /// Fails if no number of guard bits shows this, or if a node has too many bits.
     fn estimated_quotient(
         &mut self,
         a: &Expression,

@@ -25,8 +25,8 @@ pub(super) struct ExactReciprocal {
 }
 
 impl ExactReciprocal {
-    /// Finds the reciprocal with the fewest bits for the quotient A · `above` / `below` with A from `low` to `high`. Both numbers must be
-    /// above 0. Returns `None` if the product has more than 63 bits.
+    /// Finds the reciprocal with the fewest bits for the quotient A · `above` / `below` with A from `low` to `high`. `above` and
+    /// `below` must be above 0. Returns `None` if the product has more than 63 bits.
     ///
     /// The reciprocal is above the exact one by less than 2^−`places`. The product then exceeds the quotient, and must exceed it by less
     /// than 1 / `below`, which is the smallest distance from a quotient up to the next integer.

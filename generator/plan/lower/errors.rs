@@ -1,5 +1,5 @@
-//! Bounds the errors of nodes while formulas are rewritten: a table must cover all values that its operand can have, and an estimate must
-//! be near enough for its correction.
+//! Bounds the errors of nodes while formulas are rewritten. A table must cover all values that its operand can have, and an
+//! estimate must be near enough for its correction.
 
 use std::cell::RefCell;
 use std::collections::HashMap;
@@ -34,8 +34,8 @@ impl ErrorMemo {
 }
 
 impl Lowering<'_> {
-    /// Returns an upper bound of the error of a node in units of its last bit, rounded up, over all operands for which a result is
-    /// promised and that satisfy the conditions of the present uses. Returns the units of an error of 1 if no bound was found.
+    /// Returns an upper bound of the error of a node in units of its last bit, rounded up. The bound holds for all operands for
+    /// which a result is promised under the conditions of the present uses. If no bound is found, the error counts as 1.
     pub(super) fn largest_error(&self, node: NodeId) -> f64 {
         let unit = exp2(-self.plan.node(node).format.frac);
         let errors = self.errors_by_result(node);
@@ -44,9 +44,9 @@ impl Lowering<'_> {
         finite.reduce(f64::max).unwrap_or_else(|| (1.0 / unit).ceil())
     }
 
-    /// Returns for each result an upper bound of the error of a node in units of its last bit, rounded up, over all operands for
-    /// which the result is promised and that satisfy the conditions of the present uses. A bound is infinite if none was found, and for
-    /// a result that does not read the part that is being rewritten.
+    /// Returns for each result an upper bound of the error of a node in units of its last bit, rounded up. The bound holds for
+    /// all operands for which the result is promised under the conditions of the present uses. It is infinite if none is found,
+    /// or if the result does not read the part that is being rewritten.
     pub(super) fn errors_by_result(&self, node: NodeId) -> Vec<f64> {
         let unit = exp2(-self.plan.node(node).format.frac);
         let mut ending = self.plan.clone();

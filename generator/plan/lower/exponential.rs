@@ -1,12 +1,10 @@
 //! Rewrites logarithms and exponential functions over several octaves, so that a table for a single octave serves all octaves.
 //!
-//! A logarithm is rewritten if the largest value of its operand is at least 4 times the smallest, for example from 1 to 1000.
-//! The operand v is m · 2^k with m from 1/2 to below 1. Because log₂ v = log₂ m + k, a table of log₂ m and an addition compute
-//! the logarithm.
+//! A logarithm is rewritten if the largest value of its operand is at least 4 times the smallest. The operand v is m · 2^k with m
+//! from 1/2 to below 1, and log₂ v is log₂ m, from a table, plus k.
 //!
 //! An exponential function 2^u is rewritten if its exponent u has fraction bits and extends over at least 3, for example from 0
-//! to 10. With the integer part i and the fraction part f of u, 2^u = 2^f · 2^i. A table of 2^f and a shift compute the
-//! function.
+//! to 10. With the integer part i and the fraction part f of u, a table of 2^f and a shift compute 2^u = 2^f · 2^i.
 
 use std::sync::Arc;
 
@@ -41,8 +39,8 @@ struct ExponentialFunction<'f> {
 }
 
 impl<'f> ExponentialFunction<'f> {
-    /// Returns `None` if the formula is no exponential function, or if its exponent is not x or x times a constant. For example,
-    /// `exp(-x / 2)` has the base e and the exponent `-x / 2`.
+    /// Returns the base and the exponent of an exponential function: `exp(-x / 2)` has the base e and the exponent `-x / 2`.
+    /// Returns `None` for any other formula, and if the exponent needs more than one product with a constant.
     fn of(function: &'f Expression) -> Option<Self> {
         let operand = Expression::operand("x");
         let it = match &function.kind {
@@ -99,9 +97,9 @@ impl Lowering<'_> {
     /// Returns the node of a constant times a logarithm, such as `3 * log2(a)`. `core` is the operand of the logarithm, here
     /// `a`, and `function` is the formula with `x` in place of `core`: `3 * log2(x)`.
     ///
-    /// Returns `None` for any other function, or if `core` may be 0 or less. Also returns `None` if the largest value of `core`
-    /// is less than `FEW_OCTAVES` times the smallest: one table then computes the whole logarithm. Fails if a part of the
-    /// formula has too many bits or no finite values, or if the planner has no rule for an operation.
+    /// Returns `None` for any other function, or if `core` may be 0 or less. Also returns `None` if one table can compute the
+    /// whole logarithm, because the largest value of `core` is less than `FEW_OCTAVES` times the smallest. Fails if the plan
+    /// cannot compute a part.
     pub(super) fn logarithm(
         &mut self,
         core: &Expression,
@@ -139,8 +137,7 @@ impl Lowering<'_> {
 
     /// Returns the node of an exponential function. `function` must be the formula with `x` in the place of its operand, the
     /// expression `core`. Returns `None` if `function` is no exponential function, if its exponent extends over less than
-    /// `SHORT_EXPONENTS`, or if the exponent has no fraction bits. Fails if a part has too many bits, no finite values, or no
-    /// rule.
+    /// `SHORT_EXPONENTS`, or if the exponent has no fraction bits. Fails if the plan cannot compute a part.
     pub(super) fn exponential(
         &mut self,
         core: &Expression,
@@ -238,7 +235,7 @@ impl Lowering<'_> {
     }
 }
 
-/// The largest error of an exponent, in octaves, for which the value of a power that has no bits left is known.
+/// The largest error of an exponent, in octaves, with which a power far below the last bit is known to be 0.
 const MOST_SLACK: f64 = 4.0;
 
 /// The largest number of bits of a shift. A larger shift would remove all bits of any word.

@@ -54,8 +54,9 @@ impl Lowering<'_> {
         Ok(Some(self.plan.push_copy(&node, Operation::Scale(integer))))
     }
 
-    /// Returns the node of a choice with cases that are rounded to the nearest value with `frac` fraction bits. Returns `None` if the
-    /// compared numbers are rounded, or if a case is neither such a value nor exact. Fails as [`Self::nearest`] does.
+    /// Returns the node of a choice with cases that are rounded to the nearest value with `frac` fraction bits. Returns `None` if
+    /// the compared numbers are rounded, or if a case is neither such a value nor exact. Fails if a part has too many bits or no
+    /// finite values, or if no estimate is near enough.
     fn nearest_choice(
         &mut self,
         comparison: &Comparison,
@@ -85,7 +86,8 @@ impl Lowering<'_> {
     }
 
     /// Returns the node of a case of a choice: a value that is rounded to the nearest one, or an exact value with at most `frac`
-    /// fraction bits. Returns `None` for another case. Fails as [`Self::nearest`] does.
+    /// fraction bits. Returns `None` for another case. Fails if a part has too many bits or no finite values, or if no estimate
+    /// is near enough.
     fn nearest_case(
         &mut self,
         case: &Expression,

@@ -1,8 +1,8 @@
 //! Rounds the constants of a quotient by the length of a vector before the quotient becomes nodes.
 //!
-//! In `(0.6 * x + 0.8 * y) / sqrt(x^2 + y^2)`, the constants 0.6 and 0.8 are rounded. As errors of the dividend they would count without
-//! limit, because a short vector gets many shifts. As errors of the quotient they do not: by the inequality of Cauchy and Schwarz, the
-//! quotients by the rounded constants and by the constants themselves differ by at most the length of the vector of the differences.
+//! In `(0.6 * x + 0.8 * y) / sqrt(x^2 + y^2)`, the constants 0.6 and 0.8 are rounded. As errors of the dividend, these roundings
+//! would count without limit, because a short vector is shifted far. As errors of the quotient, they are limited by the
+//! inequality of Cauchy and Schwarz: the quotient changes by at most the length of the vector of the roundings.
 
 use glint_formula::Expression;
 
@@ -12,9 +12,9 @@ use crate::projection;
 use crate::refusal::PlanRefusal;
 
 impl Lowering<'_> {
-    /// Returns the node of a quotient as in the module's head, or of a minimum or a maximum of such a quotient and a constant. Returns
-    /// `None` for any other part, and if all constants are exact in binary. Fails if a part has too many bits, no finite values, or no
-    /// rule.
+    /// Returns the node of a weighted sum divided by the length of its vector, or of a minimum or a maximum of such a quotient
+    /// and a constant. Returns `None` for any other part, and if all constants are exact in binary. Fails if the plan cannot
+    /// compute a part.
     pub(super) fn projection_with_rounded_constants(
         &mut self,
         part: &Expression,

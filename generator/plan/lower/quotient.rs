@@ -1,15 +1,12 @@
 //! Rewrites a quotient a / b as a product with a reciprocal from a table, so that no divider is needed.
 //!
 //! If the divisor has few bits, and its largest absolute value is less than four times its smallest, a table has the values of
-//! 1/b. Any other divisor is normalised: b = m · 2^−k with m from 1/2 to below 1. A table has the values of 1/m, and the
-//! dividend is shifted by the same k bits, so that a / b = (a · 2^k) · (1/m).
+//! 1/b. Any other divisor is normalised: b = m · 2^−k, and a / b = (a · 2^k) · (1/m) with a table of 1/m for 1/2 ≤ m < 1. A
+//! divisor √s is computed together with its reciprocal: s = m · 2^−2k, and a / √s = (a · 2^k) · (1/√m) with a table of 1/√m for
+//! 1/4 ≤ m < 1.
 //!
-//! A divisor that is a root, √s, is computed together with its reciprocal: s = m · 2^−2k with m from 1/4 to below 1. A table has the values of
-//! 1/√m, and a / √s = (a · 2^k) · (1/√m).
-//!
-//! If several dividends have the same divisor, and the reciprocal 1/b needs few bits, it is computed once, and each dividend has only a
-//! product: a softmax of eight numbers shifts one reciprocal in place of eight dividends. For a divisor that is a root, one dividend is
-//! enough: a / sqrt(x) is a · (1 / sqrt(x)), which reads one table in place of two.
+//! Several dividends with the same divisor can share a reciprocal that needs few bits: a softmax of eight numbers shifts one
+//! reciprocal in place of eight dividends.
 
 use std::sync::Arc;
 
@@ -43,9 +40,9 @@ fn quotients_of(statement: &ExpressionStatement) -> Vec<Expression> {
     quotients
 }
 
-/// Returns a number of quotients by the same divisor from which on one reciprocal for all may take fewer look-up tables: 1 if a divisor
-/// is a root or an exponential, whose reciprocal is as easy to compute, and 2 if two quotients have the same divisor. Returns `None`
-/// without such quotients.
+/// Returns a value for `PlanStyle::fewest_dividends`, below the usual 3, that is worth a try. The value is 1 if a divisor is a
+/// root, a power or an exponential, whose reciprocal is as easy to compute, and 2 if two quotients have the same divisor. Returns
+/// `None` without such quotients.
 pub(crate) fn fewest_dividends(statement: &ExpressionStatement) -> Option<usize> {
     let mut divisors: Vec<(Expression, usize)> = Vec::new();
     for quotient in quotients_of(statement) {
@@ -78,17 +75,17 @@ pub(super) enum DivisorKind {
     Root,
 }
 
-/// A divisor d with the nodes that divide by it: 1/d is the value of a table, times 2 to a number of places, divided by a power of two.
+/// A divisor d with the nodes that divide by it.
 #[derive(Clone, Copy)]
 pub(super) struct Divisor {
     /// The normalised word.
     octave: Octave,
-    /// 1/d is the table's value times 2 to the number of places, divided by 2 to this power.
+    /// 1/d is the table's value times 2 to the number of places of `octave`, divided by 2 to this power.
     exponent: i32,
     /// The node of the table's value.
     inverse: NodeId,
-    /// The number that the divisor before its rounding, divided by the one after it, does not exceed: 1 if the divisor is not rounded.
-    /// `None` if no such number is known.
+    /// An upper limit of the exact divisor divided by the rounded one: 1 if the divisor is not rounded, and `None` if no limit is
+    /// known.
     excess: Option<f64>,
 }
 
@@ -102,7 +99,7 @@ pub(super) struct Dividend {
     pub(super) limits: Option<QuotientLimits>,
 }
 
-/// Limits of a quotient by a positive number, within which its dividend can be limited first: its factor then has fewer bits.
+/// Limits of a quotient by a positive number. The hardware limits the dividend, so that its factor has fewer bits.
 #[derive(Clone, Copy)]
 pub(super) struct QuotientLimits {
     /// The largest value of the limited quotient; `None` if only 0 limits it. The smallest value is 0.
@@ -196,8 +193,8 @@ fn operands_of_roots(divisor: &Expression) -> Option<[&Arc<Expression>; 2]> {
 }
 
 impl Lowering<'_> {
-    /// Returns the node of the quotient a / b. `part` must be this quotient as a formula. Fails if a part has too many bits, no
-    /// finite values, or no rule. For example, a divisor that may be 0 gives no finite values.
+    /// Returns the node of the quotient a / b. `part` must be this quotient as a formula. Fails if the plan cannot compute a
+    /// part. For example, a divisor that may be 0 gives no finite values.
     pub(super) fn quotient(
         &mut self,
         a: &Expression,
@@ -223,9 +220,9 @@ impl Lowering<'_> {
         self.quotient_within(a, b, values)
     }
 
-    /// Returns the node of the quotient a / b, whose values lie within `values`, by a table of reciprocal roots. Returns `None` if b is no
-    /// root of an exact number with several octaves, and no product of two such roots. Fails if a part has too many bits, no finite
-    /// values, or no rule.
+    /// Returns the node of the quotient a / b, whose values lie within `values`, by a table of reciprocal roots. Returns `None`
+    /// if b is no root of an exact number with several octaves, and no product of two such roots. Fails if the plan cannot
+    /// compute a part.
     fn quotient_by_root(
         &mut self,
         a: &Expression,
@@ -244,8 +241,8 @@ impl Lowering<'_> {
         self.ratio(&dividend, &divisor).map(Some)
     }
 
-    /// Returns the node of a dividend, which is the node of `a`, divided by the roots of both operands. Returns `None` unless both are exact
-    /// numbers with several octaves. Fails if a part has too many bits, no finite values, or no rule.
+    /// Returns the node of a dividend, which is the node of `a`, divided by the roots of both operands. Returns `None` unless
+    /// both are exact numbers with several octaves. Fails if the plan cannot compute a part.
     ///
     /// The product of both operands would need a normaliser and a multiplier for twice the bits.
     fn quotient_by_roots(
@@ -277,8 +274,8 @@ impl Lowering<'_> {
         self.scaled_ratio(product, dividend, &first).map(Some)
     }
 
-    /// Returns the divisor √operand. Returns `None` if the operand is not exact, or does not have several octaves. Fails if a part has too many
-    /// bits, no finite values, or no rule.
+    /// Returns the divisor √operand. Returns `None` if the operand is not exact, or does not have several octaves. Fails if the
+    /// plan cannot compute a part.
     fn root_divisor(&mut self, operand: &Expression) -> Result<Option<Divisor>, PlanRefusal> {
         let operands = self.range(operand)?;
         if operands.low < 0.0 || operands.high < operands.low * MANY_OCTAVES {
@@ -323,8 +320,8 @@ impl Lowering<'_> {
         Ok(divisor)
     }
 
-    /// Returns the number that an exact word, divided by the word after a rounding to the nearest value, does not exceed. Returns `None` if
-    /// the word is not exact, or if the rounded word can be 0.
+    /// Returns an upper limit of the exact word divided by `rounded`, the word after a rounding to the nearest value. Returns
+    /// `None` if the word is not exact, or if the rounded word can be 0.
     fn excess(&self, (exact, values): (NodeId, Enclosure), rounded: NodeId) -> Option<f64> {
         if self.is_exact(rounded) {
             return Some(1.0);
@@ -378,7 +375,7 @@ impl Lowering<'_> {
         Ok((bits <= WIDEST_RECIPROCAL).then_some(quotients))
     }
 
-    /// Returns the node of the quotient a / b, whose values lie within `values`. Fails as [`Self::quotient`] does.
+    /// Returns the node of the quotient a / b, whose values lie within `values`. Fails if the plan cannot compute a part.
     pub(super) fn quotient_within(
         &mut self,
         a: &Expression,
@@ -414,9 +411,9 @@ impl Lowering<'_> {
         self.plan.choose("quotient", is_negative, [quotient, negated])
     }
 
-    /// Returns the node of the larger (or the smaller) of two numbers, if it is a quotient by a root that is limited by 0, or by 0 and a
-    /// constant. The hardware limits the dividend. Returns `None` for any other numbers. Fails if a part has too many bits, no finite
-    /// values, or no rule.
+    /// Returns the node of a maximum or a minimum of `a` and `b` that limits a quotient by a root to values from 0 on, or from 0
+    /// to a constant. The hardware limits the dividend. Returns `None` for any other numbers. Fails if the plan cannot compute a
+    /// part.
     pub(super) fn limited_quotient(
         &mut self,
         operator: Operator,
@@ -478,10 +475,10 @@ impl Lowering<'_> {
         self.scaled_ratio(product, dividend, divisor)
     }
 
-    /// Returns the node of a shifted dividend, limited so that the quotient keeps its limits: a negative dividend becomes 0, and one above
-    /// the divisor's power of two times the largest quotient becomes nearly this product. The divisor is below the power of two, so that
-    /// the quotient stays above its limit or close to it. A divisor before its rounding can be larger by its excess, so that the product
-    /// grows by this factor; a dividend has no upper limit if the excess is not known. Fails if a node has too many bits.
+    /// Returns the node of a shifted dividend, limited so that the quotient keeps its limits. A negative dividend becomes 0. Let
+    /// d be the power of two that is just above every shifted divisor, times the excess of the divisor. A dividend above d times
+    /// the largest quotient becomes nearly this product, so that its quotient stays above the limit or close to it. Without a
+    /// known excess, there is no upper limit. Fails if a node has too many bits.
     fn limited_dividend(
         &mut self,
         shifted: NodeId,

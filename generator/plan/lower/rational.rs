@@ -7,10 +7,9 @@ use glint_formula::{Comparison, Expression, Function, Kind, Operator, RBig};
 
 use super::shape::number;
 
-/// The largest exponent of a power that is written over a number.
+/// The largest exponent of a power that is written as a quotient by a number.
 const LARGEST_EXPONENT: u32 = 8;
 
-/// A quotient of two formulas.
 pub(super) struct QuotientParts {
     pub(super) dividend: Expression,
     pub(super) divisor: Expression,
@@ -162,8 +161,8 @@ pub(super) fn without_fractions(comparison: &Comparison) -> Option<Comparison> {
     (divisor != RBig::ONE).then_some(Comparison { left, right, or_equal })
 }
 
-/// Writes a formula with constants that are exact in binary, over an odd number. Returns `None` for a formula with a function, a quotient
-/// by a number that varies, or an irrational constant.
+/// Writes a formula with constants that are exact in binary, over an odd number: `x / 3 + 1/2` is x + 3/2 over 3. Returns `None`
+/// for a formula with a function, a quotient by a number that varies, or an irrational constant.
 pub(super) fn over_number(formula: &Expression) -> Option<OverNumber> {
     let with_kind = |kind: Kind| Expression::new(kind, formula.span.clone());
     if !formula.varies() {
@@ -266,7 +265,6 @@ pub(super) fn times(formula: &Expression, factor: &RBig) -> Expression {
     Expression::new(kind, formula.span.clone())
 }
 
-/// Returns the formula of a rational number.
 fn constant(value: &RBig) -> Expression {
     number(&value.to_string())
 }

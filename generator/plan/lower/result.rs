@@ -9,8 +9,8 @@ use crate::refusal::PlanRefusal;
 use crate::statement::{HALF_A_UNIT, StatedOverflow, StatedResult, StatedWidth};
 
 impl Lowering<'_> {
-    /// Returns the node of the result with the index `number`, rounded to the result's fraction bits. Fails if a part has too
-    /// many bits, no finite values, or no rule.
+    /// Returns the node of the result with the index `number`, rounded to the result's fraction bits. Fails if the plan cannot
+    /// compute a part.
     pub(super) fn result(&mut self, number: usize) -> Result<NodeId, PlanRefusal> {
         let result = &self.statement.results[number];
         let node = match self.nearest_where_needed(result)? {
@@ -38,9 +38,9 @@ impl Lowering<'_> {
         }
     }
 
-    /// Returns the node of a result that is the nearest value: if no larger error is allowed, or if the result is a quotient of so many
-    /// bits that the product with a reciprocal is too wide. Returns `None` for another result, and for a formula that is no quotient
-    /// and no root of exact numbers. Fails if a part has too many bits or no finite values.
+    /// Returns the node of the nearest value of a result, if no larger error is allowed, or if the result is a quotient with too
+    /// many bits for a product with a reciprocal. Returns `None` for another result, and for a formula that is no quotient and no
+    /// root of exact numbers. Fails if a part has too many bits or no finite values.
     fn nearest_where_needed(
         &mut self,
         result: &StatedResult,

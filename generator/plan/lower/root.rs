@@ -1,9 +1,9 @@
 //! Rewrites a power v^p, such as a square root or a reciprocal, as operations of a plan, so that a table for one octave serves
-//! all octaves. The number 2p must be an integer from −8 to 8. A power is not rewritten if a single table is better, because
-//! the operand has few bits and few octaves.
+//! all octaves. The number 2p must be an integer from −8 to 8. A power is not rewritten if a single table is better, because the
+//! operand has few bits and few octaves.
 //!
-//! The value is normalised: v = m · 2^k with m from 1/2 to below 1. Then v^p = m^p · 2^(p·k), which a table of m^p and a shift
-//! compute. If p is 1/2 or an odd multiple of it, k must be even, and m goes from 1/4 to below 1.
+//! The value is normalised: v = m · 2^k with m from 1/2 to below 1, so that a table of m^p and a shift compute v^p = m^p ·
+//! 2^(p·k). If p is 1/2 or an odd multiple of it, k must be even, and m goes from 1/4 to below 1.
 
 use std::sync::Arc;
 
@@ -86,7 +86,7 @@ pub(super) struct Octave {
 impl Lowering<'_> {
     /// Returns the node of a power. `part` must be the formula of the power, `core` its operand, and `function` the formula in
     /// which x replaces `core`. Returns `None` if the operand may be negative. Also returns `None` if a single table is better,
-    /// because the operand has few bits and few octaves. Fails if a part has too many bits, no finite values, or no rule.
+    /// because the operand has few bits and few octaves. Fails if the plan cannot compute a part.
     pub(super) fn power(
         &mut self,
         part: &Expression,
@@ -150,8 +150,8 @@ impl Lowering<'_> {
         Ok(Some(chosen))
     }
 
-    /// Gives the number of a rounding operation to both tables, if the node is a choice between two: the choice is exact, and the tables
-    /// have the error.
+    /// Moves the number of a rounding operation from a choice between two tables to these tables, which have the error. Changes
+    /// nothing for another node.
     pub(super) fn give_source_to_tables(&mut self, node: NodeId) {
         let PlanNode { operation: Operation::Choose { cases, .. }, source, .. } =
             *self.plan.node(node)

@@ -249,7 +249,7 @@ pub(super) fn floor_of(a: &Expression, b: &Expression) -> Option<i32> {
     }
 }
 
-/// Parses a formula. The text must be valid.
+/// Returns the formula in `text`, which must be valid.
 pub(super) fn number(text: &str) -> Expression {
     glint_formula::parse(text).expect("a formula")
 }

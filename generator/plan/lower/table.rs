@@ -80,7 +80,7 @@ impl Lowering<'_> {
 
     /// Returns whether a table over the values of `core` can compute `part`. It cannot if a case of a choice has no value outside
     /// its condition, as in `if(x > 0, ln(x), -8)`, or if a remainder jumps and the core is too wide for a table. Fails if the
-    /// core has too many bits, no finite values, or no rule.
+    /// plan cannot compute the core.
     pub(super) fn can_be_one_table(
         &mut self,
         part: &Expression,
@@ -101,8 +101,8 @@ impl Lowering<'_> {
         Ok(self.function_range(&function, format, domain).is_some())
     }
 
-    /// Returns the node of `part`, which is a function of the value of `core` alone, by a rewriting or by a table. Fails if a part
-    /// has too many bits, no finite values, or no rule.
+    /// Returns the node of `part`, which is a function of the value of `core` alone, by a rewriting or by a table. Fails if the
+    /// plan cannot compute a part.
     pub(super) fn function_of(
         &mut self,
         part: &Expression,

@@ -1,12 +1,8 @@
 //! Rewrites sines and cosines such as `sin(2 * pi * x)` as operations of a plan, so that a short table serves the whole circle.
 //! The angle in quarter turns must be a number times a power of two, with 5 to 20 bits within a quadrant.
 //!
-//! If the formulas have only the sine or only the cosine of an angle, the table covers a quadrant. The angle in quarter turns
-//! is q + w, with an integer q and w from 0 to below 1. The sine is the table's value at w if q is even, and at 1 − w if q is
-//! odd. In the third and the fourth quadrant it is negative. The cosine is the sine of the angle plus a quarter turn.
-//!
-//! If the formulas have both, two tables cover an octant: the sine and the cosine of up to an eighth of a turn. Both read the
-//! same reduced angle, and both results choose between the tables.
+//! If the formulas have only the sine or only the cosine of an angle, a table of the sine covers a quadrant. If the formulas have
+//! both, tables of the sine and the cosine cover an octant, and each result chooses between these tables.
 
 use std::sync::Arc;
 
@@ -23,9 +19,8 @@ const FEWEST_BITS: i32 = 5;
 /// The largest number of bits of an angle within a quadrant.
 const MOST_BITS: i32 = 20;
 
-/// Returns the kind of a wave and an exponent, if `function` is the sine or the cosine of a multiple of x. x times 2 to this
-/// exponent is the angle in quarter turns. For example, `sin(2 * pi * x)` gives 2: x is in turns, and 4·x in quarter turns.
-/// Returns `None` for any other function.
+/// Returns `Sin` or `Cos` and an exponent, if `function` is the sine or the cosine of a multiple of x. The angle in quarter turns
+/// is x times 2 to this exponent: `sin(2 * pi * x)` gives 2, because x is in turns. Returns `None` for any other function.
 fn quarter_turns(function: &Expression) -> Option<(Function, i32)> {
     let Kind::Unary(kind @ (Function::Sin | Function::Cos), angle) = &function.kind else {
         return None;
@@ -73,9 +68,9 @@ pub(super) struct OctantWaves {
 }
 
 impl Lowering<'_> {
-    /// Returns the node of a sine or a cosine. `function` must be the formula with x in the place of `core`. Returns `None` if
-    /// x times a power of two is not the angle in quarter turns, or if a quadrant has fewer than 5 or more than 20 bits of the
-    /// angle. Fails if a part has too many bits, no finite values, or no rule.
+    /// Returns the node of a sine or a cosine. `function` must be the formula with x in the place of `core`. Returns `None` if x
+    /// times a power of two is not the angle in quarter turns, or if a quadrant has fewer than 5 or more than 20 bits of the
+    /// angle. Fails if the plan cannot compute a part.
     pub(super) fn wave(
         &mut self,
         core: &Expression,
@@ -93,8 +88,9 @@ impl Lowering<'_> {
         self.wave_by_quadrants(kind, node, power).map(Some)
     }
 
-    /// Returns the node of a sine or a cosine (`kind`), computed by a table of the sine in a quadrant. `node` times 2^`power`
-    /// is the angle in quarter turns. Fails if a part has too many bits, no finite values, or no rule.
+    /// Returns the node of a sine or a cosine (`kind`), computed by a table of the sine in a quadrant. `node` times 2^`power` is
+    /// the angle in quarter turns, q + w with an integer q. The table is read at w if q is even, and at 1 − w if q is odd. The
+    /// cosine is the sine of the angle plus a quarter turn. Fails if the plan cannot compute a part.
     fn wave_by_quadrants(
         &mut self,
         kind: Function,
@@ -117,9 +113,9 @@ impl Lowering<'_> {
         self.with_sign("wave", size, is_negative)
     }
 
-    /// Returns the node of a sine or a cosine (`kind`), computed by tables of the sine and the cosine in an octant. `node`
-    /// times 2^`power` is the angle in quarter turns. A sine and a cosine of the same angle share the tables. Fails if a part
-    /// has too many bits, no finite values, or no rule.
+    /// Returns the node of a sine or a cosine (`kind`), computed by tables of the sine and the cosine in an octant. `node` times
+    /// 2^`power` is the angle in quarter turns. A sine and a cosine of the same angle share the tables. Fails if the plan cannot
+    /// compute a part.
     ///
     /// In the octants 0 to 3, the absolute value of the sine is the sine, the cosine, the cosine and the sine of the reduced
     /// angle. The absolute value of the cosine is the other value in each octant. The octants 4 to 7 repeat this pattern. The
@@ -153,8 +149,7 @@ impl Lowering<'_> {
     }
 
     /// Adds the tables of the sine and the cosine in an octant, and the nodes that restore the results for the whole angle.
-    /// Returns these nodes. `node` times 2^`power` is the angle in quarter turns. Fails if a part has too many bits, no finite
-    /// values, or no rule.
+    /// Returns these nodes. `node` times 2^`power` is the angle in quarter turns. Fails if the plan cannot compute a part.
     fn octant_waves(&mut self, node: NodeId, power: i32) -> Result<OctantWaves, PlanRefusal> {
         let eighths = self.plan.scale("eighths", node, power + 1)?;
         let [octant, way] = self.plan.split("angle", eighths)?;

@@ -1,10 +1,10 @@
-//! Rewrites the integer part of α · p + β, with an exact number p and constants α and β that need not be rational, so that it is exact.
-//! For example, the number of whole turns in an angle is floor(a / (2 · π)). Also rewrites remainders by such a constant.
+//! Rewrites the integer part of α · p + β exactly, for an exact number p and constants that may be irrational. For example, the
+//! number of whole turns in an angle is floor(a / (2 · π)). Also rewrites remainders by such a constant.
 //!
-//! A raw value A of p has the integer part (A · `factor` + `offset`) / 2^`places`, rounded down, if both constants have enough bits. The
-//! sum differs little from the exact one, so that only values A at which the exact sum is next to an integer can have another integer
-//! part. These values are found without trying all: A · a mod m lies in an interval for them, and the smallest such A follows from a
-//! smaller problem of the same kind, as in Euclid's algorithm.
+//! A raw value A of p has the integer part (A · `factor` + `offset`) / 2^`places`, rounded down, if these constants have enough
+//! bits. Only values A at which the exact sum is next to an integer can then have another integer part. They are found without a
+//! trial of all values: the smallest A with A · a mod m in an interval follows from a smaller problem of the same kind, as in
+//! Euclid's algorithm.
 
 use std::sync::Arc;
 
@@ -106,8 +106,8 @@ pub(super) fn is_irrational_remainder(formula: &Expression) -> bool {
     }
 }
 
-/// Writes a formula with a remainder by a constant that is no rational number: `a - m * floor((a + c) / m)` is `(a + c) % m - c`.
-/// Returns `None` for any other formula.
+/// Writes a difference that is a remainder by an irrational constant as this remainder: `a - m * floor((a + c) / m)` is
+/// `(a + c) % m - c`. Returns `None` for any other formula.
 pub(super) fn with_remainder(formula: &Expression) -> Option<Expression> {
     let binary = |operator, a: &Expression, b: &Expression| {
         let kind = Kind::Binary(operator, Arc::new(a.clone()), Arc::new(b.clone()));
@@ -181,8 +181,8 @@ impl KnownLine {
         self.slope * raw + self.start
     }
 
-    /// Returns the integers in the range at which the sum is less than `distance` from an integer. Returns `None` if there are more than
-    /// [`MOST_NEAR`].
+    /// Returns the integers in the range at which the line is less than `distance` from an integer, in units of
+    /// 2^−[`KNOWN_BITS`]. Returns `None` if there are more than [`MOST_NEAR`].
     fn near_integers(&self, (low, high): (i128, i128), distance: i128) -> Option<Vec<i128>> {
         let count = (high - low + 1) as f64 * 2.0 * distance as f64 / Self::ONE as f64;
         if count > MOST_NEAR as f64 {
@@ -242,8 +242,8 @@ impl KnownLine {
     }
 }
 
-/// Returns the smallest x that is not below 0 with `factor` · x mod `modulus` from `from` to `to`. The limits must be integers from 0 to
-/// below the modulus, the first one not above the second. Returns `None` if there is none, or only one beyond 2^38.
+/// Returns the smallest x that is not below 0 with `factor` · x mod `modulus` from `from` to `to`. These limits must be integers
+/// from 0 to below the modulus, with `from` not above `to`. Returns `None` if no x has this property, or only one beyond 2^38.
 fn first_multiple(factor: i128, modulus: i128, (from, to): (i128, i128)) -> Option<i128> {
     if from == 0 {
         return Some(0);

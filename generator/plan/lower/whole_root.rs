@@ -16,10 +16,10 @@ use crate::refusal::PlanRefusal;
 /// The largest error of the estimate of a root, in units of the result.
 const LARGEST_ERROR: f64 = 0.25;
 
-/// The fraction bits beyond the result's that the estimate of a root has at least, and the most that are tried.
+/// The least and the most guard bits with which the estimate of a root is tried: its fraction bits beyond the result's.
 const GUARD_BITS: std::ops::RangeInclusive<i32> = 2..=8;
 
-/// The integer bits of a root that its guard bits include.
+/// The integer bits of a root for which the factors of the estimate need no further bits.
 const FEW_BITS: i32 = 2;
 
 /// The direction in which a root is rounded to an integer.
@@ -72,8 +72,8 @@ pub(super) fn is_whole_root(formula: &Expression) -> bool {
     root.is_some_and(|root| has_no_function(&root.square) && over_number(&root.square).is_some())
 }
 
-/// Writes a constant times a square root as a root with a sign: `-2 * sqrt(x)` gives `4 * x`, and that it is negated. Returns `None` for
-/// another formula, and for the constant 0.
+/// Writes a constant times a square root as a root with a sign: `-2 * sqrt(x)` gives `4 * x`, and true because the root is
+/// negated. Returns `None` for another formula, and for the constant 0.
 fn scaled_square(formula: &Expression) -> Option<(Expression, bool)> {
     let scaled = |root: &Expression, factor: RBig| {
         let (square, is_negated) = scaled_square(root)?;

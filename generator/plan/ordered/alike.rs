@@ -5,13 +5,13 @@ use std::collections::HashSet;
 use crate::node::{NodeId, Operation};
 use crate::plan::ExpressionPlan;
 
-/// A node of one result, and the node of another result at the same place. The same node twice is a part that both results have in
-/// common. Of several nodes with the same value, the first stands for all ([`ExpressionPlan::first_of_equal_nodes`]).
+/// A node of one result, and the node of another result at the same place. The same node twice is a part that the results have in
+/// common. Nodes with the same value count as the first of them ([`ExpressionPlan::first_of_equal_nodes`]).
 pub(super) type NodePair = (NodeId, NodeId);
 
-/// Returns the pairs of nodes of two results in the order of the first nodes, so that a pair follows the pairs that it reads. `first` has
-/// for each node the first one with the same value. `own` has
-/// the numbers of the operands that only the first and only the second result has; every other operand must be the same.
+/// Returns the pairs of nodes of two results, ordered so that a pair follows the pairs that it reads. `first` has for each node
+/// the first one with the same value. `own` has the numbers of the operands that only the first and only the second result has;
+/// every other operand must be the same.
 ///
 /// # Errors
 /// Fails with the first pair of nodes that differ.

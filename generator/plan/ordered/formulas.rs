@@ -125,7 +125,7 @@ impl FormulaPair<'_> {
         Change::Unknown
     }
 
-    /// `change` is the change of the arguments, one in each formula.
+    /// Returns the change of `whole`, a function of arguments with the change `change`, one in each formula.
     fn of_function(
         &mut self,
         function: Function,
@@ -149,7 +149,7 @@ impl FormulaPair<'_> {
         self.checked(whole, [change; 2], result)
     }
 
-    /// `changes` has the changes of the two inputs, and `inputs` each input in both formulas.
+    /// Returns the change of `whole`. `changes` has the changes of its two inputs, and `inputs` each input in both formulas.
     fn of_operator(
         &mut self,
         operator: Operator,
@@ -188,7 +188,7 @@ impl FormulaPair<'_> {
         self.checked(whole, changes, result)
     }
 
-    /// Returns `result`, and remembers the part as an obstacle if its inputs are known and it is not.
+    /// Returns `result`. If it is unknown although the inputs' changes are known, `whole` becomes the obstacle.
     fn checked(&mut self, whole: &Expression, inputs: [Change; 2], result: Change) -> Change {
         let is_constant = inputs == [Change::Constant; 2];
         match result {

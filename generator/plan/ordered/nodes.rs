@@ -74,7 +74,7 @@ struct Chain<'p> {
 }
 
 impl Chain<'_> {
-    /// Returns the change of the last pair, the results.
+    /// Finds the changes of all pairs, and returns the change of `results`, the last pair.
     fn change_of(&mut self, results: NodePair) -> Change {
         for at in 0..self.pairs.len() {
             let pair = self.pairs[at];

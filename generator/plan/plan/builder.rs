@@ -29,13 +29,13 @@ impl PlanBuilder {
         Self { plan: ExpressionPlan { is_shared: true, ..ExpressionPlan::default() } }
     }
 
-    /// Starts a plan without nodes that serves as many functions, and has its tables in the same memory, as `other`.
+    /// Starts a plan without nodes that is shared if `other` is, and has its tables in the same memory.
     pub(crate) fn like(other: &ExpressionPlan) -> Self {
         let ExpressionPlan { is_shared, memory, .. } = *other;
         Self { plan: ExpressionPlan { is_shared, memory, ..ExpressionPlan::default() } }
     }
 
-    /// Starts with the nodes and the results of a finished plan.
+    /// Starts with the nodes and the results of a finished plan, to change it.
     pub(crate) fn of_plan(plan: ExpressionPlan) -> Self {
         Self { plan }
     }
@@ -54,12 +54,11 @@ impl PlanBuilder {
         &self.plan
     }
 
-    /// Returns the node with this index.
     pub(crate) fn node(&self, id: NodeId) -> &PlanNode {
         self.plan.node(id)
     }
 
-    /// Makes a node the only result.
+    /// Makes a node the only result, so that the analysis gives its error.
     pub(crate) fn end_at(&mut self, node: NodeId) {
         self.plan.results = vec![node];
         self.plan.proved = vec![node];
@@ -104,14 +103,14 @@ impl PlanBuilder {
         self.plan.nodes[id.0].source = source;
     }
 
-    /// Makes operand number `number` of a node. The node keeps its format and its range.
+    /// Replaces the operation of a node by operand number `number`. The node keeps its format and its range.
     pub(crate) fn make_operand(&mut self, id: NodeId, number: usize) {
         let node = &mut self.plan.nodes[id.0];
         node.operation = Operation::Operand(number);
         node.stated = None;
     }
 
-    /// Gives a table of constants, which [`Self::lookup`] added without words, its words. Each has `bits` bits.
+    /// Adds the words, of `bits` bits each, to a table of constants that [`Self::lookup`] added without words.
     pub(crate) fn complete_lookup(&mut self, id: NodeId, words: Vec<i128>, bits: i32) {
         let node = &mut self.plan.nodes[id.0];
         if let Operation::Lookup { words: own, .. } = &mut node.operation {
@@ -303,7 +302,6 @@ impl PlanBuilder {
         self.exact(name, Operation::Subtract(a, b), range, frac)
     }
 
-    /// Returns whether a node is the exact constant 0.
     fn is_exactly_zero(&self, id: NodeId) -> bool {
         let zero = Enclosure::exactly(0.0);
         matches!(&self.node(id).operation, Operation::Constant { value, .. } if *value == zero)
@@ -472,8 +470,8 @@ impl PlanBuilder {
         self.insert(name, Operation::Narrow(a, rounding), format, range)
     }
 
-    /// Returns the low bits of the node `a` in `format`, which drops the bits below it. Adds a node unless the plan has one with these
-    /// bits. The caller must prove that no value exceeds the format. Fails if the node has more than 64 bits.
+    /// Returns the node of `a` in `format`, without the bits below the last place of this format. Adds a node unless the plan has
+    /// one with these bits. The caller must prove that no value exceeds the format. Fails if the node has more than 64 bits.
     pub(crate) fn low_bits(
         &mut self,
         name: &str,

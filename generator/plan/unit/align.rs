@@ -8,7 +8,7 @@ use crate::plan::ExpressionPlan;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum SharedKind {
     Normaliser,
-    /// A table with the widths of the set, or a choice between two of them for the same operand ([`TableRead`]).
+    /// A table with the common widths of a unit's tables, or a choice between two of them for the same operand ([`TableRead`]).
     Table,
     Product,
     /// A shift to the left or to the right.
@@ -41,8 +41,8 @@ pub(super) struct TableRead {
 }
 
 impl TableRead {
-    /// Returns what a node of a plan reads from a shared table; `None` for other nodes. `is_shared_table` says whether a polynomial
-    /// has the widths of the set.
+    /// Returns how a node of a plan reads a shared table; `None` for other nodes. `is_shared_table` says whether a polynomial has
+    /// the common widths.
     pub(super) fn at(
         plan: &ExpressionPlan,
         node: NodeId,
@@ -81,7 +81,7 @@ fn choice_of_tables(
     is_choice.then_some((zero_operand, condition, cases))
 }
 
-/// Returns whether only choices between two tables read a polynomial, which then is no result.
+/// Returns whether a polynomial is no result, and only choices between two tables read it.
 fn is_read_by_choices(
     plan: &ExpressionPlan,
     polynomial: NodeId,
@@ -99,11 +99,11 @@ fn is_read_by_choices(
     has_reader && !plan.results().contains(&polynomial)
 }
 
-/// Returns slots for all operations of these kinds. The nodes of each plan are in the order of the slots, so that the merged plan
-/// has no circles. `kind_of` returns the kind of a node.
+/// Returns slots for the operations in `sequences`, which has the shared operations of each function in the order of its plan.
+/// The slots keep all of these orders, so that the merged plan has no circles.
 ///
-/// The plans are added one after the other, the longest first. For each, dynamic programming finds the alignment with the slots so
-/// far that shares most operations.
+/// The longest sequence comes first. For each further one, dynamic programming finds the alignment with the slots so far that
+/// shares most operations.
 pub(super) fn slots(sequences: &[Vec<(NodeId, SharedKind)>]) -> Vec<MergedOperation> {
     let mut order: Vec<usize> = (0..sequences.len()).collect();
     order.sort_by_key(|function| std::cmp::Reverse(sequences[*function].len()));
@@ -114,8 +114,8 @@ pub(super) fn slots(sequences: &[Vec<(NodeId, SharedKind)>]) -> Vec<MergedOperat
     slots
 }
 
-/// Returns the shared operations of a plan, in the order of its nodes. `is_shared_table` says whether a polynomial has the widths of
-/// the set.
+/// Returns the shared operations of a plan, in the order of its nodes. `is_shared_table` says whether a polynomial has the common
+/// widths.
 pub(super) fn shared_operations(
     plan: &ExpressionPlan,
     is_shared_table: &dyn Fn(NodeId) -> bool,

@@ -1,16 +1,16 @@
-//! Proves that the merged plan of a unit computes what the plan of each function computes alone, for all operands.
+//! Proves that the merged plan of a unit has the results of each function's own plan, for all operands.
 //!
-//! The proof goes through the nodes of a function's plan in their order. The merged plan has a node for each of them. If the inputs of a
-//! node have the right values in the merged plan, so has the node itself:
+//! The proof goes through the nodes of a function's plan in their order, each with its node of the merged plan. If the inputs of
+//! a node have the right values in the merged plan, so has the node itself in these cases:
 //!
-//! - The merged plan has the same operation on the nodes of the inputs, or
-//! - both are products, and the factors are equal, or
-//! - both values are computed for every combination of the inputs' values, and are equal. For sums and roundings of a long input, two periods are
+//! - The merged plan has the same operation on the nodes of the inputs.
+//! - Both nodes are products of equal factors.
+//! - Both values are equal for every combination of the inputs' values. For sums and roundings of a long input, two periods are
 //!   enough ([`super::periods`]).
 //!
-//! The opcode is a constant in the proof, so that a choice by the opcode is the case that it selects. Low bits that no reader of a node needs do
-//! not count. Combinations are computed whether or not their values can occur together. They may differ only where a value of the function alone
-//! exceeds its format: the proof of its error shows that it does not.
+//! The opcode is a constant in the proof, so that a choice by the opcode is the case that it selects. Low bits that no reader of
+//! a node needs do not count. Combinations count whether or not their values can occur together. Values may differ only where a
+//! value of the function alone exceeds its format, which the proof of the function's error excludes.
 
 use glint_base::fixed::Rounding;
 use glint_base::interval::{self, Interval};
@@ -38,7 +38,7 @@ pub(super) const MOST_COMBINATIONS: u128 = 1 << 22;
 pub enum UnitEquality {
     /// The results are equal for all operands. The number counts the combinations of values that were computed.
     Proved { combinations: u64 },
-    /// The proof does not reach a node, whose name this is. The unit need not be wrong.
+    /// The proof fails at the node with this name. The results may still be equal.
     Open { node: String },
 }
 
@@ -154,7 +154,8 @@ impl<'u> FunctionProof<'u> {
         UnitEquality::Open { node: self.own.plan.node(node).name.clone() }
     }
 
-    /// Returns the value of a node of the merged plan if it depends on the opcode alone. All nodes before it have their entries.
+    /// Returns the value of a node of the merged plan if it depends on the opcode alone. All nodes before it must have their
+    /// entries in `constants`.
     fn constant(&self, id: NodeId, opcode: i64) -> Option<i128> {
         let node = self.merged.node(id);
         match node.operation {
@@ -171,7 +172,7 @@ impl<'u> FunctionProof<'u> {
         }
     }
 
-    /// Returns the nodes on which the value of a node of the merged plan depends.
+    /// Returns the nodes on which the value of a node of the merged plan depends, with the known opcode.
     fn merged_inputs(&self, id: NodeId) -> Vec<NodeId> {
         if self.constants.get(id.0).is_some_and(Option::is_some) {
             return Vec::new();
@@ -269,8 +270,8 @@ impl<'u> FunctionProof<'u> {
             && pairs.all(|(own, merged)| self.own.merged[own.0] == Some(*merged))
     }
 
-    /// Returns the number of low bits in which a node may differ from its copy in the merged plan. Returns `None` if these are not the low bits
-    /// of its input.
+    /// Returns the number of low bits in which a node may differ from its copy in the merged plan. Returns `None` if low bits of
+    /// an input can change the other bits.
     fn unequal_bits_of_copy(&self, own: NodeId) -> Option<i32> {
         let node = self.own.plan.node(own);
         let inputs = node.operation.inputs();
@@ -322,15 +323,14 @@ impl<'u> FunctionProof<'u> {
         have_values(factors) || have_values([factors[1], factors[0]])
     }
 
-    /// Returns whether the merged node has the word of a result.
     fn is_result(&mut self, own: NodeId, merged: NodeId, word: &dyn Fn(i128) -> i128) -> bool {
         let end = self.own.plan.nodes().len();
         let nodes = NodeComparison { end, own, merged, unread: 0 };
         self.are_equal(nodes, &|own, merged| word(own) == merged)
     }
 
-    /// Returns whether `compare` holds for the raw values of a node of the function's plan and of a node of the merged plan, for every
-    /// combination of the values of nodes before them, which are proved.
+    /// Returns whether `compare` holds for the raw values of a node of the function's plan and of a node of the merged plan.
+    /// Computes these for every combination of the values of proved nodes before them.
     fn are_equal(&mut self, nodes: NodeComparison, compare: &dyn Fn(i128, i128) -> bool) -> bool {
         let NodeComparison { own, merged, .. } = nodes;
         let Some(cones) = self.cones(nodes.end, own, merged) else { return false };
@@ -380,7 +380,7 @@ impl<'u> FunctionProof<'u> {
         true
     }
 
-    /// Returns the number of bits whose power of two is a period of both cones in an input.
+    /// Returns k if both cones have the period 2^k in an input ([`super::periods`]); `None` if a cone has no period.
     fn period_bits(&self, input: &ConeInput, cones: &Cones) -> Option<i32> {
         let of_own = period_bits(&self.own.plan, &[input.node], &cones.own)?;
         let of_merged = period_bits(self.merged, &input.merged, &cones.merged)?;
@@ -522,7 +522,7 @@ impl InputValues {
         beyond.unwrap_or(multiple) << self.dropped
     }
 
-    /// Leaves two periods of 2 to the power of `bits`, and the last value.
+    /// Keeps the values of two periods of 2^`bits`, and the last value.
     fn keep_two_periods(&mut self, bits: i32) {
         let period = 1i128 << (bits - self.dropped as i32).clamp(0, 100);
         let (first, last) = self.range;

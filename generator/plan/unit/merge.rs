@@ -34,7 +34,8 @@ pub(super) struct Merger<'u> {
     ports: Vec<NodeId>,
     /// For each function and each node of its plan, the node of the merged plan with its value.
     pub(super) nodes: Vec<Vec<NodeId>>,
-    /// For each function, the value of the table before its first result behind the shifter, if it passes through the shifter.
+    /// For each function whose first result passes through the shifter without a shift: the value of its table behind the
+    /// shifter.
     pub(super) routed: Vec<Option<NodeId>>,
     /// The widths of the tables that can be pages of a shared table; `None` if there are none.
     common_widths: Option<SharedWidths>,
@@ -123,7 +124,6 @@ impl Merger<'_> {
         &self.plans[function]
     }
 
-    /// Returns the nodes of each function in the merged plan.
     fn function_nodes(&self) -> Vec<MergedFunction> {
         let mut functions = Vec::new();
         for (function, nodes) in self.nodes.iter().enumerate() {
@@ -137,7 +137,6 @@ impl Merger<'_> {
         functions
     }
 
-    /// Returns the operations of each function that may be shared.
     fn sequences(&self) -> Vec<Vec<(NodeId, SharedKind)>> {
         let mut of_functions = Vec::new();
         for function in 0..self.functions.len() {
@@ -155,7 +154,7 @@ impl Merger<'_> {
         widths.is_some_and(|widths| common.is_some_and(|common| fits(&widths, common)))
     }
 
-    /// Returns what a function reads from the shared table at a node of its plan; `None` for other nodes.
+    /// Returns how a function reads the shared table at a node of its plan; `None` for other nodes.
     pub(super) fn table_read(&self, function: usize, node: NodeId) -> Option<TableRead> {
         TableRead::at(self.own(function), node, &|node| self.is_shared_table(function, node))
     }
@@ -263,14 +262,14 @@ impl Merger<'_> {
         self.plan.low_bits(name, node, format)
     }
 
-    /// Returns the value of a node as an integer.
+    /// Returns a node with the raw value of `node` as an integer.
     pub(super) fn raw(&mut self, node: NodeId) -> Result<NodeId, PlanRefusal> {
         let PlanNode { name, format, .. } = self.plan.node(node);
         let (name, frac) = (format!("{name}_raw"), format.frac);
         self.plan.scale(&name, node, frac)
     }
 
-    /// Reads an integer in the format of a node of a function's plan, and gives it to this node.
+    /// Gives a node of a function's plan its value in the merged plan: the raw value `integer`, in the format of the node.
     pub(super) fn give(
         &mut self,
         function: usize,
@@ -298,7 +297,7 @@ impl Merger<'_> {
         self.choices.selected(&mut self.plan, name, cases)
     }
 
-    /// Adds the node of a slot, and the nodes of its functions up to it.
+    /// Adds the shared node of a slot, after the nodes of its functions that precede it.
     fn add_slot(&mut self, slot: &MergedOperation) -> Result<(), PlanRefusal> {
         let members = slot.present();
         for (function, node) in &members {
@@ -499,7 +498,8 @@ impl Merger<'_> {
         Ok(TablePlace { number, first_page, further_page })
     }
 
-    /// Returns the page number `first` + `further`. The sum is wiring if the first page is a multiple of a power of two above `further`.
+    /// Returns the page number `first` + `further`. The sum is a concatenation if the first page is a multiple of a power of two
+    /// above `further`.
     fn page_after(
         &mut self,
         function: usize,
@@ -520,7 +520,7 @@ impl Merger<'_> {
         self.plan.add(&name, above, further)
     }
 
-    /// Returns by how much the page that a condition selects exceeds the smaller one.
+    /// Returns by how much the page that `condition` selects exceeds the smaller one of `pages`.
     fn page_beyond_first(
         &mut self,
         name: &str,

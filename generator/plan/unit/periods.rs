@@ -9,8 +9,8 @@ use glint_base::fixed::Format;
 use crate::node::{NodeId, Operation};
 use crate::plan::ExpressionPlan;
 
-/// Returns the number of bits whose power of two is a period of the nodes of a cone in an input, which the nodes `inputs` have. Returns `None` if a node of the cone
-/// is not a sum or a rounding of the input, or a choice that does not depend on it.
+/// Returns k if the nodes of a cone have the period 2^k in an input, which the nodes `inputs` have. Returns `None` if a node of
+/// the cone is not a sum or a rounding of the input, or a choice that does not depend on it.
 pub(super) fn period_bits(
     plan: &ExpressionPlan,
     inputs: &[NodeId],
@@ -39,8 +39,8 @@ pub(super) fn period_bits(
     Some(most)
 }
 
-/// Returns whether the values of a cone fit the formats of their nodes, apart from nodes at its end that only drop bits of the last sum: their
-/// values are equal modulo a power of two.
+/// Returns whether the values of a cone fit the formats of their nodes. Nodes at its end that only drop bits of the last sum do
+/// not count, because their values are equal modulo a power of two.
 pub(super) fn fit_before_end(
     plan: &ExpressionPlan,
     end: NodeId,

@@ -9,7 +9,7 @@ use super::sums::ResultSum;
 use crate::node::{NodeId, Operation};
 use crate::refusal::PlanRefusal;
 
-/// Results share an adder if at least so many of them need one.
+/// Results share an adder if at least this many of them need one.
 const FEWEST_ADDERS: usize = 2;
 
 /// The nodes of a result ±v + base of one function.

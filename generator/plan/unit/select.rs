@@ -24,7 +24,7 @@ pub(super) struct OpcodeChoices {
     low_bits: Vec<(NodeId, NodeId)>,
 }
 
-/// The bits of a word without its lowest `dropped` bits. If the number is negative, so many zeros are appended below.
+/// The bits of a word without its lowest `dropped` bits. For example, −2 appends two zeros below the word.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct WordBits {
     word: NodeId,
@@ -97,7 +97,8 @@ impl OpcodeChoices {
         Ok(selected.expect("a case"))
     }
 
-    /// Replaces cases that are bits of the same word, from the same bit on, by as many of these bits as the widest of them has.
+    /// Replaces cases that are bits of the same word, from the same lowest bit on, by the bits of the widest of them, so that
+    /// they need no choice.
     fn with_common_words(
         &self,
         plan: &mut PlanBuilder,
@@ -132,7 +133,7 @@ impl OpcodeChoices {
         Ok(common)
     }
 
-    /// Returns the word whose bits a node has.
+    /// Returns the word whose bits a node has, and the number of dropped low bits.
     fn source_of(&self, plan: &PlanBuilder, node: NodeId) -> WordBits {
         let mut source = WordBits { word: node, dropped: 0 };
         loop {
@@ -156,7 +157,8 @@ impl OpcodeChoices {
         }
     }
 
-    /// Returns the node of a condition that is `column[opcode]`, in a column of the table that may have it already.
+    /// Returns the node of a condition that is `column[opcode]`, from a new column of the table, or from a column that agrees
+    /// with it.
     fn condition(
         &mut self,
         plan: &mut PlanBuilder,
@@ -207,7 +209,7 @@ fn choices_in_tree(cases: &[Option<NodeId>]) -> (usize, Option<NodeId>) {
     (lower + upper + usize::from(is_choice), None)
 }
 
-/// Returns a node with the value of the case that the conditions select, the last condition first; `None` if there is no case.
+/// Returns a node with the value of the case whose index has the conditions as its bits; `None` without cases.
 fn tree(
     plan: &mut PlanBuilder,
     name: &str,

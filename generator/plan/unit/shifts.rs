@@ -21,7 +21,7 @@ use crate::refusal::PlanRefusal;
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum ShiftUse {
     Right,
-    /// A shift to the left. No operation reads this number of its low bits, and it has at most so many places.
+    /// A shift to the left by at most this many places. No operation reads this many low bits of its value.
     LeftWithoutLowBits(i32),
     /// A shift to the left whose low bits are read, too.
     Left,
@@ -142,7 +142,6 @@ impl Merger<'_> {
         }
     }
 
-    /// Gives the value of the shifter to the node of a function.
     fn give_shifted(
         &mut self,
         function: usize,

@@ -26,7 +26,7 @@ pub(super) struct ResultSum {
 }
 
 impl ResultSum {
-    /// Returns the sum of a result of a plan.
+    /// Returns a result of a plan as a sum.
     pub(super) fn of(plan: &ExpressionPlan, result: NodeId) -> Self {
         let result_frac = plan.node(result).format.frac;
         let held = vec![false; plan.nodes().len()];

@@ -103,14 +103,14 @@ pub(super) fn paged(tables: &[Arc<Piecewise>], are_pairs: &[bool]) -> PagedTable
     PagedTable { polynomials: Arc::new(polynomials), number_bits, pages, page_bits }
 }
 
-/// Returns a format with the same fraction bits that can represent all values of two formats.
+/// Returns a format that can represent all values of two formats, with the larger number of fraction bits.
 pub(super) fn wide_enough(a: Format, b: Format) -> Format {
     let signed = a.signed || b.signed;
     Format { signed, int: a.int.max(b.int), frac: a.frac.max(b.frac) }
 }
 
 impl PagedTable {
-    /// Returns the function that the table stands for in the merged plan. Its formula is never evaluated: the error of each page was
+    /// Returns a function for the table's node in the merged plan. Its formula is never evaluated: the error of each page was
     /// proved for the function's own plan.
     pub(super) fn function(&self) -> TargetFunction {
         TargetFunction {

@@ -1,5 +1,6 @@
-//! Writes the Gappa statements of one case, for a device that computes a single point (one set of operands) after each start. A
-//! statement says that an output differs from the formula by at most the bound.
+//! Writes the Gappa statements of one case (one combination of outcomes of the hardware's conditions, such as a saturation), for
+//! a device that computes a single point after each start. A statement says that an output differs from the formula by at most
+//! the bound.
 //!
 //! If the formula has branches, such as `max`, each combination of branches without contradictory conditions is a statement. The
 //! module `segments` writes the statements for devices that compute a line of points.

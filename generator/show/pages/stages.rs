@@ -1,4 +1,5 @@
-//! Makes the tables of a pipeline for its page.
+//! Makes the two tables on the page of a pipeline: the stages with their delays and registers, and the product that each shared
+//! multiplier computes in each slot.
 
 use super::account::{TextTable, code};
 use glint_rtl::netlist::{Design, Pipeline};

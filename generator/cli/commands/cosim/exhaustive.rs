@@ -1,5 +1,5 @@
-//! `glint cosim --exhaustive`: checks a contract's error bound for all listed operand combinations, as one run or as one of
-//! several shards.
+//! `glint cosim --exhaustive`: checks a contract's error bound for every operand combination of the sweep, in one run or divided
+//! into shards for several machines.
 
 pub mod show;
 

@@ -67,8 +67,8 @@ impl RegisterBits {
         }
     }
 
-    /// Returns whether the hardware may change the bits, so that software must not cache them. A field that software only
-    /// reads, with a value other than 0 after a reset, is constant.
+    /// Returns whether the hardware may change the bits, so that software must not cache them. A read-only field with a reset
+    /// value other than 0 counts as constant, because only constants, such as the version of Glint, have one.
     fn is_volatile(&self) -> bool {
         match self.access {
             Access::Read => self.reset == 0,
