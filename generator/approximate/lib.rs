@@ -3,7 +3,8 @@
 //! The domain is divided into [`Segments`]. A table has the polynomial's coefficients for each segment, and the hardware
 //! evaluates the polynomial in integers by Horner's rule. [`find`] chooses the degree, the segments, the coefficients and the bit
 //! widths. [`Piecewise::prove`] then compares the result of every operand with the exact function: a formula, or a curve through
-//! measured points ([`Samples`]). If a formula has more than 2^[`MOST_BITS`] operands, the proof uses intervals of operands.
+//! measured points ([`Samples`]). If a formula has more than 2^[`MOST_BITS`] operands, the proof uses intervals of operands. With
+//! samples or a range reduction, so many operands are an error.
 
 mod minimax;
 mod reduction;

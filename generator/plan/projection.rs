@@ -168,7 +168,12 @@ impl ConstantRounding<'_> {
         let raw = nearest(value.middle() * exp2(self.frac));
         let difference = value - Enclosure::exactly(raw * exp2(-self.frac));
         self.squares += difference.low.abs().max(difference.high.abs()).powi(2);
-        let rounded = parse(&format!("{raw} / {}", exp2(self.frac))).ok()?;
+        // Both numbers are integers, which the text states exactly.
+        let text = match self.frac {
+            frac @ 0.. => format!("{raw} / {}", exp2(frac)),
+            frac => format!("{raw} * {}", exp2(-frac)),
+        };
+        let rounded = parse(&text).ok()?;
         Some(Arc::new(rounded))
     }
 }
@@ -435,6 +440,16 @@ mod tests {
             let part = parse(formula).expect("a formula");
             assert!(rounded(&part, 9).is_none(), "{formula}");
         }
+    }
+
+    #[test]
+    fn large_constants_are_rounded_to_integers() {
+        let part = parse("(12345678901234567 * x + y) / sqrt(x^2 + y^2)").expect("a formula");
+        let RoundedProjection { formula, deviation } =
+            rounded(&part, 9).expect("a rounded constant");
+        let text = formula.python();
+        assert!(text.contains(" * 137438953472"), "{text}");
+        assert!(deviation <= 137_438_953_472.0 / 2.0 * ROUNDED_UP, "{deviation}");
     }
 
     #[test]
